@@ -1,0 +1,22 @@
+// Table of contents, in the order of the data's way. A user needs pipeline.hpp; the rest is there to be read.
+#pragma once
+
+#include "curbline/limits.hpp"           // sizes, at compile time
+#include "curbline/settings.hpp"         // geometry, noise and tuning, at run time
+#include "curbline/status.hpp"           // how a call ended
+#include "curbline/counters.hpp"         // what was dropped, refused, done
+#include "curbline/frames.hpp"           // map <- base <- tilt <- laser
+#include "curbline/scan_line.hpp"        // in: ranges
+#include "curbline/tilt_track.hpp"       // in: servo angles
+#include "curbline/pose_track.hpp"       // in: robot poses
+#include "curbline/line_projection.hpp"  // beams to points with variance
+#include "curbline/point.hpp"            //
+#include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
+#include "curbline/dem.hpp"              // rolling window of cells
+#include "curbline/segmentation.hpp"     // leaves, regions
+#include "curbline/region_graph.hpp"     // merging by evidence
+#include "curbline/plane.hpp"            // moments, evidence, fit
+#include "curbline/plane_mixture.hpp"    // labels that live on
+#include "curbline/label_field.hpp"      // belief propagation
+#include "curbline/curb_tracer.hpp"      // out: curbs
+#include "curbline/pipeline.hpp"         // all of it, on one screen

@@ -1,0 +1,196 @@
+// The elevation map: a rolling window of cells. A two-dimensional ring: when the window moves no cell is copied, those that
+// leave are cleared. Cells are addressed by (i, j), i along x from the window's lowest corner; what other stages keep
+// for a cell is stored under its slot, which stays the same while the cell is in the window.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "curbline/cell.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// Side of a block: the window moves by whole blocks, and leaves never cross their borders.
+inline constexpr int block_side = 4;
+
+/// Index types, as small as the limits allow.
+template <Limits limits>
+using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
+
+template <Limits limits>
+class Dem {
+ public:
+  using SlotType = Slot<limits>;
+  static constexpr int capacity = limits.rows * limits.cols;
+
+  /// Empties the map and places the window around (x, y). Settings are valid.
+  void init(const WindowSettings& settings, const PlanePrior& prior, float x_m, float y_m);
+
+  /// Makes the window follow (x, y), in steps of a block; a fixed window stays. Cells that leave are cleared; calls
+  /// left(slot) for each valid one first. Cost: the cells that leave.
+  template <typename Left>
+  void follow(float x_m, float y_m, Left&& left);
+
+  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite. Its weight is the expected
+  /// noise over its variance plus the ground's texture. O(1).
+  bool add(const Point& point);
+
+  int rows() const { return settings_.rows; }
+  int cols() const { return settings_.cols; }
+  float cell_x_m() const { return settings_.cell_x_m; }
+  float cell_y_m() const { return settings_.cell_y_m; }
+  /// Lowest corner of the window in the map frame.
+  float origin_x_m() const { return static_cast<float>(first_row_) * settings_.cell_x_m + anchor_x_m_; }
+  float origin_y_m() const { return static_cast<float>(first_col_) * settings_.cell_y_m + anchor_y_m_; }
+
+  int slot(int i, int j) const {
+    i += row_shift_;
+    j += col_shift_;
+    if (i >= settings_.rows) i -= settings_.rows;
+    if (j >= settings_.cols) j -= settings_.cols;
+    return i * limits.cols + j;
+  }
+  const Cell& cell(int slot) const { return cells_[static_cast<std::size_t>(slot)]; }
+
+  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n points
+  /// that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design effect).
+  PlaneMoments moments(int i, int j, const Cell& cell) const {
+    PlaneMoments m;
+    const float share = 1.0f / (1.0f + prior_.common_share * (cell.points - 1.0f));
+    m.cells = 1.0f;
+    m.points = cell.points * share;
+    m.weight = cell.weight * share;
+    m.x = centroid_x_m(i, cell);
+    m.y = centroid_y_m(j, cell);
+    m.z = cell.height_m;
+    m.zz = cell.scatter_m2 * share;
+    return m;
+  }
+  float centroid_x_m(int i, const Cell& cell) const { return (static_cast<float>(i) + 0.5f) * settings_.cell_x_m + cell.dx_m; }
+  float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m; }
+
+  /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
+  bool touched(int slot) const { return touched_[static_cast<std::size_t>(slot)] != 0; }
+  void clear_touched() { touched_.fill(0); }
+
+  /// Distance in cells to the next valid cell from (i, j) along +x (di = 1) or another axis direction; 0 if there is none
+  /// within `reach` cells or the window.
+  int next_valid(int i, int j, int di, int dj, int reach) const {
+    for (int g = 1; g <= reach; ++g) {
+      i += di;
+      j += dj;
+      if (i < 0 || j < 0 || i >= settings_.rows || j >= settings_.cols) return 0;
+      if (cell(slot(i, j)).valid()) return g;
+    }
+    return 0;
+  }
+
+ private:
+  static int wrap(std::int32_t index, int size) {
+    const int r = index % size;
+    return r < 0 ? r + size : r;
+  }
+  void place(float x_m, float y_m, std::int32_t& row, std::int32_t& col) const;
+
+  WindowSettings settings_{};
+  PlanePrior prior_{};
+  float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
+  std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
+  int row_shift_ = 0, col_shift_ = 0;
+  std::array<Cell, capacity> cells_{};
+  std::array<std::uint8_t, capacity> touched_{};
+};
+
+template <Limits limits>
+void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior, float x_m, float y_m) {
+  settings_ = settings;
+  prior_ = prior;
+  cells_.fill(Cell{});
+  touched_.fill(0);
+  first_row_ = first_col_ = 0;
+  row_shift_ = col_shift_ = 0;
+  anchor_x_m_ = settings.origin_x_m;
+  anchor_y_m_ = settings.origin_y_m;
+  if (settings.fixed) return;
+  place(x_m, y_m, first_row_, first_col_);
+  row_shift_ = wrap(first_row_, settings_.rows);
+  col_shift_ = wrap(first_col_, settings_.cols);
+}
+
+template <Limits limits>
+void Dem<limits>::place(float x_m, float y_m, std::int32_t& row, std::int32_t& col) const {
+  row = floor_to_int(x_m / (settings_.cell_x_m * block_side) + 0.5f) * block_side;
+  col = floor_to_int(y_m / (settings_.cell_y_m * block_side) + 0.5f) * block_side;
+}
+
+template <Limits limits>
+template <typename Left>
+void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
+  if (settings_.fixed) return;
+  std::int32_t row = 0, col = 0;
+  place(x_m, y_m, row, col);
+  if (row == first_row_ && col == first_col_) return;
+  for (int i = 0; i < settings_.rows; ++i) {
+    for (int j = 0; j < settings_.cols; ++j) {
+      const std::int32_t r = first_row_ + i - row, c = first_col_ + j - col;
+      if (r >= 0 && c >= 0 && r < settings_.rows && c < settings_.cols) continue;
+      const int s = slot(i, j);
+      if (!cell(s).valid()) continue;
+      left(s);
+      cells_[static_cast<std::size_t>(s)] = Cell{};
+      touched_[static_cast<std::size_t>(s)] = 1;
+    }
+  }
+  first_row_ = row;
+  first_col_ = col;
+  row_shift_ = wrap(row, settings_.rows);
+  col_shift_ = wrap(col, settings_.cols);
+}
+
+template <Limits limits>
+bool Dem<limits>::add(const Point& point) {
+  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !(point.variance_m2 >= 0.0f)) return false;
+  const float u = (point.x_m - origin_x_m()) / settings_.cell_x_m;
+  const float v = (point.y_m - origin_y_m()) / settings_.cell_y_m;
+  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return false;
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const auto s = static_cast<std::size_t>(slot(i, j));
+  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m, (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m,
+                prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2));
+  touched_[s] = 1;
+  return true;
+}
+
+/// Two valid cells with no valid cell between them on a row or column.
+struct Link {
+  std::size_t from, to;  ///< slots
+  int i, j;              ///< of `from`
+  int di, dj;            ///< direction to `to`: (1, 0) or (0, 1)
+  int distance;          ///< in cells
+};
+
+/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
+template <Limits limits, typename Visit>
+void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) {
+      const int from = dem.slot(i, j);
+      if (!dem.cell(from).valid()) continue;
+      for (int axis = 0; axis < 2; ++axis) {
+        const int di = axis == 0 ? 1 : 0, dj = 1 - di;
+        const int g = dem.next_valid(i, j, di, dj, reach);
+        if (g == 0) continue;
+        const int to = dem.slot(i + g * di, j + g * dj);
+        visit(Link{static_cast<std::size_t>(from), static_cast<std::size_t>(to), i, j, di, dj, g});
+      }
+    }
+  }
+}
+
+}  // namespace curbline

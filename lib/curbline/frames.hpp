@@ -1,0 +1,36 @@
+// Rigid transforms between the frames: map <- base (the robot) <- tilt (the servo's axis) <- laser. Right-handed, x ahead, y left,
+// z up, metres and radians (REP 103). Names cancel: p_map = T_map_base * p_base.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "curbline/math.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+struct Transform {
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f translation = Eigen::Vector3f::Zero();
+
+  Eigen::Vector3f operator*(const Eigen::Vector3f& p) const { return rotation * p + translation; }
+};
+
+/// R_z(yaw) R_y(pitch) R_x(roll), then translation.
+inline Transform make_transform(const MountSettings& mount) {
+  const SinCos a = sin_cos(mount.roll_rad), b = sin_cos(mount.pitch_rad), c = sin_cos(mount.yaw_rad);
+  Transform T;
+  T.rotation << c.cos * b.cos, c.cos * b.sin * a.sin - c.sin * a.cos, c.cos * b.sin * a.cos + c.sin * a.sin,  //
+      c.sin * b.cos, c.sin * b.sin * a.sin + c.cos * a.cos, c.sin * b.sin * a.cos - c.cos * a.sin,            //
+      -b.sin, b.cos * a.sin, b.cos * a.cos;
+  T.translation << mount.x_m, mount.y_m, mount.z_m;
+  return T;
+}
+
+/// R_y(tilt) p: tilt > 0 turns x down. s = sin_cos(tilt).
+inline Eigen::Vector3f tilted(const SinCos& s, const Eigen::Vector3f& p) {
+  return {s.cos * p.x() + s.sin * p.z(), p.y(), s.cos * p.z() - s.sin * p.x()};
+}
+
+}  // namespace curbline

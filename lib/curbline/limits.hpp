@@ -1,0 +1,22 @@
+// Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is its whole
+// memory: nothing is allocated later.
+#pragma once
+
+namespace curbline {
+
+/// Every size is a capacity. The window in use may be smaller (Settings::window); a store that is full refuses and
+/// counts (Counters).
+struct Limits {
+  int rows = 40;          ///< cells of the window along x, a multiple of 4
+  int cols = 40;          ///< cells of the window along y, a multiple of 4
+  int planes = 16;        ///< planes of the mixture, 2 to 255
+  int beams = 1081;       ///< beams of a scan line
+  int tilt_samples = 64;  ///< tilt angles kept, a power of two: 2 s of a servo that reports at 32 Hz
+  int poses = 32;         ///< poses kept, a power of two
+  int regions = 384;      ///< leaves and standing regions that one merging pass holds
+  int links = 1024;       ///< links between them, at most 32767
+  int borders = 512;      ///< border points between planes, at most 65534
+  int curbs = 128;        ///< pieces of curb line that are given out
+};
+
+}  // namespace curbline

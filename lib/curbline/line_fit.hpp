@@ -1,0 +1,42 @@
+// Total least squares of a line through points of the plane: what a chain of border points becomes.
+#pragma once
+
+namespace curbline {
+
+class LineFit {
+ public:
+  struct Segment {
+    float x0_m, y0_m, x1_m, y1_m;
+    float normal_x, normal_y;  ///< unit normal
+  };
+
+  void add(float x_m, float y_m) {
+    n_ += 1.0f;
+    const float dx = x_m - x_, dy = y_m - y_;
+    x_ += dx / n_;
+    y_ += dy / n_;
+    xx_ += dx * (x_m - x_);
+    xy_ += dx * (y_m - y_);
+    yy_ += dy * (y_m - y_);
+  }
+  /// Mean of the points.
+  float x_m() const { return x_; }
+  float y_m() const { return y_; }
+
+  /// The line between the feet of two points on it, made longer by `margin_m` at both ends. Falls back to the points
+  /// themselves if the fit has no direction.
+  Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
+  /// A line of its own for a single point: across axis 0 (x) or 1 (y), `margin_m` to both sides.
+  static Segment across(float x_m, float y_m, int axis, float margin_m) {
+    return axis == 0 ? Segment{x_m, y_m - margin_m, x_m, y_m + margin_m, 1.0f, 0.0f}
+                     : Segment{x_m - margin_m, y_m, x_m + margin_m, y_m, 0.0f, 1.0f};
+  }
+
+ private:
+  float n_ = 0.0f, x_ = 0.0f, y_ = 0.0f, xx_ = 0.0f, xy_ = 0.0f, yy_ = 0.0f;
+};
+
+/// Correctly rounded, from the hardware or the compiler's soft-float: the one library function that lib/ uses.
+float square_root(float x);
+
+}  // namespace curbline

@@ -1,0 +1,41 @@
+// The few functions that the algorithm needs of a maths library, in float and with the same bits on every target: no
+// libm, no tables, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace curbline {
+
+inline constexpr float pi = 3.14159265f;
+
+/// Nearest integer, halves away from zero. |x| < 2^31.
+constexpr std::int32_t round_to_int(float x) { return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f); }
+
+/// Largest integer not above x. |x| < 2^31.
+constexpr std::int32_t floor_to_int(float x) {
+  const auto truncated = static_cast<std::int32_t>(x);
+  return static_cast<float>(truncated) > x ? truncated - 1 : truncated;
+}
+
+/// True if x is neither NaN nor infinite, whatever the compiler's flags.
+constexpr bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
+
+/// e^x, relative error below 4e-7 for x in [-80, 80]; beyond, the value at that end.
+float exp(float x);
+
+/// Natural logarithm, error below 2e-7 (1 + |ln x|) for normal x > 0.
+float log(float x);
+
+/// ln Gamma(x), error below 1e-5 + 1e-6 |ln Gamma(x)|, x >= 1.
+float log_gamma(float x);
+
+struct SinCos {
+  float sin;
+  float cos;
+};
+
+/// Error below 2e-7 for |x| <= 2 pi.
+SinCos sin_cos(float x);
+
+}  // namespace curbline

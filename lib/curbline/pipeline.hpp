@@ -1,0 +1,258 @@
+// curbline: scan lines and tilt angles in, curbs out. One object of fixed size, one call a scan line:
+//
+//   tilt readings --> TiltTrack --+
+//   poses ----------> PoseTrack --+
+//   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField --> CurbTracer
+//
+// No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
+// Except for add_tilt() all calls come from one context, or from two that exclude each other.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "curbline/counters.hpp"
+#include "curbline/curb_tracer.hpp"
+#include "curbline/dem.hpp"
+#include "curbline/label_field.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/line_projection.hpp"
+#include "curbline/plane_mixture.hpp"
+#include "curbline/pose_track.hpp"
+#include "curbline/scan_line.hpp"
+#include "curbline/segmentation.hpp"
+#include "curbline/settings.hpp"
+#include "curbline/status.hpp"
+#include "curbline/tilt_track.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Pipeline {
+ public:
+  static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
+  static_assert(limits.planes >= 2 && limits.planes <= 255 && limits.borders < 65535);
+
+  /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then takes
+  /// nothing. May be called again at any time to start afresh.
+  Status init(const Settings& settings);
+
+  /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if dropped.
+  bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
+
+  /// A pose of the base in the map frame. False if dropped (not finite, not later than the one before).
+  bool add_pose(const Pose& pose);
+
+  /// Takes a scan line all the way: observe(), then infer(). Its tilt readings and poses should be in: beams later than the
+  /// newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the limits.
+  Status take(const ScanLine& line);
+
+  /// First half: beams to points, points to cells. About 150 operations a beam.
+  Status observe(const ScanLine& line);
+
+  /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells. The window follows.
+  template <typename Take>
+  Status project(const ScanLine& line, Take&& take);
+
+  /// The same for points that are already in the map frame: a recorded cloud, another sensor.
+  void observe(std::span<const Point> points);
+
+  /// Second half: regions, planes, labels and curbs follow what was observed since. As often as time allows.
+  void infer();
+
+  /// infer() with the whole label field, until no label changes or `passes` is reached: what a finished map wants. Returns
+  /// the passes made.
+  int settle(int passes = 10);
+
+  /// Curbs in the window, in the map frame. Valid until the next infer().
+  std::span<const Curb> curbs() const { return curb_tracer_.curbs(); }
+
+  /// Plane of a valid cell (i along x, j along y, from the window's lowest corner); no_label<limits> for the others.
+  Label<limits> label(int i, int j) const { return label_field_.label(dem_.slot(i, j)); }
+  /// Probability of that label.
+  float label_probability(int i, int j) const;
+  /// A plane, in the window's frame (origin at its lowest corner, z of the map frame).
+  const Plane& plane(int label) const { return plane_mixture_.plane(label); }
+  const Dem<limits>& dem() const { return dem_; }
+  const Counters& counters() const { return counters_; }
+  const Settings& settings() const { return settings_; }
+
+ private:
+  Status place_line(const ScanLine& line, LineMotion& motion);
+  void follow(float x_m, float y_m);
+  void take_point(const Point& point);
+  int infer_labels(bool whole_field);
+
+  Settings settings_{};
+  bool ready_ = false;
+  std::int64_t last_line_ns_ = INT64_MIN;
+  float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;  ///< in the map frame, of the last line
+  float ceiling_m_ = 0.0f;                     ///< points above are ignored, z of the map frame
+  Counters counters_{};
+  TiltTrack<limits> tilt_track_{};
+  TiltSnapshot<limits> tilt_snapshot_{};
+  PoseTrack<limits> pose_track_{};
+  LineProjection<limits> line_projection_{};
+  Dem<limits> dem_{};
+  Segmentation<limits> segmentation_{};
+  PlaneMixture<limits> plane_mixture_{};
+  LabelField<limits> label_field_{};
+  CurbTracer<limits> curb_tracer_{};
+};
+
+template <Limits limits>
+Status Pipeline<limits>::init(const Settings& settings) {
+  ready_ = false;
+  const WindowSettings& window = settings.window;
+  if (window.rows > limits.rows || window.cols > limits.cols) return Status::bad_window;
+  if (settings.laser.beams > limits.beams) return Status::bad_laser;
+  if (const Status status = check(settings); status != Status::ok) return status;
+  settings_ = settings;
+  counters_ = Counters{};
+  last_line_ns_ = INT64_MIN;
+  robot_x_m_ = robot_y_m_ = 0.0f;
+  ceiling_m_ = window.max_height_m;
+  tilt_track_.init(settings.tilt);
+  pose_track_.init(settings.pose);
+  line_projection_.init(settings);
+  dem_.init(window, settings.planes.prior, 0.0f, 0.0f);
+  segmentation_.init(settings.segmentation, settings.planes.prior);
+  plane_mixture_.init(settings.planes);
+  label_field_.init(settings.labels);
+  curb_tracer_.init(settings.curbs);
+  ready_ = true;
+  return Status::ok;
+}
+
+template <Limits limits>
+bool Pipeline<limits>::add_pose(const Pose& pose) {
+  if (pose_track_.push(pose)) return true;
+  ++counters_.poses_dropped;
+  return false;
+}
+
+template <Limits limits>
+Status Pipeline<limits>::take(const ScanLine& line) {
+  const Status status = observe(line);
+  if (status == Status::ok) infer();
+  return status;
+}
+
+template <Limits limits>
+Status Pipeline<limits>::observe(const ScanLine& line) {
+  return project(line, [this](const Point& point) { take_point(point); });
+}
+
+template <Limits limits>
+template <typename Take>
+Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
+  LineMotion motion;
+  const Status status = place_line(line, motion);
+  counters_.tilt_dropped = tilt_track_.dropped();
+  if (status != Status::ok) {
+    ++counters_.lines_dropped;
+    return status;
+  }
+  last_line_ns_ = line.time_ns;
+  ++counters_.lines;
+  if (!motion.still) {
+    const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
+    ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
+    follow(robot.x(), robot.y());
+  }
+  line_projection_.project(line, tilt_snapshot_, motion, counters_, take);
+  return Status::ok;
+}
+
+/// Everything that can be wrong with a line, before anything is changed; the tilt snapshot and the motion for it.
+template <Limits limits>
+Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion) {
+  if (!ready_) return Status::not_initialised;
+  if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
+  if (line.time_ns <= last_line_ns_) return Status::line_out_of_order;
+  const std::int64_t last_beam_ns = line.time_ns + line_projection_.duration_ns(line.ranges_m.size());
+  if (!settings_.pose.still) {
+    Pose first, last;
+    if (!pose_track_.at(line.time_ns, first) || !pose_track_.at(last_beam_ns, last)) return Status::no_pose;
+    motion = {make_transform(first), make_transform(last), false};
+  }
+  if (settings_.tilt.fixed) return Status::ok;
+  tilt_track_.snapshot(tilt_snapshot_);
+  const bool any = tilt_snapshot_.at(line.time_ns).source != TiltAngle::Source::none ||
+                   tilt_snapshot_.at(last_beam_ns).source != TiltAngle::Source::none;
+  tilt_snapshot_.rewind();
+  return any ? Status::ok : Status::no_tilt;
+}
+
+template <Limits limits>
+void Pipeline<limits>::observe(std::span<const Point> points) {
+  if (!ready_) return;
+  for (const Point& point : points) take_point(point);
+}
+
+template <Limits limits>
+void Pipeline<limits>::take_point(const Point& point) {
+  if (point.z_m <= ceiling_m_ && dem_.add(point)) {
+    ++counters_.points;
+  } else {
+    ++counters_.outside;
+  }
+}
+
+/// Moves the window with the robot; what leaves it leaves every stage.
+template <Limits limits>
+void Pipeline<limits>::follow(float x_m, float y_m) {
+  robot_x_m_ = x_m;
+  robot_y_m_ = y_m;
+  const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
+  dem_.follow(x_m, y_m, [this](int slot) {
+    segmentation_.forget(slot);
+    label_field_.forget(slot);
+  });
+  plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
+}
+
+template <Limits limits>
+int Pipeline<limits>::infer_labels(bool whole_field) {
+  segmentation_.update(dem_, counters_);
+  plane_mixture_.update(dem_, segmentation_, [this](int slot) { return label_field_.label(slot); }, counters_);
+  const int changed = label_field_.update(dem_, plane_mixture_, whole_field, counters_);
+  if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
+    plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
+      const auto belief = label_field_.belief(dem_, i, j);
+      for (std::size_t c = 0; c < belief.label.size(); ++c) {
+        if (belief.label[c] != no_label<limits>) visit(belief.label[c], belief.probability[c]);
+      }
+    });
+  }
+  dem_.clear_touched();
+  return changed;
+}
+
+template <Limits limits>
+void Pipeline<limits>::infer() {
+  if (!ready_) return;
+  infer_labels(false);
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
+}
+
+template <Limits limits>
+int Pipeline<limits>::settle(int passes) {
+  if (!ready_) return 0;
+  int pass = 1;
+  while (infer_labels(true) > 0 && pass < passes) ++pass;
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
+  return pass;
+}
+
+template <Limits limits>
+float Pipeline<limits>::label_probability(int i, int j) const {
+  const auto belief = label_field_.belief(dem_, i, j);
+  float probability = 0.0f;
+  for (std::size_t c = 0; c < belief.label.size(); ++c) {
+    if (belief.label[c] == label(i, j)) probability = belief.probability[c];
+  }
+  return probability;
+}
+
+}  // namespace curbline

@@ -1,0 +1,56 @@
+// Planes: the moments of points from which they are fitted, the evidence that the points lie on one, and the fit.
+// Moments are about the mean (Chan, Golub and LeVeque 1979), so that float is enough wherever the window is.
+#pragma once
+
+namespace curbline {
+
+/// Weighted moments of points (x, y, z), metres in the window's frame. 48 bytes.
+struct PlaneMoments {
+  float points = 0.0f;  ///< how many independent points they are worth
+  float cells = 0.0f;   ///< in how many cells
+  float weight = 0.0f;  ///< sum of their weights, by the same measure
+  float x = 0.0f, y = 0.0f, z = 0.0f;                    ///< mean
+  float xx = 0.0f, xy = 0.0f, yy = 0.0f;                 ///< scatter about the mean, m^2
+  float xz = 0.0f, yz = 0.0f, zz = 0.0f;
+
+  /// Merges two sets of points; exact up to rounding, about 30 operations.
+  void add(const PlaneMoments& other);
+};
+
+/// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
+struct PlanePrior {
+  float noise_m2 = 0.01f * 0.01f;  ///< expected noise of a point of weight 1: repeatability of the range-finder
+  float texture_m2 = 0.005f * 0.005f;  ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
+  float degrees = 2.0f;            ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
+  float common_share = 0.5f;       ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0, 1]
+};
+// The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
+
+/// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between
+/// partitions of the same points. About 80 operations and 3 logarithms.
+float log_evidence(const PlaneMoments& moments, const PlanePrior& prior);
+
+/// A fitted plane with the uncertainty of its height.
+struct Plane {
+  float x_m = 0.0f, y_m = 0.0f;          ///< centroid
+  float z_m = 0.0f;                      ///< height there
+  float slope_x = 0.0f, slope_y = 0.0f;  ///< dz/dx, dz/dy
+  float variance_m2 = 0.0f;              ///< of a point about the plane
+  float cells = 0.0f;                    ///< how many support it; 0: no such plane
+  float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
+
+  bool alive() const { return cells > 0.0f; }
+  float height_m(float px_m, float py_m) const { return z_m + slope_x * (px_m - x_m) + slope_y * (py_m - y_m); }
+
+  /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell share
+  /// their errors of tilt and mount.
+  float height_variance_m2(float px_m, float py_m) const {
+    const float dx = px_m - x_m, dy = py_m - y_m;
+    return variance_m2 * (1.0f / cells + dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy);
+  }
+};
+
+/// Posterior mean of the plane and mean square residual, not below floor_m2. `cells`: how many cells the moments span.
+Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior, float floor_m2);
+
+}  // namespace curbline

@@ -1,0 +1,14 @@
+// A point on its way from the laser into a cell.
+#pragma once
+
+namespace curbline {
+
+/// Metres, in the map frame; variance_m2 is that of z, from range, bearing, tilt, mount and pose (ProjectedLine).
+struct Point {
+  float x_m = 0.0f;
+  float y_m = 0.0f;
+  float z_m = 0.0f;
+  float variance_m2 = 0.0f;
+};
+
+}  // namespace curbline

@@ -1,0 +1,86 @@
+// The robot's pose over time, T_map_base, from odometry or localisation. Fed and read by the same context as scan lines.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/frames.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// Position of the base in the map frame and its attitude as a unit quaternion. float keeps 0.1 mm within 1 km of the map's
+/// origin: put it near the robot.
+struct Pose {
+  std::int64_t time_ns = 0;
+  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
+  float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;
+};
+
+/// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
+Transform make_transform(const Pose& pose);
+
+/// Ring of the newest poses; linear in position and normalised-linear in attitude between two of them.
+template <Limits limits>
+class PoseTrack {
+ public:
+  void init(const PoseSettings& settings) {
+    settings_ = settings;
+    size_ = next_ = 0;
+  }
+
+  /// Takes a pose; false if it is not finite, its quaternion not of unit length within 1 %, or not later than the one
+  /// before. O(1).
+  bool push(const Pose& pose);
+
+  /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
+  bool at(std::int64_t time_ns, Pose& out) const;
+
+  bool empty() const { return size_ == 0; }
+  const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
+
+ private:
+  const Pose& back(int age) const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)]; }
+
+  PoseSettings settings_{};
+  std::array<Pose, limits.poses> poses_{};
+  int size_ = 0, next_ = 0;
+};
+
+namespace detail {
+bool acceptable(const Pose& pose);
+Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
+}  // namespace detail
+
+template <Limits limits>
+bool PoseTrack<limits>::push(const Pose& pose) {
+  if (!detail::acceptable(pose) || (size_ > 0 && pose.time_ns <= newest().time_ns)) return false;
+  poses_[static_cast<std::size_t>(next_)] = pose;
+  next_ = (next_ + 1) % limits.poses;
+  if (size_ < limits.poses) ++size_;
+  return true;
+}
+
+template <Limits limits>
+bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
+  if (size_ == 0) return false;
+  const auto bound = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
+  int age = 0;
+  while (age < size_ && back(age).time_ns > time_ns) ++age;
+  if (age == 0 || age == size_) {  // later than all, or earlier: the nearest pose stands, for a while
+    const Pose& nearest = age == 0 ? back(0) : back(size_ - 1);
+    const std::int64_t beyond = time_ns - nearest.time_ns;
+    if (beyond > bound || -beyond > bound) return false;
+    // Two poses tell the velocity as well.
+    out = size_ > 1 ? (age == 0 ? detail::interpolate(back(1), back(0), time_ns) : detail::interpolate(back(size_ - 1), back(size_ - 2), time_ns))
+                    : nearest;
+    return true;
+  }
+  out = detail::interpolate(back(age), back(age - 1), time_ns);
+  return true;
+}
+
+}  // namespace curbline

@@ -1,0 +1,254 @@
+// Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best gain
+// first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes. This is
+// working memory of one call: nothing in it outlives merge().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class RegionGraph {
+ public:
+  /// Node and link numbers, 16 bits where they suffice.
+  using Index = std::conditional_t<(limits.regions < 65535 && limits.links < 32767), std::uint16_t, std::uint32_t>;
+  static constexpr Index none = static_cast<Index>(-1);
+
+  void clear() { nodes_ = links_ = 0; }
+  int nodes() const { return nodes_; }
+
+  /// A new node without points, or `none` if the store is full.
+  Index add_node();
+  PlaneMoments& moments(Index node) { return node_[node].moments; }
+
+  /// Joins two nodes, once; false if the store is full. Cost: the links that `b` has.
+  bool link(Index a, Index b);
+
+  /// Merges while the best gain is >= 0. Returns how many evidences it computed: at most links + sum of the degrees of
+  /// merged nodes. Cost of each: log_evidence and a heap move.
+  int merge(const PlanePrior& prior);
+
+  /// The node that a node has become part of.
+  Index root(Index node) const {
+    while (node_[node].parent != node) node = node_[node].parent;
+    return node;
+  }
+
+ private:
+  struct Node {
+    PlaneMoments moments;
+    float score;   ///< log evidence + lnGamma(points)
+    Index parent;
+    Index first;   ///< an end of a link, `none` if there is none
+  };
+  /// Ends 2 l and 2 l + 1 belong to link l; an end lies in the ring of the node it leaves from.
+  struct End {
+    Index target;  ///< node the other end leaves from
+    Index next, previous;
+  };
+  struct Link {
+    float gain;
+    Index place;   ///< in the heap
+  };
+
+  float score(const PlaneMoments& moments, const PlanePrior& prior) const {
+    return log_evidence(moments, prior) + log_gamma(moments.cells);
+  }
+  float gain(Index a, Index b, const PlanePrior& prior) const {
+    PlaneMoments both = node_[a].moments;
+    both.add(node_[b].moments);
+    return score(both, prior) - node_[a].score - node_[b].score;
+  }
+  void insert(Index node, Index end);
+  void remove(Index node, Index end);
+  void absorb(Index a, Index b);
+  void heap_remove(Index place);
+  void sift_up(Index place);
+  void sift_down(Index place);
+  void set_heap(Index place, Index link) {
+    heap_[place] = link;
+    link_[link].place = place;
+  }
+
+  std::array<Node, limits.regions> node_{};
+  std::array<End, 2 * limits.links> end_{};
+  std::array<Link, limits.links> link_{};
+  std::array<Index, limits.links> heap_{};
+  std::array<Index, limits.regions> seen_{};  ///< end of the absorbing node that leads to a neighbour
+  int nodes_ = 0;
+  int links_ = 0;
+  std::size_t heap_size_ = 0;
+};
+
+template <Limits limits>
+auto RegionGraph<limits>::add_node() -> Index {
+  if (nodes_ == limits.regions) return none;
+  const auto node = static_cast<Index>(nodes_++);
+  node_[node] = Node{{}, 0.0f, node, none};
+  return node;
+}
+
+template <Limits limits>
+void RegionGraph<limits>::insert(Index node, Index end) {
+  Index& first = node_[node].first;
+  if (first == none) {
+    end_[end].next = end_[end].previous = end;
+  } else {
+    const Index last = end_[first].previous;
+    end_[end].next = first;
+    end_[end].previous = last;
+    end_[last].next = end;
+    end_[first].previous = end;
+  }
+  first = end;
+}
+
+template <Limits limits>
+void RegionGraph<limits>::remove(Index node, Index end) {
+  const Index next = end_[end].next, previous = end_[end].previous;
+  Index& first = node_[node].first;
+  if (next == end) {
+    first = none;
+    return;
+  }
+  end_[previous].next = next;
+  end_[next].previous = previous;
+  if (first == end) first = next;
+}
+
+template <Limits limits>
+bool RegionGraph<limits>::link(Index a, Index b) {
+  if (const Index first = node_[b].first; first != none) {
+    Index end = first;
+    do {
+      if (end_[end].target == a) return true;
+      end = end_[end].next;
+    } while (end != first);
+  }
+  if (links_ == limits.links) return false;
+  const auto l = static_cast<Index>(links_++);
+  const auto from_a = static_cast<Index>(2 * l), from_b = static_cast<Index>(2 * l + 1);
+  end_[from_a].target = b;
+  end_[from_b].target = a;
+  insert(a, from_a);
+  insert(b, from_b);
+  return true;
+}
+
+template <Limits limits>
+int RegionGraph<limits>::merge(const PlanePrior& prior) {
+  int evidences = nodes_ + links_;
+  for (Index n = 0; n < static_cast<Index>(nodes_); ++n) {
+    node_[n].score = score(node_[n].moments, prior);
+    seen_[n] = none;
+  }
+  heap_size_ = static_cast<std::size_t>(links_);
+  for (Index l = 0; l < static_cast<Index>(links_); ++l) {
+    link_[l].gain = gain(end_[2 * l].target, end_[2 * l + 1].target, prior);
+    set_heap(l, l);
+  }
+  for (int p = links_ / 2 - 1; p >= 0; --p) sift_down(static_cast<Index>(p));
+
+  while (heap_size_ > 0 && link_[heap_[0]].gain >= 0.0f) {
+    const Index best = heap_[0];
+    const Index a = end_[2 * best + 1].target, b = end_[2 * best].target;
+    const float both = link_[best].gain + node_[a].score + node_[b].score;
+    absorb(a, b);
+    node_[a].score = both;
+    const Index first = node_[a].first;
+    if (first == none) continue;
+    Index end = first;
+    do {
+      const auto l = static_cast<Index>(end / 2);
+      const float before = link_[l].gain;
+      link_[l].gain = gain(a, end_[end].target, prior);
+      ++evidences;
+      if (link_[l].gain > before) {
+        sift_up(link_[l].place);
+      } else {
+        sift_down(link_[l].place);
+      }
+      end = end_[end].next;
+    } while (end != first);
+  }
+  return evidences;
+}
+
+/// b becomes part of a: its links leave from a; a second link to the same neighbour and the one between a and b go.
+template <Limits limits>
+void RegionGraph<limits>::absorb(Index a, Index b) {
+  node_[a].moments.add(node_[b].moments);
+  node_[b].parent = a;
+  if (const Index first = node_[a].first; first != none) {
+    Index end = first;
+    do {
+      seen_[end_[end].target] = end;
+      end = end_[end].next;
+    } while (end != first);
+  }
+  while (node_[b].first != none) {
+    const Index end = node_[b].first;
+    const auto other = static_cast<Index>(end ^ 1u);
+    const Index target = end_[end].target;
+    remove(b, end);
+    if (target == a || seen_[target] != none) {
+      remove(target, other);
+      heap_remove(link_[end / 2].place);
+    } else {
+      end_[other].target = a;
+      insert(a, end);
+    }
+  }
+  if (const Index first = node_[a].first; first != none) {
+    Index end = first;
+    do {
+      seen_[end_[end].target] = none;
+      end = end_[end].next;
+    } while (end != first);
+  }
+  seen_[b] = none;
+}
+
+template <Limits limits>
+void RegionGraph<limits>::heap_remove(Index place) {
+  const Index last = heap_[--heap_size_];
+  if (place == heap_size_) return;
+  set_heap(place, last);
+  sift_up(place);
+  sift_down(link_[last].place);
+}
+
+template <Limits limits>
+void RegionGraph<limits>::sift_up(Index place) {
+  const Index l = heap_[place];
+  while (place > 0) {
+    const auto parent = static_cast<Index>((place - 1) / 2);
+    if (link_[heap_[parent]].gain >= link_[l].gain) break;
+    set_heap(place, heap_[parent]);
+    place = parent;
+  }
+  set_heap(place, l);
+}
+
+template <Limits limits>
+void RegionGraph<limits>::sift_down(Index place) {
+  const Index l = heap_[place];
+  for (;;) {
+    std::size_t child = 2 * static_cast<std::size_t>(place) + 1;
+    if (child >= heap_size_) break;
+    if (child + 1 < heap_size_ && link_[heap_[child + 1]].gain > link_[heap_[child]].gain) ++child;
+    if (link_[l].gain >= link_[heap_[child]].gain) break;
+    set_heap(place, heap_[child]);
+    place = static_cast<Index>(child);
+  }
+  set_heap(place, l);
+}
+
+}  // namespace curbline

@@ -1,0 +1,164 @@
+// Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher 2004)
+// inside each block of 4 x 4 cells; regions, leaves merged by evidence (region_graph.hpp). A scan line re-cuts the blocks that it
+// touched, dissolves the regions that it touched and their neighbours into leaves and merges again: that is
+// how a region splits. What no line touched stands.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/counters.hpp"
+#include "curbline/dem.hpp"
+#include "curbline/region_graph.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// Leaf of each cell of a block, by the number (4 i + j) of its first cell; 255 for cells that are not valid.
+using BlockLeaves = std::array<std::uint8_t, block_side * block_side>;
+
+/// Felzenszwalb-Huttenlocher on one block: edge weight is the symmetric Kullback-Leibler divergence of the cells' normals;
+/// links reach across cells that are not valid. `valid` may be false for any cell. About 24 edges.
+struct BlockCell {
+  float height_m;
+  float variance_m2;
+  bool valid;
+};
+BlockLeaves cut_block(const std::array<BlockCell, block_side * block_side>& cells, float scale);
+
+template <Limits limits>
+class Segmentation {
+ public:
+  using Region = Slot<limits>;  ///< a region bears the slot of one of its cells
+  static constexpr Region none = static_cast<Region>(-1);
+
+  void init(const SegmentationSettings& settings, const PlanePrior& prior) {
+    settings_ = settings;
+    prior_ = prior;
+    region_.fill(none);
+    mark_.fill(0);
+  }
+
+  /// A cell is about to leave the window: its region will be cut anew.
+  void forget(int slot) {
+    const auto s = static_cast<std::size_t>(slot);
+    if (region_[s] != none) mark_[region_[s]] = dissolved;
+    region_[s] = none;
+  }
+
+  /// Follows the cells that were touched. Cost: one pass over the window, 16 cells a touched block, and the merging.
+  void update(const Dem<limits>& dem, Counters& counters);
+
+  Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
+
+ private:
+  using Graph = RegionGraph<limits>;
+  enum Mark : std::uint8_t { standing = 0, neighbour = 1, dissolved = 2 };
+
+  void cut_touched_blocks(const Dem<limits>& dem);
+  void dissolve_neighbours(const Dem<limits>& dem);
+  void build_graph(const Dem<limits>& dem, Counters& counters);
+  void name_regions(const Dem<limits>& dem);
+  /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
+  Region representative(std::size_t s) const { return region_[s] == none || mark_[region_[s]] != standing ? leaf_[s] : region_[s]; }
+
+  SegmentationSettings settings_{};
+  PlanePrior prior_{};
+  std::array<Region, Dem<limits>::capacity> leaf_{};    ///< slot of the first cell of a cell's leaf
+  std::array<Region, Dem<limits>::capacity> region_{};
+  std::array<std::uint8_t, Dem<limits>::capacity> mark_{};  ///< of a region, under its name
+  std::array<typename Graph::Index, Dem<limits>::capacity> node_{};  ///< of a leaf or region, under its name; of a call
+  std::array<Region, limits.regions> name_{};  ///< of a node's region; of a call
+  Graph graph_{};
+};
+
+template <Limits limits>
+void Segmentation<limits>::update(const Dem<limits>& dem, Counters& counters) {
+  cut_touched_blocks(dem);
+  dissolve_neighbours(dem);
+  graph_.clear();
+  build_graph(dem, counters);
+  counters.evidences += static_cast<std::uint32_t>(graph_.merge(prior_));
+  name_regions(dem);
+}
+
+template <Limits limits>
+void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem) {
+  for (int bi = 0; bi < dem.rows(); bi += block_side) {
+    for (int bj = 0; bj < dem.cols(); bj += block_side) {
+      std::array<BlockCell, block_side * block_side> cells{};
+      std::array<int, block_side * block_side> slots{};
+      bool touched = false;
+      for (int k = 0; k < block_side * block_side; ++k) {
+        const auto n = static_cast<std::size_t>(k);
+        slots[n] = dem.slot(bi + k / block_side, bj + k % block_side);
+        touched = touched || dem.touched(slots[n]);
+      }
+      if (!touched) continue;
+      for (std::size_t n = 0; n < cells.size(); ++n) {
+        const Cell& cell = dem.cell(slots[n]);
+        cells[n] = {cell.height_m, cell.variance_m2(settings_.cell), cell.valid()};
+        const auto s = static_cast<std::size_t>(slots[n]);
+        if (region_[s] != none) mark_[region_[s]] = dissolved;
+      }
+      const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
+      for (std::size_t n = 0; n < cells.size(); ++n) {
+        leaf_[static_cast<std::size_t>(slots[n])] = leaves[n] == 255 ? none : static_cast<Region>(slots[leaves[n]]);
+      }
+    }
+  }
+}
+
+template <Limits limits>
+void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
+  for_each_link(dem, settings_.link_reach, [&](const Link& link) {
+    const std::size_t s = link.from, t = link.to;
+    const Region a = region_[s], b = region_[t];
+    if (a == b || a == none || b == none) return;
+    if (mark_[a] == dissolved && mark_[b] == standing) mark_[b] = neighbour;
+    if (mark_[b] == dissolved && mark_[a] == standing) mark_[a] = neighbour;
+  });
+}
+
+template <Limits limits>
+void Segmentation<limits>::build_graph(const Dem<limits>& dem, Counters& counters) {
+  node_.fill(Graph::none);
+  typename Graph::Index last = Graph::none;
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) {
+      const auto s = static_cast<std::size_t>(dem.slot(i, j));
+      const Cell& cell = dem.cell(static_cast<int>(s));
+      if (!cell.valid()) continue;
+      auto& node = node_[representative(s)];
+      if (node == Graph::none) node = graph_.add_node();
+      if (node == Graph::none) {
+        ++counters.regions_full;
+        node = last;  // full: the leaf joins the one before it
+      }
+      graph_.moments(node).add(dem.moments(i, j, cell));
+      last = node;
+    }
+  }
+  for_each_link(dem, settings_.link_reach, [&](const Link& link) {
+    const auto a = node_[representative(link.from)], b = node_[representative(link.to)];
+    if (a != b && !graph_.link(a, b)) ++counters.links_full;
+  });
+}
+
+template <Limits limits>
+void Segmentation<limits>::name_regions(const Dem<limits>& dem) {
+  name_.fill(none);
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) {
+      const auto s = static_cast<std::size_t>(dem.slot(i, j));
+      if (!dem.cell(static_cast<int>(s)).valid()) continue;
+      Region& name = name_[graph_.root(node_[representative(s)])];
+      if (name == none) name = static_cast<Region>(s);
+      region_[s] = name;  // read above for this cell only
+    }
+  }
+  mark_.fill(standing);
+}
+
+}  // namespace curbline

@@ -1,0 +1,113 @@
+// What a robot's builder tells the pipeline: geometry, noise and tuning, each with its unit, range and reason. Checked
+// once, at init; a bad setting is refused with the Status that names it.
+#pragma once
+
+#include "curbline/cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/status.hpp"
+
+namespace curbline {
+
+/// The rolling window. Cells are dx by dy; the window is rows x cols of them and follows the robot in steps of
+/// four cells unless it is fixed.
+struct WindowSettings {
+  int rows = 40;              ///< cells along x, a multiple of 4, at most Limits::rows
+  int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
+  float cell_x_m = 0.1f;      ///< (0, 10]
+  float cell_y_m = 0.1f;      ///< (0, 10]
+  float origin_x_m = 0.0f;    ///< lowest corner; of the map frame if fixed, else relative to the robot's position
+  float origin_y_m = -2.0f;   ///< the same along y
+  bool fixed = false;         ///< true: the window never moves
+  float max_height_m = 1e9f;  ///< points above it (z of the map frame; of the base frame if the window moves) are ignored
+};
+
+/// The range-finder, from its data sheet.
+struct LaserSettings {
+  int beams = 1081;                         ///< 1 to Limits::beams
+  float first_bearing_rad = -2.3561945f;    ///< bearing of beam 0, counterclockwise about the laser's z axis
+  float bearing_step_rad = 0.004363323f;    ///< may be negative for a scanner that turns clockwise; not 0
+  float beam_interval_s = 25e-3f / 1440.f;  ///< time between beams, >= 0: a UTM-30LX takes 1440 steps a turn of 25 ms
+  float min_range_m = 0.1f;                 ///< readings below are no returns, >= 0
+  float max_range_m = 60.0f;                ///< readings at or above are no returns
+  float range_sd_m = 0.01f;                 ///< standard deviation of a range
+  float bearing_sd_rad = 0.0005f;           ///< of a bearing
+};
+
+/// A rigid transform as a builder measures it: rotation R_z(yaw) R_y(pitch) R_x(roll), then translation.
+struct MountSettings {
+  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
+  float roll_rad = 0.0f, pitch_rad = 0.0f, yaw_rad = 0.0f;
+};
+
+/// The tilt axis. p_base = T_base_tilt * R_y(tilt) * T_tilt_laser * p_laser; tilt > 0 looks down.
+struct TiltSettings {
+  MountSettings T_base_tilt{};
+  MountSettings T_tilt_laser{};
+  bool fixed = false;                  ///< true: no servo, the angle is fixed_tilt_rad
+  float fixed_tilt_rad = 0.0f;         ///< (-pi, pi)
+  float latency_s = 0.0f;              ///< an angle stamped t was true at t - latency_s; may be negative
+  float angle_sd_rad = 0.001f;         ///< of one reading: resolution, play
+  float time_sd_s = 0.0f;              ///< jitter of its time stamp; times the tilt rate it is an angle error
+  float max_extrapolation_s = 0.05f;   ///< beams further from the nearest reading are dropped
+  float max_gap_s = 0.2f;              ///< readings further apart are not interpolated across
+  float roll_sd_rad = 0.0f;            ///< of the mount about x
+  float pitch_sd_rad = 0.0f;           ///< of the mount about y
+};
+
+/// The robot's pose, T_map_base. A robot that stands gives none.
+struct PoseSettings {
+  bool still = true;                  ///< true: no poses will come, base and map frame are one
+  float height_sd_m = 0.0f;           ///< of z between two poses
+  float attitude_sd_rad = 0.0f;       ///< of roll and pitch
+  float max_extrapolation_s = 0.1f;   ///< lines further from the nearest pose are dropped
+};
+
+/// How cells become regions. The constants and how little depends on them: lib/README.md.
+struct SegmentationSettings {
+  CellPrior cell{};
+  float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; > 0
+  int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to 64
+};
+
+/// Where a plane's parameters come from.
+enum class PlaneUpdate : unsigned char {
+  regions,           ///< moments of its region: what scores better
+  responsibilities,  ///< the M-step of the paper's EM, from the beliefs of the label field
+};
+
+struct PlaneSettings {
+  PlanePrior prior{};
+  float min_sd_m = 0.005f;   ///< no plane is known better than this: flatness of pavement, resolution of the range
+  float min_cells = 8.0f;    ///< regions below are not planes: eight cells are the least that a 2 x 4 strip has
+  PlaneUpdate update = PlaneUpdate::regions;
+};
+
+struct LabelSettings {
+  float coupling = 3.0f;       ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
+  float cell_sd_m = 0.005f;    ///< of a cell's one point about its true mean: footprint and roughness
+  int link_reach = 10;         ///< as SegmentationSettings; the coupling falls as 1 / distance
+  int refresh_rows = 2;        ///< rows of the window that every line visits in turn, touched or not, >= 0
+  int max_messages = 2400;     ///< a call; what is left over waits for the next, >= 4
+};
+
+struct CurbSettings {
+  int link_reach = 5;              ///< cells; a curb is not drawn in a wider gap
+  float max_roughness_m = 0.03f;   ///< robust sd of a label's cells above which it is clutter: the range-finder's stated accuracy
+};
+
+/// Everything, as Pipeline::init() takes it.
+struct Settings {
+  WindowSettings window{};
+  LaserSettings laser{};
+  TiltSettings tilt{};
+  PoseSettings pose{};
+  SegmentationSettings segmentation{};
+  PlaneSettings planes{};
+  LabelSettings labels{};
+  CurbSettings curbs{};
+};
+
+/// The first part that has a value out of range, ok if none has. What depends on the limits is checked by Pipeline::init().
+Status check(const Settings& settings);
+
+}  // namespace curbline

@@ -1,0 +1,150 @@
+// The angle of the tilt servo over time. Readings come from an interrupt or another thread, in their own rhythm; a scan line
+// takes a snapshot and asks for the angle at each beam's time.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/limits.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+struct TiltReading {
+  std::int64_t time_ns = 0;
+  float angle_rad = 0.0f;  ///< tilt > 0 looks down
+};
+
+/// The angle at one time.
+struct TiltAngle {
+  enum class Source : std::uint8_t { none, interpolated, extrapolated };
+  Source source = Source::none;
+  float angle_rad = 0.0f;
+  float rate_rad_s = 0.0f;
+};
+
+/// Readings as they were at one moment, ascending in time; times are those at which the angles were true. Ask with rising
+/// times: a cursor makes each question O(1) on average.
+template <Limits limits>
+class TiltSnapshot {
+ public:
+  TiltAngle at(std::int64_t time_ns);
+  /// Lets the next question be an earlier one.
+  void rewind() { cursor_ = 0; }
+
+ private:
+  template <Limits>
+  friend class TiltTrack;
+  std::array<TiltReading, limits.tilt_samples> readings_{};
+  int size_ = 0;
+  int cursor_ = 0;  ///< readings_[cursor_] is the first later than the last question, or size_
+  std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
+};
+
+/// Ring of the newest readings. One writer, one reader, neither ever waits.
+template <Limits limits>
+class TiltTrack {
+  static_assert((limits.tilt_samples & (limits.tilt_samples - 1)) == 0, "tilt_samples must be a power of two");
+
+ public:
+  void init(const TiltSettings& settings) {
+    settings_ = settings;
+    written_.store(0, std::memory_order_relaxed);
+    dropped_.store(0, std::memory_order_relaxed);
+    last_ns_ = INT64_MIN;
+  }
+
+  /// Takes a reading; false (and counted) if it is not finite or not later than the one before. O(1), wait-free: may be
+  /// called from an interrupt while another context takes snapshots. One writer only.
+  bool push(const TiltReading& reading);
+
+  /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
+  void snapshot(TiltSnapshot<limits>& out) const;
+
+  std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
+  struct Entry {
+    std::atomic<std::uint32_t> time_low{0}, time_high{0}, angle{0};
+  };
+  TiltSettings settings_{};
+  std::array<Entry, limits.tilt_samples> entries_{};
+  std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32
+  std::atomic<std::uint32_t> dropped_{0};
+  std::int64_t last_ns_ = INT64_MIN;       ///< the writer's
+};
+
+template <Limits limits>
+bool TiltTrack<limits>::push(const TiltReading& reading) {
+  if (!is_finite(reading.angle_rad) || reading.time_ns <= last_ns_) {
+    dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    return false;
+  }
+  last_ns_ = reading.time_ns;
+  const std::uint32_t n = written_.load(std::memory_order_relaxed);
+  Entry& entry = entries_[n % limits.tilt_samples];
+  const auto time = static_cast<std::uint64_t>(reading.time_ns);
+  entry.time_low.store(static_cast<std::uint32_t>(time), std::memory_order_relaxed);
+  entry.time_high.store(static_cast<std::uint32_t>(time >> 32), std::memory_order_relaxed);
+  entry.angle.store(std::bit_cast<std::uint32_t>(reading.angle_rad), std::memory_order_relaxed);
+  written_.store(n + 1, std::memory_order_release);
+  return true;
+}
+
+template <Limits limits>
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out) const {
+  const std::uint32_t capacity = limits.tilt_samples;
+  const std::uint32_t before = written_.load(std::memory_order_acquire);
+  const std::uint32_t count = before < capacity ? before : capacity;
+  const auto latency_ns = static_cast<std::int64_t>(settings_.latency_s * 1e9f);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Entry& entry = entries_[(before - count + k) % capacity];
+    const std::uint64_t low = entry.time_low.load(std::memory_order_relaxed);
+    const std::uint64_t high = entry.time_high.load(std::memory_order_relaxed);
+    out.readings_[k] = {static_cast<std::int64_t>(high << 32 | low) - latency_ns,
+                        std::bit_cast<float>(entry.angle.load(std::memory_order_relaxed))};
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);
+  // What the writer added meanwhile, and what it may be writing now, has replaced the oldest.
+  const std::uint32_t added = written_.load(std::memory_order_relaxed) - before + 1;
+  const std::uint32_t room = capacity - count;
+  const std::uint32_t lost = added > room ? added - room : 0;
+  const std::uint32_t kept = lost < count ? count - lost : 0;
+  for (std::uint32_t k = 0; k < kept; ++k) out.readings_[k] = out.readings_[count - kept + k];
+  out.size_ = static_cast<int>(kept);
+  out.cursor_ = 0;
+  out.max_gap_ns_ = static_cast<std::int64_t>(settings_.max_gap_s * 1e9f);
+  out.max_extrapolation_ns_ = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
+}
+
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
+  while (cursor_ < size_ && readings_[static_cast<std::size_t>(cursor_)].time_ns <= time_ns) ++cursor_;
+  if (size_ == 0) return {};
+  // The pair that brackets the time, or the one at the end that it lies beyond.
+  const bool before_first = cursor_ == 0, after_last = cursor_ == size_;
+  const int right = before_first ? 1 : after_last ? size_ - 1 : cursor_;
+  const TiltReading& a = readings_[static_cast<std::size_t>(right > 0 ? right - 1 : 0)];
+  const TiltReading& b = readings_[static_cast<std::size_t>(right < size_ ? right : size_ - 1)];
+  const TiltReading& nearest = before_first ? a : b;
+  const std::int64_t beyond = time_ns - nearest.time_ns;
+  if ((before_first || after_last) && (beyond > max_extrapolation_ns_ || -beyond > max_extrapolation_ns_)) return {};
+  const std::int64_t gap = b.time_ns - a.time_ns;
+  TiltAngle out;
+  out.source = (before_first || after_last) && beyond != 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated;
+  if (gap <= 0 || gap > max_gap_ns_) {
+    // One reading alone, or two too far apart to say anything of the time between: good at its own moment only.
+    if (beyond != 0 || !(before_first || after_last)) return {};
+    out.angle_rad = nearest.angle_rad;
+    return out;
+  }
+  const float share = static_cast<float>(time_ns - a.time_ns) / static_cast<float>(gap);
+  out.angle_rad = a.angle_rad + share * (b.angle_rad - a.angle_rad);
+  out.rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(gap);
+  return out;
+}
+
+}  // namespace curbline

@@ -1,0 +1,39 @@
+#include "curbline/pose_track.hpp"
+
+namespace curbline {
+
+Transform make_transform(const Pose& pose) {
+  const Eigen::Quaternionf q = Eigen::Quaternionf(pose.qw, pose.qx, pose.qy, pose.qz).normalized();
+  Transform T;
+  T.rotation = q.toRotationMatrix();
+  T.translation << pose.x_m, pose.y_m, pose.z_m;
+  return T;
+}
+
+namespace detail {
+
+bool acceptable(const Pose& pose) {
+  for (const float value : {pose.x_m, pose.y_m, pose.z_m, pose.qx, pose.qy, pose.qz, pose.qw}) {
+    if (!is_finite(value)) return false;
+  }
+  const float square = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
+  return square > 0.98f && square < 1.02f;
+}
+
+Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
+  const float s = static_cast<float>(time_ns - a.time_ns) / static_cast<float>(b.time_ns - a.time_ns);
+  const float dot = a.qx * b.qx + a.qy * b.qy + a.qz * b.qz + a.qw * b.qw;
+  const float sign = dot < 0.0f ? -1.0f : 1.0f;  // q and -q are one attitude: take the nearer
+  const auto mix = [s](float from, float to) { return from + s * (to - from); };
+  return {time_ns,
+          mix(a.x_m, b.x_m),
+          mix(a.y_m, b.y_m),
+          mix(a.z_m, b.z_m),
+          mix(a.qx, sign * b.qx),
+          mix(a.qy, sign * b.qy),
+          mix(a.qz, sign * b.qz),
+          mix(a.qw, sign * b.qw)};
+}
+
+}  // namespace detail
+}  // namespace curbline

@@ -1,0 +1,69 @@
+#include "curbline/segmentation.hpp"
+
+namespace curbline {
+namespace {
+
+constexpr int cells_in_block = block_side * block_side;
+
+struct Edge {
+  float weight;
+  std::uint8_t a, b;
+};
+
+/// KL(a || b) + KL(b || a) of two normals; the logarithms cancel.
+float divergence(const BlockCell& a, const BlockCell& b) {
+  const float d = a.height_m - b.height_m;
+  return 0.5f * (a.variance_m2 / b.variance_m2 + b.variance_m2 / a.variance_m2 - 2.0f +
+                 d * d * (1.0f / a.variance_m2 + 1.0f / b.variance_m2));
+}
+
+/// Edges to the next valid cell along each axis, ascending by weight. Two a cell at most.
+int list_edges(const std::array<BlockCell, cells_in_block>& cells, std::array<Edge, 2 * cells_in_block>& edges) {
+  int count = 0;
+  for (int k = 0; k < cells_in_block; ++k) {
+    if (!cells[static_cast<std::size_t>(k)].valid) continue;
+    for (const int step : {block_side, 1}) {
+      const int end = step == 1 ? (k / block_side + 1) * block_side : cells_in_block;
+      int n = k + step;
+      while (n < end && !cells[static_cast<std::size_t>(n)].valid) n += step;
+      if (n >= end) continue;
+      const Edge edge{divergence(cells[static_cast<std::size_t>(k)], cells[static_cast<std::size_t>(n)]), static_cast<std::uint8_t>(k),
+                      static_cast<std::uint8_t>(n)};
+      int place = count++;
+      for (; place > 0 && edges[static_cast<std::size_t>(place - 1)].weight > edge.weight; --place) {
+        edges[static_cast<std::size_t>(place)] = edges[static_cast<std::size_t>(place - 1)];
+      }
+      edges[static_cast<std::size_t>(place)] = edge;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+BlockLeaves cut_block(const std::array<BlockCell, cells_in_block>& cells, float scale) {
+  BlockLeaves root{};
+  std::array<float, cells_in_block> limit{};  // Int(C) + s / |C| of the component of a root
+  std::array<float, cells_in_block> size{};
+  for (std::size_t k = 0; k < root.size(); ++k) {
+    root[k] = cells[k].valid ? static_cast<std::uint8_t>(k) : std::uint8_t{255};
+    limit[k] = scale;
+    size[k] = 1.0f;
+  }
+  std::array<Edge, 2 * cells_in_block> edges{};
+  const int count = list_edges(cells, edges);
+  for (int e = 0; e < count; ++e) {
+    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    const std::uint8_t a = root[edge.a], b = root[edge.b];
+    if (a == b || edge.weight > limit[a] || edge.weight > limit[b]) continue;
+    const std::uint8_t low = a < b ? a : b, high = a < b ? b : a;
+    for (std::uint8_t& r : root) {
+      if (r == high) r = low;
+    }
+    size[low] = size[a] + size[b];
+    limit[low] = edge.weight + scale / size[low];
+  }
+  return root;
+}
+
+}  // namespace curbline

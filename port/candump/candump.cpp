@@ -1,0 +1,188 @@
+#include "candump/candump.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace curbline::candump {
+namespace {
+
+constexpr std::uint32_t error_flag = 0x20000000u;
+constexpr std::size_t max_interface_name = 15;  // IFNAMSIZ - 1
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Value of a hexadecimal digit, -1 if it is none.
+int hex_value(char c) {
+  if (is_digit(c)) return c - '0';
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return -1;
+}
+
+/// Cuts `text` after its first blank-free word and the one blank behind it; gives the word.
+std::string_view take_word(std::string_view& text) {
+  const std::size_t end = std::min(text.find(' '), text.size());
+  const std::string_view word = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return word;
+}
+
+// The parsers below return an error, empty if all is well.
+
+std::string_view parse_id(std::string_view digits, can::Frame& frame) {
+  if (digits.size() != 3 && digits.size() != 8) return "bad id; expected 3 or 8 hexadecimal digits before #";
+  std::uint32_t id = 0;
+  for (const char c : digits) {
+    if (hex_value(c) < 0) return "bad id; expected 3 or 8 hexadecimal digits before #";
+    id = id << 4 | static_cast<std::uint32_t>(hex_value(c));
+  }
+  if (digits.size() == 3) {
+    if (id > 0x7FF) return "id out of range; expected at most 7FF in 3 digits";
+  } else {
+    frame.error = (id & error_flag) != 0;
+    frame.extended = !frame.error;
+    id &= ~error_flag;
+    if (id > 0x1FFFFFFF) return "id out of range; expected at most 1FFFFFFF, or 20000000 more for an error message";
+  }
+  frame.id = id;
+  return {};
+}
+
+std::string_view parse_data(std::string_view digits, can::Frame& frame) {
+  if (digits.size() % 2 != 0) return "odd number of data digits; expected two a byte";
+  const std::size_t bytes = digits.size() / 2;
+  if (!frame.fd && bytes > 8) return "too much data; expected at most 8 bytes";
+  if (bytes > 64) return "too much data; expected at most 64 bytes";
+  frame.length = static_cast<std::uint8_t>(bytes);
+  if (can::fd_length(frame.length) != frame.length) return "no CAN FD length; expected 0-8, 12, 16, 20, 24, 32, 48, 64";
+  for (std::size_t i = 0; i < bytes; ++i) {
+    const int high = hex_value(digits[2 * i]), low = hex_value(digits[2 * i + 1]);
+    if (high < 0 || low < 0) return "bad data; expected hexadecimal digits";
+    frame.data[i] = static_cast<std::uint8_t>(high << 4 | low);
+  }
+  return {};
+}
+
+/// What follows "R".
+std::string_view parse_remote(std::string_view length, can::Frame& frame) {
+  frame.remote = true;
+  if (length.empty()) return {};
+  if (length.size() > 1 || length[0] < '0' || length[0] > '8') return "bad remote length; expected R or R0 to R8";
+  frame.length = static_cast<std::uint8_t>(length[0] - '0');
+  return {};
+}
+
+std::string_view parse_frame(std::string_view text, can::Frame& frame) {
+  const std::size_t hash = text.find('#');
+  if (hash == std::string_view::npos) return "no frame; expected ID#DATA";
+  if (const auto error = parse_id(text.substr(0, hash), frame); !error.empty()) return error;
+  text.remove_prefix(hash + 1);
+  if (!text.empty() && text[0] == 'R') return parse_remote(text.substr(1), frame);
+  if (!text.empty() && text[0] == '#') {
+    if (text.size() < 2 || hex_value(text[1]) < 0) return "no CAN FD flags; expected one hexadecimal digit after ##";
+    frame.fd = true;
+    frame.fd_flags = static_cast<std::uint8_t>(hex_value(text[1]));
+    text.remove_prefix(2);
+  }
+  return parse_data(text, frame);
+}
+
+bool writable(const can::Frame& frame, std::string_view interface_name) {
+  if (interface_name.empty() || interface_name.size() > max_interface_name) return false;
+  if (interface_name.find(' ') != std::string_view::npos || frame.time_ns < 0) return false;
+  if (frame.id > (frame.extended || frame.error ? 0x1FFFFFFFu : 0x7FFu)) return false;
+  if (frame.fd_flags > 15 || (frame.fd && frame.remote)) return false;
+  return frame.fd ? can::fd_length(frame.length) == frame.length : frame.length <= 8;
+}
+
+/// Appends to a buffer that is known to be long enough.
+class Writer {
+ public:
+  explicit Writer(std::span<char> line) : line_(line) {}
+  void put(char c) { line_[size_++] = c; }
+  void put(std::string_view text) {
+    for (const char c : text) put(c);
+  }
+  void put_hex(std::uint32_t value, int digits) {
+    for (int i = digits - 1; i >= 0; --i) put("0123456789ABCDEF"[value >> (4 * i) & 15u]);
+  }
+  void put_decimal(std::int64_t value, int digits) {
+    char text[20];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    for (auto n = end - text; n < digits; ++n) put('0');
+    put({text, static_cast<std::size_t>(end - text)});
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::span<char> line_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::int64_t> parse_time(std::string_view seconds) {
+  constexpr std::int64_t most_seconds = 9223372035;  // one less than 2^63 ns holds
+  const char* const last = seconds.data() + seconds.size();
+  std::int64_t whole = 0;
+  const auto [point, problem] = std::from_chars(seconds.data(), last, whole);
+  if (problem != std::errc{} || !is_digit(seconds[0]) || whole > most_seconds) return std::nullopt;
+  std::int64_t fraction_ns = 0;
+  if (point != last) {
+    if (*point != '.' || point + 1 == last) return std::nullopt;
+    std::int64_t unit_ns = 100'000'000;
+    for (const char* digit = point + 1; digit != last; ++digit, unit_ns /= 10) {
+      if (!is_digit(*digit)) return std::nullopt;
+      fraction_ns += (*digit - '0') * unit_ns;
+    }
+  }
+  return whole * 1'000'000'000 + fraction_ns;
+}
+
+ParsedLine parse_line(std::string_view line) {
+  ParsedLine parsed;
+  const auto refuse = [](std::string_view error) { return ParsedLine{.error = error}; };
+  const std::string_view time = take_word(line);
+  if (time.size() < 3 || time.front() != '(' || time.back() != ')')
+    return refuse("no time; expected (SECONDS.DECIMALS)");
+  const auto time_ns = parse_time(time.substr(1, time.size() - 2));
+  if (!time_ns) return refuse("bad time; expected (SECONDS.DECIMALS)");
+  parsed.frame.time_ns = *time_ns;
+  parsed.interface_name = take_word(line);
+  if (parsed.interface_name.empty() || parsed.interface_name.size() > max_interface_name) {
+    return refuse("bad interface name; expected 1 to 15 characters");
+  }
+  if (const auto error = parse_frame(take_word(line), parsed.frame); !error.empty()) return refuse(error);
+  if (!line.empty() && line != "R" && line != "T") return refuse("text behind the frame; expected R, T or nothing");
+  return parsed;
+}
+
+std::size_t format_line(const can::Frame& frame, std::string_view interface_name, std::span<char> line) {
+  if (line.size() < max_line || !writable(frame, interface_name)) return 0;
+  Writer out(line);
+  out.put('(');
+  out.put_decimal(frame.time_ns / 1'000'000'000, 1);
+  out.put('.');
+  out.put_decimal(frame.time_ns % 1'000'000'000 / 1'000, 6);
+  out.put(") ");
+  out.put(interface_name);
+  out.put(' ');
+  const bool long_id = frame.extended || frame.error;
+  out.put_hex(frame.error ? frame.id | error_flag : frame.id, long_id ? 8 : 3);
+  out.put('#');
+  if (frame.remote) {
+    out.put('R');
+    if (frame.length > 0) out.put_decimal(frame.length, 1);
+    return out.size();
+  }
+  if (frame.fd) {
+    out.put('#');
+    out.put_hex(frame.fd_flags, 1);
+  }
+  for (std::size_t i = 0; i < frame.length; ++i) out.put_hex(frame.data[i], 2);
+  return out.size();
+}
+
+}  // namespace curbline::candump

@@ -1,0 +1,47 @@
+// Lines of a candump log (can-utils, `candump -L`, `candump -l`) to CAN frames and back. A port: where there is no bus,
+// a log stands for it. No I/O, heap, exceptions or state, so that a board can replay a log it is fed; reentrant. Cost:
+// one pass over the line.
+//
+//   (1290682980.025000) can0 181#3706D317FDFF        classic, 11-bit id
+//   (1290682980.025000) can0 00001005#0011223344556677   29-bit id: 8 digits
+//   (1290682980.025000) can0 123#R4                  remote request for 4 bytes
+//   (1290682980.025000) can0 123##3112233            CAN FD, flags 3
+//   (1290682980.025000) can0 20000004#0000000000000000   error message of the controller: bit 29 of the id
+// Newer versions append the direction, " R" or " T". Source: can-utils, lib.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "can/frame.hpp"
+
+namespace curbline::candump {
+
+/// What a line says. Either `error` is empty and the rest holds, or it tells what is wrong and what was expected.
+struct ParsedLine {
+  can::Frame frame{};                 ///< with the line's time
+  std::string_view interface_name{};  ///< points into the line
+  std::string_view error{};           ///< static storage
+
+  bool ok() const { return error.empty(); }
+};
+
+/// Takes one line without its line end. Strict: whatever candump does not write is an error.
+ParsedLine parse_line(std::string_view line);
+
+/// Seconds in decimals, "1290682980.025", as nanoseconds, exactly; digits past the ninth are cut. Nothing if it is
+/// another thing or beyond what 63 bits hold (the year 2262).
+std::optional<std::int64_t> parse_time(std::string_view seconds);
+
+/// Longest line that format_line() writes: a time of 21 characters, an interface name of 15, an id of 8, 64 bytes.
+constexpr std::size_t max_line = 192;
+
+/// Writes the line without a line end, with microseconds as candump does (the rest is cut). Returns its length, or 0 if
+/// the frame is none that a bus carries, the interface name is not 1 to 15 characters, or `line` is shorter than
+/// max_line.
+std::size_t format_line(const can::Frame& frame, std::string_view interface_name, std::span<char> line);
+
+}  // namespace curbline::candump

@@ -1,0 +1,76 @@
+// A map small enough to follow by eye, with every stage that works on it, for tests of one stage behind the others.
+#pragma once
+
+#include <memory>
+
+#include "curbline/curb_tracer.hpp"
+#include "curbline/dem.hpp"
+#include "curbline/label_field.hpp"
+#include "curbline/plane_mixture.hpp"
+#include "curbline/segmentation.hpp"
+#include "support/terrain.hpp"
+
+namespace curbline::test {
+
+inline constexpr Limits small_limits{.rows = 24, .cols = 24, .planes = 6, .beams = 181};
+
+/// A fixed window with its lowest corner in the origin and cells of 0.1 m.
+inline Settings small_settings(int rows = 24, int cols = 24) {
+  Settings settings;
+  settings.window = {.rows = rows, .cols = cols, .origin_x_m = 0.0f, .origin_y_m = 0.0f, .fixed = true};
+  return settings;
+}
+
+/// Gives each cell of a window four points about its centre at height_m(x, y) +- spread, so that cells have the same variance.
+template <Limits limits, typename Height>
+void fill(Dem<limits>& dem, Height&& height_m, double spread_m = 0.002) {
+  const double dx = dem.cell_x_m(), dy = dem.cell_y_m();
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) {
+      for (int k = 0; k < 4; ++k) {
+        const double x = dem.origin_x_m() + (i + (k % 2 == 0 ? 0.3 : 0.7)) * dx, y = dem.origin_y_m() + (j + (k / 2 == 0 ? 0.3 : 0.7)) * dy;
+        const double z = height_m(x, y) + (k == 0 || k == 3 ? spread_m : -spread_m);
+        dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1e-4f});
+      }
+    }
+  }
+}
+
+/// The stages from cells to curbs, as Pipeline has them, each open to the test.
+template <Limits limits = small_limits>
+struct Stages {
+  explicit Stages(const Settings& s) {
+    dem.init(s.window, s.planes.prior, 0.0f, 0.0f);
+    segmentation.init(s.segmentation, s.planes.prior);
+    mixture.init(s.planes);
+    field.init(s.labels);
+    tracer.init(s.curbs);
+  }
+  void segment() { segmentation.update(dem, counters); }
+  void mix() {
+    mixture.update(dem, segmentation, [this](int slot) { return field.label(slot); }, counters);
+  }
+  int label(bool all = true) {
+    const int changed = field.update(dem, mixture, all, counters);
+    dem.clear_touched();
+    return changed;
+  }
+  /// One call of each, as a scan line makes them.
+  void infer(bool all = false) {
+    segment();
+    mix();
+    label(all);
+  }
+  void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) { tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, counters); }
+  auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
+  auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
+
+  Counters counters{};
+  Dem<limits> dem{};
+  Segmentation<limits> segmentation{};
+  PlaneMixture<limits> mixture{};
+  LabelField<limits> field{};
+  CurbTracer<limits> tracer{};
+};
+
+}  // namespace curbline::test

@@ -1,0 +1,82 @@
+#include "formats/atomic_file.hpp"
+
+#include "formats_support.hpp"
+
+using namespace curbline::tools;
+using namespace curbline::tools::testing;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t files_in(const TemporaryDirectory& dir) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(dir.path("")), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("atomic file: nothing is left of what was not committed, and the old file stays") {
+  const TemporaryDirectory dir;
+  const std::string path = dir.write("a", "old");
+  {
+    AtomicFile file(path);
+    file.stream() << "half of the n";
+    file.stream().flush();
+    CHECK(read_file(path) == "old");
+  }
+  CHECK(read_file(path) == "old");
+  CHECK(files_in(dir) == 1);
+}
+
+TEST_CASE("atomic file: commit puts the whole file in place") {
+  const TemporaryDirectory dir;
+  AtomicFile file(dir.write("a", "old"));
+  file.stream() << "new";
+  file.commit();
+  CHECK(read_file(dir.path("a")) == "new");
+  CHECK(files_in(dir) == 1);
+}
+
+TEST_CASE("atomic file: two files for one name do not mix") {
+  const TemporaryDirectory dir;
+  AtomicFile first(dir.path("a")), second(dir.path("a"));
+  first.stream() << "first";
+  second.stream() << "second";
+  second.commit();
+  first.commit();
+  CHECK(read_file(dir.path("a")) == "first");
+}
+
+TEST_CASE("atomic file: a symbolic link stays one") {
+  const TemporaryDirectory dir;
+  dir.write("real", "old");
+  fs::create_symlink(dir.path("real"), dir.path("link"));
+  AtomicFile file(dir.path("link"));
+  file.stream() << "new";
+  file.commit();
+  CHECK(fs::is_symlink(dir.path("link")));
+  CHECK(read_file(dir.path("real")) == "new");
+}
+
+TEST_CASE("atomic file: a device is written to and not replaced") {
+  AtomicFile file("/dev/null");
+  file.stream() << "text";
+  file.commit();
+  CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("atomic file: what cannot be written is refused by name") {
+  const TemporaryDirectory dir;
+  CHECK(error_of([&] { AtomicFile(dir.path("none/a")); }) == "a: cannot be written: No such file or directory");
+  CHECK(error_of([&] { AtomicFile(dir.path(".")); }) == ".: cannot be written: it is a directory");
+}
+
+TEST_CASE("atomic file: a full disk is an error at commit") {
+  if (!fs::exists("/dev/full")) {
+    WARN("skipped: no /dev/full here");
+    return;
+  }
+  AtomicFile file("/dev/full");
+  file.stream() << std::string(100'000, 'x');
+  CHECK(error_of([&] { file.commit(); }).find("cannot be written") != std::string::npos);
+}

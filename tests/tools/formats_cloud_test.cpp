@@ -1,0 +1,137 @@
+#include "formats/cloud.hpp"
+
+#include <array>
+#include <cstring>
+#include <limits>
+
+#include "formats_support.hpp"
+
+using namespace curbline::tools;
+using namespace curbline::tools::testing;
+
+namespace {
+
+template <typename T>
+std::string bytes_of(std::initializer_list<T> values) {
+  std::string bytes;
+  for (const T value : values) {
+    std::array<char, sizeof(T)> raw{};
+    std::memcpy(raw.data(), &value, sizeof(T));
+    bytes.append(raw.data(), raw.size());
+  }
+  return bytes;
+}
+
+std::string pcd_header(const std::string& fields, int points, const std::string& data) {
+  return "# .PCD v0.7\nVERSION 0.7\n" + fields + "WIDTH " + std::to_string(points) +
+         "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " + data + "\n";
+}
+
+const std::string xyz_fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+
+bool is(const Point3& p, double x, double y, double z) {
+  return p.x == x && p.y == y && p.z == z;
+}
+
+}  // namespace
+
+TEST_CASE("cloud: text is read by blanks or commas, with a header or columns to spare") {
+  const TemporaryDirectory dir;
+  for (const char* text :
+       {"1 2 3\n-4 5e-1 6\n", "  1\t2  3 9 9\n# note\n\n-4 .5 6\n", "1,2,3\n-4, 0.5 ,6,7\n", "x,y,z\n1,2,3\n-4,0.5,6",
+        "i,z_m,Y,\"x\"\n0,3,2,1\n0,6,0.5,-4\r\n", "//X Y Z R\n1 2 3 0\n-4 0.5 6 0\n"}) {
+    INFO(text);
+    const auto points = read_cloud(dir.write("a.csv", text));
+    REQUIRE(points.size() == 2);
+    CHECK(is(points[0], 1, 2, 3));
+    CHECK(is(points[1], -4, 0.5, 6));
+  }
+}
+
+TEST_CASE("cloud: bad text is refused with line and field") {
+  const TemporaryDirectory dir;
+  const auto error = [&](const std::string& text) { return error_of([&] { read_cloud(dir.write("a.xyz", text)); }); };
+  CHECK(error("1 2 3\n1 2\n") == "a.xyz:2: the line ends before z");
+  CHECK(error("1 2 3\n1 nan 3\n") == "a.xyz:2: y is \"nan\"; expected a finite number");
+  CHECK(error("nan 2 3\n") == "a.xyz:1: x is \"nan\"; expected a finite number");
+  CHECK(error("1 2 -inf\n") == "a.xyz:1: z is \"inf\"; expected a finite number");
+  CHECK(error("1 2 3\n1 2 3x\n") == "a.xyz:2: z is \"3x\"; expected a number");
+  CHECK(error("1 2 1e999\n") == "a.xyz:1: z is \"1e999\"; expected a number");
+  CHECK(error("1,,3\n") == "a.xyz:1: y is \"\"; expected a number");
+  CHECK(error("a,b,c\n1,2,3\n").starts_with("a.xyz:1: no such columns"));
+  CHECK(error("x y z\n") == "a.xyz: no points; expected at least one");
+  CHECK(error("") == "a.xyz: the file is empty");
+  CHECK(error_of([&] { read_cloud(dir.path("a.las")); }).starts_with("a.las: unknown kind of cloud"));
+  CHECK(error_of([&] { read_cloud(dir.path("b.xyz")); }).starts_with("b.xyz: cannot be opened"));
+}
+
+TEST_CASE("cloud: KITTI records are float32 x y z intensity") {
+  const TemporaryDirectory dir;
+  const std::string good = bytes_of<float>({1, 2, 3, 0.5f, -4, 0.5f, 6, 0.1f});
+  const auto points = read_cloud(dir.write("a.bin", good));
+  REQUIRE(points.size() == 2);
+  CHECK(is(points[1], -4, 0.5, 6));
+  const auto error = [&](const std::string& text) { return error_of([&] { read_cloud(dir.write("a.bin", text)); }); };
+  CHECK(error(good + "x").starts_with("a.bin: 33 bytes; expected a multiple of 16"));
+  CHECK(error(good + bytes_of<float>({0, std::numeric_limits<float>::quiet_NaN(), 0, 0}))
+            .starts_with("a.bin: point 2 is not finite"));
+  CHECK(error("").starts_with("a.bin: no points"));
+}
+
+TEST_CASE("cloud: an ascii PCD is read by the names of its fields") {
+  const TemporaryDirectory dir;
+  const std::string fields = "FIELDS normal z x rgb y\nSIZE 4 4 4 4 8\nTYPE F F F U F\nCOUNT 3 1 1 1 1\n";
+  const auto points = read_cloud(
+      dir.write("a.pcd", pcd_header(fields, 3, "ascii") + "0 0 1 3 1 255 2\n0 0 1 nan 1 255 2\n0 0 1 6 -4 255 0.5\n"));
+  REQUIRE(points.size() == 2);
+  CHECK(is(points[0], 1, 2, 3));
+  CHECK(is(points[1], -4, 0.5, 6));
+}
+
+TEST_CASE("cloud: a binary PCD is read at the offsets of its fields") {
+  const TemporaryDirectory dir;
+  const std::string fields = "FIELDS _ z x i y\nSIZE 1 4 8 2 4\nTYPE U F F U F\nCOUNT 3 1 1 1 1\n";
+  std::string data;
+  for (const auto& [x, y, z] :
+       {std::array{1.0, 2.0, 3.0}, {0.0, 0.0, std::numeric_limits<double>::infinity()}, {-4.0, 0.5, 6.0}}) {
+    data += "abc" + bytes_of<float>({static_cast<float>(z)}) + bytes_of<double>({x}) + bytes_of<std::uint16_t>({7}) +
+            bytes_of<float>({static_cast<float>(y)});
+  }
+  const auto points = read_cloud(dir.write("a.pcd", pcd_header(fields, 3, "binary") + data));
+  REQUIRE(points.size() == 2);
+  CHECK(is(points[0], 1, 2, 3));
+  CHECK(is(points[1], -4, 0.5, 6));
+}
+
+TEST_CASE("cloud: a PCD that is not what its header says is refused") {
+  const TemporaryDirectory dir;
+  const auto error = [&](const std::string& text) { return error_of([&] { read_cloud(dir.write("a.pcd", text)); }); };
+  CHECK(error(pcd_header(xyz_fields, 1, "binary_compressed"))
+            .starts_with("a.pcd:11: DATA is \"binary_compressed\"; expected ascii or binary"));
+  CHECK(error(pcd_header(xyz_fields, 2, "ascii") + "1 2 3\n") == "a.pcd: the file ends after 1 points; expected 2");
+  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3\n1 2 3\n") ==
+        "a.pcd:13: more points than the 1 of the header");
+  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2\n") == "a.pcd:12: the line ends before z");
+  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3 4\n").starts_with("a.pcd:12: more fields"));
+  CHECK(error(pcd_header(xyz_fields, 1000000000, "binary") + "abc") ==
+        "a.pcd: the file ends after 0 points; expected 1000000000");
+  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "nan nan nan\n") == "a.pcd: no points; expected at least one");
+  CHECK(error(pcd_header("FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\n", 1, "ascii")).find("lacks a field") !=
+        std::string::npos);
+  CHECK(error(pcd_header("FIELDS x y z\nSIZE 4 4 2\nTYPE F F U\nCOUNT 1 1 1\n", 1, "ascii"))
+            .find("field z has another type") != std::string::npos);
+  CHECK(error(pcd_header("FIELDS x y z\nSIZE 4 4\n", 1, "ascii")) == "a.pcd:4: the line ends before SIZE");
+  CHECK(error("VERSION 0.5\n") == "a.pcd:1: VERSION is \"0.5\"; expected 0.7");
+  CHECK(error("VERSION 0.7\nPONTS 3\n").starts_with("a.pcd:2: a key of the header is \"PONTS\""));
+  CHECK(error("VERSION 0.7\n") == "a.pcd: the header has no DATA line; expected PCD 0.7");
+  CHECK(error("VERSION 0.7\n" + xyz_fields + "WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n")
+            .starts_with("a.pcd:9: POINTS is 3; expected WIDTH x HEIGHT, 4"));
+}
+
+TEST_CASE("cloud: damaged clouds are read or refused, and nothing worse") {
+  const auto read = [](const std::string& path) { read_cloud(path); };
+  survive_damage("x,y,z,i\n1,2,3,4\n-4,0.5,6,1\n", "a.csv", read);
+  survive_damage(pcd_header(xyz_fields, 2, "ascii") + "1 2 3\n-4 0.5 6\n", "a.pcd", read);
+  survive_damage(pcd_header(xyz_fields, 2, "binary") + bytes_of<float>({1, 2, 3, -4, 0.5f, 6}), "a.pcd", read);
+  survive_damage(bytes_of<float>({1, 2, 3, 0.5f, -4, 0.5f, 6, 0.1f}), "a.bin", read);
+}

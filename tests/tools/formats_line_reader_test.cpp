@@ -1,0 +1,75 @@
+#include "formats/line_reader.hpp"
+
+#include <string>
+#include <vector>
+
+#include "formats_support.hpp"
+
+using namespace curbline::tools;
+using namespace curbline::tools::testing;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& path, std::size_t max_line = LineReader::default_max_line) {
+  LineReader source(path, max_line);
+  std::vector<std::string> lines;
+  while (const auto line = source.next()) lines.emplace_back(*line);
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("line reader: lines come one by one, whatever their end") {
+  const TemporaryDirectory dir;
+  CHECK(lines_of(dir.write("a", "one\ntwo\r\n\nlast")) == std::vector<std::string>{"one", "two", "", "last"});
+}
+
+TEST_CASE("line reader: lines across the reading buffer are whole") {
+  const TemporaryDirectory dir;
+  std::string text;
+  std::vector<std::string> expected;
+  for (int i = 0; i < 5000; ++i) {
+    expected.push_back(std::string(static_cast<std::size_t>(i % 97), 'x') + std::to_string(i));
+    text += expected.back() + "\n";
+  }
+  CHECK(lines_of(dir.write("a", text)) == expected);
+  CHECK(lines_of(dir.path("a"), 101) == expected);
+}
+
+TEST_CASE("line reader: a line over the bound is refused, one at the bound is not") {
+  const TemporaryDirectory dir;
+  const std::string path = dir.write("a", "short\n" + std::string(100, 'x') + "\n");
+  CHECK(lines_of(path, 100).size() == 2);
+  CHECK(error_of([&] { lines_of(path, 99); }) == "a:2: line longer than 99 bytes; expected text");
+}
+
+TEST_CASE("line reader: a file without line ends is not read into memory") {
+  CHECK(error_of([] { lines_of("/dev/zero"); }).find("longer than") != std::string::npos);
+}
+
+TEST_CASE("line reader: missing, empty and unreadable files are refused by name") {
+  const TemporaryDirectory dir;
+  CHECK(error_of([&] { lines_of(dir.path("none")); }) == "none: cannot be opened: No such file or directory");
+  CHECK(error_of([&] { lines_of(dir.write("empty", "")); }) == "empty: the file is empty");
+  CHECK(error_of([&] { lines_of(dir.path("")); }).find("cannot be read: Is a directory") != std::string::npos);
+}
+
+TEST_CASE("line reader: an error in a last line without an end says that the file ends there") {
+  const TemporaryDirectory dir;
+  LineReader source(dir.write("a", "one\ntwo"));
+  source.next();
+  CHECK(error_of([&] { source.fail("bad"); }) == "a:1: bad");
+  source.next();
+  CHECK(error_of([&] { source.fail("bad"); }) == "a:2: bad (the file ends within this line)");
+}
+
+TEST_CASE("line reader: bytes behind the last line are read from where it ended") {
+  const TemporaryDirectory dir;
+  const std::string bytes(100'000, '\7');
+  LineReader source(dir.write("a", "head\n" + bytes));
+  source.next();
+  std::string got(bytes.size(), ' ');
+  CHECK(source.read_bytes(got.data(), got.size()));
+  CHECK(got == bytes);
+  CHECK_FALSE(source.read_bytes(got.data(), 1));
+}

@@ -1,0 +1,222 @@
+#include "robot/robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "formats/can_log.hpp"
+#include "formats/carmen.hpp"
+#include "formats/cloud.hpp"
+#include "formats_support.hpp"
+
+using namespace curbline;
+using namespace curbline::tools;
+using namespace curbline::tools::testing;
+
+namespace {
+
+const std::string robots = CURBLINE_SOURCE_DIR "/tools/robots/";
+
+Robot parsed(const std::string& text) {
+  const TemporaryDirectory dir;
+  return read_robot(dir.write("r.toml", text));
+}
+
+std::string error_in(const std::string& text) {
+  return error_of([&] { parsed(text); });
+}
+
+}  // namespace
+
+TEST_CASE("robot: every key has a default") {
+  const Robot robot = parsed("");
+  CHECK(robot.laser.beams == 1081);
+  CHECK(robot.scan_rate_hz == 40.0);
+  CHECK(robot.tilt_signal.id == 0x181);
+  CHECK(robot.window.rows == 40);
+  CHECK(robot.pose.still);
+}
+
+TEST_CASE("robot: a laser's model sets its data sheet, keys override it") {
+  const Robot robot = parsed("[laser]\nmodel = \"lms-151\"\nmax_range_m = 20\n");
+  CHECK(robot.laser.beams == 541);
+  CHECK(robot.scan_rate_hz == 50.0);
+  CHECK(robot.laser.bearing_step_rad == Approx(std::numbers::pi / 360));
+  CHECK(robot.laser.max_range_m == 20.0f);
+}
+
+TEST_CASE("robot: beams of every model lie symmetrically about straight ahead") {
+  for (const std::string model : {"utm-30lx", "lms-151", "lms-200"}) {
+    const LaserSettings laser = parsed("[laser]\nmodel = \"" + model + "\"\n").laser;
+    CHECK(laser.first_bearing_rad + 0.5f * static_cast<float>(laser.beams - 1) * laser.bearing_step_rad ==
+          Approx(0).margin(1e-5));
+  }
+}
+
+TEST_CASE("robot: keys are read into the settings of their name") {
+  const Robot robot = parsed(R"(
+name = "mine"
+[tilt]
+latency_s = 0.01
+[tilt.mount]
+z_m = 1.1
+[tilt.laser]
+pitch_rad = 0.1
+[pose]
+still = false
+[window]
+rows = 80
+cell_x_m = 0.05
+[sweep]
+period_s = 2
+[simulated]
+dropout = 0.1
+[tuning.labels]
+coupling = 3.5
+[tuning.planes]
+update = "responsibilities"
+)");
+  CHECK(robot.name == "mine");
+  CHECK(robot.tilt.latency_s == 0.01f);
+  CHECK(robot.tilt.T_base_tilt.z_m == 1.1f);
+  CHECK(robot.tilt.T_tilt_laser.pitch_rad == 0.1f);
+  CHECK_FALSE(robot.pose.still);
+  CHECK(robot.window.rows == 80);
+  CHECK(robot.window.cell_x_m == 0.05f);
+  CHECK(robot.sweep.period_s == 2.0);
+  CHECK(robot.simulated.dropout == 0.1);
+  CHECK(robot.labels.coupling == 3.5f);
+  CHECK(pipeline_settings(robot).planes.update == PlaneUpdate::responsibilities);
+}
+
+TEST_CASE("robot: a servo is a preset, the words of a DBC file, or one changed by the other") {
+  const auto signal = [](const std::string& keys) { return parsed("[tilt.signal]\n" + keys).tilt_signal; };
+  CHECK(signal("servo = \"odrive\"\nnode = 3\n").id == 0x69);
+  CHECK(signal("servo = \"vesc\"\nnode = 10\n").id == 0x100A);
+  CHECK(signal("servo = \"cubemars\"\nnode = 0x68\n").id_mask == 0xFF);
+  CHECK(signal("servo = \"robstride\"\nnode = 127\n").id == 0x02007F00);
+  const can::Signal cheetah = signal("servo = \"mini-cheetah\"\nid = 7\np_max_rad = 95.5\n");
+  CHECK(cheetah.id == 7);
+  CHECK(cheetah.offset == -95.5);
+  const can::Signal reversed = signal("node = 5\nid = 0x285\nscale = -1.5e-3\n");
+  CHECK(reversed.id == 0x285);
+  CHECK(reversed.start_bit == 16);
+  CHECK(reversed.scale == -1.5e-3);
+  const can::Signal own = signal(
+      "id = 0x18FF0102\nid_mask = 0x00FFFF00\nextended = true\nstart_bit = 7\nlength = 12\nbyte_order = \"big\"\n"
+      "signed = false\nscale = 0.01\noffset = -20\n");
+  CHECK((own.extended && own.id_mask == 0xFFFF00 && own.start_bit == 7 && own.length == 12 && !own.is_signed));
+  CHECK(own.order == can::ByteOrder::big);
+}
+
+TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands") {
+  CHECK(error_in("nmae = \"x\"\n").starts_with("r.toml:1: unknown key nmae; expected one of "));
+  CHECK(error_in("[laser]\n\nmodle = 1\n").starts_with("r.toml:3: unknown key laser.modle; expected one of "));
+  CHECK(
+      error_in("[tilt.mount]\nx = 1\n").starts_with("r.toml:2: unknown key tilt.mount.x; expected one of pitch_rad, "));
+  CHECK(error_in("[tilt.signal]\np_max_rad = 12.5\n").starts_with("r.toml:2: unknown key tilt.signal.p_max_rad"));
+  CHECK(error_in("[tuning.labels]\nj = 1\n").starts_with("r.toml:2: unknown key tuning.labels.j"));
+  CHECK(error_in("[lazer]\n").starts_with("r.toml:1: unknown key lazer"));
+}
+
+TEST_CASE("robot: a wrong type is refused with what was expected") {
+  CHECK(error_in("[laser]\nbeams = 1081.0\n") ==
+        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 100000");
+  CHECK(error_in("[laser]\nrange_sd_m = \"1 cm\"\n") ==
+        "r.toml:2: laser.range_sd_m is '1 cm'; expected a number from 1e-05 to 1");
+  CHECK(error_in("[tilt]\nfixed = 1\n") == "r.toml:2: tilt.fixed is 1; expected true or false");
+  CHECK(error_in("[tilt]\nlatency_s = true\n") ==
+        "r.toml:2: tilt.latency_s is of type boolean; expected a number from -1 to 1");
+  CHECK(error_in("name = 3\n") == "r.toml:1: name is 3; expected a string");
+  CHECK(error_in("window = 3\n") == "r.toml:1: window is 3; expected a table");
+  CHECK(error_in("[[window]]\nrows = 40\n") == "r.toml:1: window is of type array; expected a table");
+}
+
+TEST_CASE("robot: values out of range are refused with the range") {
+  CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 100000");
+  CHECK(error_in("[laser]\nrange_sd_m = nan\n").starts_with("r.toml:2: laser.range_sd_m is nan; expected"));
+  CHECK(error_in("[window]\nrows = 42\n") == "r.toml:2: window.rows is 42; expected a multiple of 4");
+  CHECK(error_in("[window]\ncell_x_m = -0.1\n").starts_with("r.toml:2: window.cell_x_m is -0.1; expected"));
+  CHECK(error_in("[laser]\nmodel = \"lidar\"\n") ==
+        "r.toml:2: laser.model is \"lidar\"; expected utm-30lx, lms-151 or lms-200");
+  CHECK(error_in("[laser]\nbearing_step_rad = 0\n").starts_with("r.toml:2: laser.bearing_step_rad is 0"));
+  CHECK(error_in("[laser]\nbearing_step_rad = 0.1\n").starts_with("r.toml:2: laser.bearing_step_rad times the beams"));
+  CHECK(error_in("[laser]\nscan_rate_hz = 100\n").starts_with("r.toml:1: laser.beam_interval_s times the beams"));
+  CHECK(error_in("[laser]\nmin_range_m = 50\n").starts_with("r.toml:1: laser.max_range_m is not above min_range_m"));
+  CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad"));
+  CHECK(error_in("[tilt.signal]\nservo = \"esc\"\n")
+            .starts_with("r.toml:2: tilt.signal.servo is \"esc\"; expected cia402, "));
+  CHECK(error_in("[tilt.signal]\nnode = 128\n") ==
+        "r.toml:2: tilt.signal.node is 128; expected a whole number from 1 to 127");
+  CHECK(error_in("[tilt.signal]\nid = 0x1810\n").starts_with("r.toml:2: tilt.signal.id is too large"));
+  CHECK(error_in("[tilt.signal]\nscale = 0\n").starts_with("r.toml:2: tilt.signal.scale is 0"));
+  CHECK(
+      error_in("[tilt.signal]\nfloat = true\nlength = 16\n").starts_with("r.toml:3: tilt.signal.length does not fit"));
+  CHECK(
+      error_in("[tilt.signal]\nbyte_order = \"intel\"\n").starts_with("r.toml:2: tilt.signal.byte_order is \"intel\""));
+}
+
+TEST_CASE("robot: what is no TOML, or cannot be read, is refused") {
+  const TemporaryDirectory dir;
+  CHECK(error_in("[laser\n").starts_with("r.toml:1: "));
+  CHECK(error_in("[laser]\nbeams = 1\nbeams = 2\n").starts_with("r.toml:3: "));
+  CHECK(error_of([&] { read_robot(dir.path("none.toml")); }).starts_with("none.toml: cannot be read"));
+  CHECK(error_of([&] { read_robot(dir.path(".")); }).starts_with(".: cannot be read"));
+  CHECK(error_of([&] { read_robot("/dev/zero"); }).find("longer than 1 MiB") != std::string::npos);
+}
+
+TEST_CASE("robot: the robots that ship are good") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(robots)) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path());
+    CHECK(error_of([&] { read_robot(entry.path().string()); }).empty());
+    CHECK(read_robot(entry.path().string()).name + ".toml" == entry.path().filename());
+    ++count;
+  }
+  CHECK(count == 5);
+}
+
+TEST_CASE("robot: damaged descriptions are read or refused, and nothing worse") {
+  survive_damage(
+      read_file(robots + "clausius.toml"), "r.toml", [](const std::string& path) { read_robot(path); }, 3000);
+}
+
+TEST_CASE("robot: clausius.toml turns the raw stream into the published cloud, point by point") {
+  const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/";
+  if (!std::filesystem::exists(data + "scan-03.xyz")) {
+    WARN("skipped: no data set at ../shared/data/clausius");
+    return;
+  }
+  const Robot robot = read_robot(robots + "clausius.toml");
+  const std::vector<Point3> cloud = read_cloud(data + "scan-03.xyz");
+  CarmenReader scans(data + "scan-03.carmen");
+  CanLogReader frames(data + "scan-03.candump");
+  std::size_t next = 0;
+  double worst_m = 0.0, worst_far_m = 0.0;  // far: from 10 m on the cloud, of four digits, is in centimetres
+  while (const auto scan = scans.next()) {
+    check_geometry(*scan, robot.laser, scans.path(), scans.line());
+    auto frame = frames.next();  // one frame bears the line's own time
+    while (frame && frame->time_ns < scan->time_ns) frame = frames.next();
+    REQUIRE((frame && frame->time_ns == scan->time_ns));
+    const auto tilt = decode(robot.tilt_signal, *frame);
+    REQUIRE(tilt);
+    for (std::size_t i = 0; i < scan->ranges_m.size(); ++i) {
+      if (std::isnan(scan->ranges_m[i])) continue;
+      const double bearing = static_cast<double>(robot.laser.first_bearing_rad) +
+                             static_cast<double>(i) * static_cast<double>(robot.laser.bearing_step_rad);
+      const double ahead = static_cast<double>(scan->ranges_m[i]) * std::cos(bearing);
+      const double left = static_cast<double>(scan->ranges_m[i]) * std::sin(bearing);
+      const double up = static_cast<double>(robot.tilt.T_tilt_laser.z_m);
+      const Point3 p{ahead * std::cos(*tilt) + up * std::sin(*tilt), left,
+                     static_cast<double>(robot.tilt.T_base_tilt.z_m) - ahead * std::sin(*tilt) + up * std::cos(*tilt)};
+      REQUIRE(next < cloud.size());
+      const Point3& q = cloud[next++];
+      double& worst = scan->ranges_m[i] < 10.0f ? worst_m : worst_far_m;
+      worst = std::max({worst, std::abs(p.x - q.x), std::abs(p.y - q.y), std::abs(p.z - q.z)});
+    }
+  }
+  CHECK(next == cloud.size());
+  CHECK(worst_m < 1e-3);
+  CHECK(worst_far_m < 1e-2);
+}

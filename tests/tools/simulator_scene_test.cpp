@@ -1,0 +1,290 @@
+// Scene files, the ground that they describe, and its truth.
+#include "formats/bad_input.hpp"
+#include "simulator/boundary.hpp"
+#include "simulator/ray_caster.hpp"
+#include "simulator/robot_motion.hpp"
+#include "simulator/truth.hpp"
+#include "tools/simulator_support.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace curbline::tools;
+using Catch::Matchers::Contains;
+
+namespace {
+
+double length_m(const TruthCurb& curb) {
+  return std::hypot(curb.to.x - curb.from.x, curb.to.y - curb.from.y);
+}
+
+double cast(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double time_s = 0) {
+  RayCaster world(scene);
+  world.move_to(time_s);
+  return world.cast(from, direction);
+}
+
+const std::string bump = "[ground]\nz = 0\n[[region]]\nname = 'bump'\nrectangle = [2, -1, 4, 1]\nz = 0.12\n";
+
+}  // namespace
+
+TEST_CASE("scene: every scene that ships can be read and stood on") {
+  const std::vector<std::string> names = shipped_scenes();
+  for (const char* name : {"straight_curb", "t_junction", "roundabout", "inclined_planes", "lowered_curb",
+                           "curb_above_below", "steps", "low_curb", "ramp", "city", "street"}) {
+    INFO(name);
+    CHECK(std::count(names.begin(), names.end(), name) == 1);
+    const Scene scene = in_map_frame(find_scene(name));
+    CHECK_FALSE(make_truth(scene, 0).curbs.empty());
+    CHECK_NOTHROW(RobotMotion(scene));
+  }
+}
+
+TEST_CASE("scene: a name that is not known is refused with those that are") {
+  REQUIRE_THROWS_WITH(find_scene("atlantis"), Contains("atlantis") && Contains("straight_curb"));
+}
+
+TEST_CASE("scene: bad files are refused with line and key") {
+  const auto refused = [](const std::string& text, const std::string& at, const std::string& what) {
+    INFO(text);
+    REQUIRE_THROWS_AS(scene_of(text), BadInput);
+    REQUIRE_THROWS_WITH(scene_of(text), Contains(".toml" + at) && Contains(what));
+  };
+  refused("[ground]\nz = 0\nhight = 1\n", ":3:", "hight");
+  refused("[ground]\nz = 'low'\n", ":2:", "z");
+  refused("[ground]\nz = nan\n", ":2:", "z");
+  refused("[ground]\nslope = [0, 0]\n", ":1:", "z: missing");
+  refused("[ground]\nz = 0\n[[region]]\nz = 1\npolygon = [[0, 0], [1, 1], [1, 0], [0, 1]]\n", ":5:", "crosses");
+  refused("[[region]]\nz = 1\npolygon = [[0, 0], [1, 1]]\n", ":3:", "at least 3");
+  refused("[[region]]\nz = 1\nrectangle = [0, 0, 1, 1]\ncircle = [0, 0, 1]\n", ":1:", "exactly one");
+  refused("[[region]]\nz = 1\ncircle = [0, 0, -1]\n", ":3:", "circle");
+  refused("[[region]]\nz = 1\nrectangle = [2, 0, 1, 1]\n", ":3:", "rectangle");
+  refused(bump + "[[cylinder]]\nat = [0, 0]\nradius = 0\nheight = 1\n", ":9:", "radius");
+  refused(bump + "[[box]]\nat = [0, 0]\nsize = [1, 1]\nheight = 1\nrepeat = { count = [0, 1], step = [1, 1] }\n",
+          ":11:", "count");
+  refused(bump + "[robot]\npath = [[0, 0], [0, 0]]\n", ":8:", "path");
+  refused(bump + "[robot]\nat = [0, 0]\nspeed = 1\n", ":9:", "speed");
+  refused("[ground\n", ":1:", "");
+  refused("[robot]\n", ":1:", "no ground");
+}
+
+TEST_CASE("scene: a robot over the void is refused") {
+  const Scene nowhere = scene_of("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n");
+  REQUIRE_THROWS_WITH(in_map_frame(nowhere), Contains("stands on nothing"));
+}
+
+TEST_CASE("scene: repeat shifts a sloping region with its plane") {
+  const Scene scene = scene_of(
+      "[[region]]\nrectangle = [0, 0, 1, 1]\ncorner_z = [0.0, 0.1, 0.1]\nrepeat = { count = [2, 2], step = [5, 7] }\n");
+  REQUIRE(scene.regions.size() == 4);
+  const int last = region_at(scene.regions, {5.5, 7.5});
+  REQUIRE(last == 3);
+  CHECK(scene.regions[3].plane.height_m({5.5, 7.5}) == Approx(0.05));
+}
+
+TEST_CASE("scene: a round corner leaves the corner itself to the ground") {
+  const Scene scene = scene_of("[[region]]\nz = 1\nrectangle = [0, 0, 4, 4]\ncorner_radius = 1\n");
+  CHECK(region_at(scene.regions, {0.2, 0.2}) == -1);
+  CHECK(region_at(scene.regions, {0.35, 0.35}) == 0);
+  CHECK(signed_area_m2(scene.regions[0].outline) == Approx(16 - 4 + 3.14).margin(0.03));
+}
+
+TEST_CASE("scene: the map frame of a robot that stands is its own level base frame") {
+  const Scene scene = in_map_frame(scene_of(bump + "[robot]\nat = [3.0, 0.0]\nyaw_deg = 90\n"));
+  const Truth truth = make_truth(scene, 0);
+  CHECK(truth.terrain_height(0, 0) == Approx(0).margin(1e-9));
+  CHECK(truth.terrain_height(0.9, 0.9) == Approx(0).margin(1e-9));  // on the bump: 1 m ahead, 1 m left of its middle
+  CHECK(truth.terrain_height(1.1, 0) == Approx(-0.12));
+}
+
+//        ____
+//  -----|    |------   seen from the left, the near face hides the ground behind the far one
+TEST_CASE("ray: it hits ground, face and top of a bump where they are") {
+  const Scene scene = scene_of(bump);
+  CHECK(cast(scene, {0, 0, 1}, {1, 0, -1}) == Approx(1));         // ground at x = 1
+  CHECK(cast(scene, {0, 0, 0.06}, {1, 0, 0}) == Approx(2));       // face
+  CHECK(cast(scene, {0, 0, 1.12}, {1, 0, -0.4}) == Approx(2.5));  // top at x = 2.5
+  CHECK(cast(scene, {0, 0, 1}, {1, 0, -1 / 4.2}) == Approx(0.88 * 4.2));
+  CHECK(cast(scene, {0, 0, 1}, {0, 0, -1}) == Approx(1));  // straight down
+  CHECK(cast(scene, {0, 0, 1}, {0, 0, 1}) == RayCaster::nothing);
+  CHECK(cast(scene, {0, 0, 1}, {1, 0, 0}) == RayCaster::nothing);  // over everything
+  CHECK(cast(scene, {-50, 0, 1}, {1, 0, -0.01}) == Approx(100));   // ground far beyond all outlines
+}
+
+TEST_CASE("ray: one along the lines of the grid ends") {
+  const Scene scene = scene_of(bump);
+  CHECK(cast(scene, {2, -1, 0.06}, {6e-17, 1, 0}) >= 0);
+  CHECK(cast(scene, {2.5, -5, 0.06}, {-6e-17, 1, 0}) == Approx(4));
+}
+
+TEST_CASE("ray: nothing of it before the hit lies below the true ground") {
+  for (const char* name : {"lowered_curb", "roundabout", "inclined_planes", "steps"}) {
+    const Scene scene = in_map_frame(find_scene(name));
+    const Truth truth = make_truth(scene, 0);
+    const RayCaster world(scene);
+    int on_ground = 0, on_face = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const Eigen::Vector3d from(0.01, 0.02, 1), along(std::cos(k * 0.37), std::sin(k * 0.37), -0.1 - 1e-4 * k);
+      const double t = world.cast(from, along);
+      const Eigen::Vector3d hit = from + t * along, before = from + (t - 1e-3) * along;
+      if (t == RayCaster::nothing) continue;
+      // No part of the ray before the hit is below the ground, and the hit is on the ground or at a step.
+      CHECK_FALSE(before.z() < truth.terrain_height(before.x(), before.y()) - 1e-6);
+      std::abs(hit.z() - truth.terrain_height(hit.x(), hit.y())) < 1e-6 ? ++on_ground : ++on_face;
+    }
+    INFO(name);
+    CHECK(on_ground > 3000);
+    CHECK(on_face < 1000);
+  }
+}
+
+TEST_CASE("ray: obstacles stand on the ground, and those that move are elsewhere later") {
+  const Scene scene = scene_of(bump +
+                               "[[cylinder]]\nat = [3, 0]\nradius = 0.25\nheight = 1\n"
+                               "[[box]]\nat = [0, 5]\nsize = [2, 1]\nyaw_deg = 90\nheight = 1\nvelocity = [1, 0]\n"
+                               "[[wall]]\nfrom = [-3, -1]\nto = [-3, 1]\nthickness = 0.5\nheight = 2\nz = 1\n");
+  CHECK(cast(scene, {0, 0, 1.1}, {1, 0, 0}) == Approx(2.75));
+  CHECK(cast(scene, {0, 0, 1.13}, {1, 0, 0}) == RayCaster::nothing);
+  CHECK(cast(scene, {0, 0, 0.5}, {0, 1, 0}) == Approx(4));
+  CHECK(cast(scene, {0, 0, 0.5}, {0, 1, 0}, 2.0) == RayCaster::nothing);
+  CHECK(cast(scene, {2, 0, 0.5}, {0, 1, 0}, 2.0) == Approx(4));
+  CHECK(cast(scene, {0, 0, 1.5}, {-1, 0, 0}) == Approx(2.75));
+  CHECK(cast(scene, {0, 0, 0.5}, {-1, 0, 0}) == RayCaster::nothing);  // below the wall
+}
+
+TEST_CASE("truth: a bump is bounded by four steps of its height, each once") {
+  const Truth truth = make_truth(scene_of(bump), 0);
+  REQUIRE(truth.curbs.size() == 4);
+  for (const TruthCurb& curb : truth.curbs) {
+    CHECK(length_m(curb) == Approx(2));
+    CHECK(curb.height_m == Approx(0.12));
+    CHECK(curb.left_z_m == Approx(0.12));  // outlines run counterclockwise
+    CHECK(curb.right_z_m == Approx(0));
+    CHECK(curb.kind == "step");
+  }
+}
+
+//   ______________
+//  |  a  |  b | a |   b covers a part of a; where both are as high there is no curb
+TEST_CASE("truth: what a later region covers has no curb, nor has a join of equal planes") {
+  const Truth covered = make_truth(scene_of(bump + "[[region]]\nrectangle = [1, -2, 5, 2]\nz = 0.05\n"), 0);
+  CHECK(covered.curbs.size() == 4);
+  CHECK(covered.curbs[0].height_m == Approx(0.05));
+
+  const Truth joined = make_truth(scene_of(bump + "[[region]]\nrectangle = [4, -1, 6, 1]\nz = 0.12\n"), 0);
+  double sum_m = 0;
+  for (const TruthCurb& curb : joined.curbs) sum_m += length_m(curb);
+  CHECK(sum_m == Approx(2 * (4 + 2)));
+  CHECK(joined.planes.size() == 2);
+  CHECK(joined.regions.size() == 3);
+}
+
+TEST_CASE("truth: a step that changes its sign is cut where it is nil") {
+  const Truth truth = make_truth(scene_of("[[region]]\nrectangle = [0, 0, 4, 1]\nz = 0\n"
+                                          "[[region]]\nrectangle = [0, 1, 4, 2]\nz = -0.1\nslope = [0.1, 0]\n"),
+                                 0);
+  REQUIRE(truth.curbs.size() == 2);
+  for (const TruthCurb& curb : truth.curbs) {
+    CHECK(curb.from_step_m * curb.to_step_m == Approx(0).margin(1e-9));
+    CHECK(std::max(length_m(truth.curbs[0]), length_m(truth.curbs[1])) == Approx(3));
+  }
+}
+
+TEST_CASE("truth: straight_curb is one step of 12 cm through the window, askew by 1 in 10") {
+  const Truth truth = make_truth(in_map_frame(find_scene("straight_curb")), 0);
+  double near_m = 0;
+  for (const TruthCurb& curb : truth.curbs) {
+    CHECK(curb.height_m == Approx(0.12));
+    if (std::abs(curb.to.y - curb.from.y) > 0.2 && std::abs(curb.to.x - curb.from.x) > 0.2) {
+      CHECK((curb.to.y - curb.from.y) / (curb.to.x - curb.from.x) == Approx(0.1));
+      near_m += length_m(curb);
+    }
+  }
+  CHECK(near_m == Approx(std::hypot(24, 2.4)));
+  CHECK(truth.terrain_height(2, 0) == Approx(0).margin(1e-9));
+  CHECK(truth.terrain_height(2, 1.5) == Approx(0.12));
+}
+
+TEST_CASE("truth: t_junction has curbs on either side, round corners and a curb ahead") {
+  const Truth truth = make_truth(in_map_frame(find_scene("t_junction")), 0);
+  const auto nearest_m = [&](double x, double y) {
+    double best = 1e9;
+    for (const TruthCurb& c : truth.curbs) {
+      const double ex = c.to.x - c.from.x, ey = c.to.y - c.from.y;
+      const double t = std::clamp(((x - c.from.x) * ex + (y - c.from.y) * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+      best = std::min(best, std::hypot(c.from.x + t * ex - x, c.from.y + t * ey - y));
+    }
+    return best;
+  };
+  CHECK(nearest_m(0.5, 1.0) < 1e-6);
+  CHECK(nearest_m(0.5, -1.0) < 1e-6);
+  CHECK(nearest_m(3.6, 0.3) < 1e-6);
+  const double round = 0.8 * (1 - std::sqrt(0.5));  // from the corner to the arc along each axis
+  CHECK(nearest_m(2.2 - round, 1.0 + round) < 0.005);
+  CHECK(nearest_m(2.2, 1.0) > 0.3);
+}
+
+TEST_CASE("truth: a ramp has creases and no step") {
+  for (const TruthCurb& curb : make_truth(in_map_frame(find_scene("ramp")), 0).curbs) {
+    CHECK(curb.kind == "crease");
+    CHECK(curb.height_m == Approx(0).margin(1e-9));
+  }
+}
+
+TEST_CASE("truth: it is read as it was written") {
+  const Truth truth = make_truth(in_map_frame(find_scene("street")), 1700000000);
+  const TemporaryPath temporary("truth");
+  const std::filesystem::path& dir = temporary.path;
+  std::filesystem::create_directories(dir);
+  {
+    std::ofstream out(dir / "truth.json");
+    write_truth(out, truth);
+  }
+  const Truth read = read_truth(dir.string());
+  CHECK(read.start_time_s == truth.start_time_s);
+  REQUIRE(read.curbs.size() == truth.curbs.size());
+  CHECK(read.curbs.back().to.x == truth.curbs.back().to.x);
+  CHECK(read.curbs.back().kind == truth.curbs.back().kind);
+  for (double y = -3; y < 3; y += 0.13) {
+    CHECK(read.terrain_height(1, y) == truth.terrain_height(1, y));
+  }
+  CHECK(read.obstacle_at(9.5, 0.2));     // the parked car
+  CHECK_FALSE(read.obstacle_at(9, -2));  // the person walks away
+  std::ofstream(dir / "truth.json") << "{\"start_time_s\": 1}";
+  CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
+  std::filesystem::remove_all(dir);
+  CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
+}
+
+TEST_CASE("truth: in regions.gt the first polygon that holds a point is its region") {
+  const Truth truth = make_truth(scene_of(bump), 0);
+  const std::vector<Region> drawn = drawn_regions(truth);
+  REQUIRE(drawn.size() == 2);
+  CHECK(drawn[0][0].x_m == 2);
+  CHECK(drawn[1][0].x_m == -10);
+}
+
+TEST_CASE(
+    "motion: the robot drives the legs at its speed, turns between them and goes up a curb within its wheelbase") {
+  const Scene scene = scene_of(bump + "[robot]\npath = [[0, 0], [3, 0], [3, 5]]\nspeed = 0.5\nturn_rate_deg_s = 45\n");
+  const RobotMotion motion(scene);
+  CHECK(motion.duration_s() == Approx(6 + 2 + 10).margin(0.03));
+  CHECK(motion.T_map_base(2).translation().x() == Approx(1));
+  CHECK(motion.T_map_base(2.001).translation().x() == Approx(1.0005));
+  CHECK(motion.T_map_base(3.4).translation().z() == Approx(0).margin(1e-9));  // 0.3 m before the bump
+  CHECK(motion.T_map_base(4).translation().z() == Approx(0.06).margin(0.01));
+  CHECK(motion.T_map_base(4.6).translation().z() == Approx(0.12));
+  CHECK(motion.T_map_base(7).linear().col(0).y() == Approx(std::sqrt(0.5)).margin(0.01));
+  CHECK(motion.T_map_base(100).translation().y() == Approx(5));
+  CHECK(motion.T_map_base(4).linear().col(2).z() == Approx(1));  // level
+}
+
+TEST_CASE("motion: with the attitude of the terrain the base leans as the ground does") {
+  const RobotMotion motion(
+      scene_of("[ground]\nz = 0\nslope = [0.1, 0.05]\n[robot]\npath = [[0, 0], [3, 0]]\nattitude = 'terrain'\n"));
+  const Eigen::Vector3d up = motion.T_map_base(1).linear().col(2);
+  CHECK((up - Eigen::Vector3d(-0.1, -0.05, 1).normalized()).norm() < 0.001);
+}

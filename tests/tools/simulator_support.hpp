@@ -1,0 +1,27 @@
+// What the simulator's tests share: scenes from text, and directories that go when the test ends.
+#pragma once
+
+#include "simulator/scene.hpp"
+
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace curbline::tools {
+
+/// A place of this process alone, removed at the end.
+struct TemporaryPath {
+  std::filesystem::path path;
+  explicit TemporaryPath(const std::string& name)
+      : path(std::filesystem::temp_directory_path() / ("curbline_" + std::to_string(getpid()) + "_" + name)) {}
+  ~TemporaryPath() { std::filesystem::remove_all(path); }
+};
+
+inline Scene scene_of(const std::string& text) {
+  const TemporaryPath file("scene.toml");
+  std::ofstream(file.path) << text;
+  return read_scene(file.path.string());
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,240 @@
+// The rolling window as a ring in two dimensions: which cells are valid, and what they hold, after every move.
+#include "curbline/dem.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace curbline {
+namespace {
+
+constexpr Limits limits{.rows = 12, .cols = 16};
+using Map = Dem<limits>;
+
+WindowSettings moving() { return {.rows = 12, .cols = 16, .origin_x_m = 0.0f, .origin_y_m = -0.8f}; }
+
+Map make_map(const WindowSettings& window) {
+  Map dem;
+  dem.init(window, PlanePrior{}, 0.0f, 0.0f);
+  return dem;
+}
+
+Point at(double x, double y, double z = 0.0, float variance = 1e-4f) {
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), variance};
+}
+
+/// Number of a cell of the endless grid: a height that tells where it was put.
+double name(int row, int col) { return 0.001 * (100 * row + col); }
+
+/// One point in the middle of every cell.
+void fill_names(Map& dem) {
+  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)), col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) REQUIRE(dem.add(at(0.1 * (row0 + i) + 0.05, 0.1 * (col0 + j) + 0.05, name(row0 + i, col0 + j))));
+  }
+}
+
+/// The window as a picture, a row a line: '#' valid, '.' not.
+std::string picture(const Map& dem) {
+  std::string rows;
+  for (int i = 0; i < dem.rows(); ++i) {
+    for (int j = 0; j < dem.cols(); ++j) rows += dem.cell(dem.slot(i, j)).valid() ? '#' : '.';
+    rows += '\n';
+  }
+  return rows;
+}
+
+TEST_CASE("dem: every cell of the window has a slot of its own") {
+  Map dem = make_map(moving());
+  for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {7.3f, -3.1f}, {-55.0f, 20.0f}}) {
+    dem.follow(x, y, [](int) {});
+    std::set<int> slots;
+    for (int i = 0; i < dem.rows(); ++i) {
+      for (int j = 0; j < dem.cols(); ++j) slots.insert(dem.slot(i, j));
+    }
+    CHECK(slots.size() == 12 * 16);
+    CHECK(*slots.begin() >= 0);
+    CHECK(*slots.rbegin() < Map::capacity);
+  }
+}
+
+TEST_CASE("dem: after a move in any direction the cells that left are empty and all others are where they were") {
+  const auto [blocks_x, blocks_y] = GENERATE(table<int, int>(
+      {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {2, -1}, {-2, 3}, {0, 0}, {3, 0}, {0, -4}, {100, -77}}));
+  Map dem = make_map(moving());
+  dem.follow(2.0f, -1.2f, [](int) {});
+  fill_names(dem);
+  std::map<std::pair<int, int>, int> slot_of;  // of a cell of the endless grid
+  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)), col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 16; ++j) slot_of[{row0 + i, col0 + j}] = dem.slot(i, j);
+  }
+  dem.clear_touched();
+
+  std::set<int> left;
+  dem.follow(2.0f + 0.4f * static_cast<float>(blocks_x), -1.2f + 0.4f * static_cast<float>(blocks_y), [&](int slot) {
+    CHECK(dem.cell(slot).valid());  // still to be read
+    left.insert(slot);
+  });
+
+  std::string expected;
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 16; ++j) {
+      const std::pair<int, int> place{row0 + 4 * blocks_x + i, col0 + 4 * blocks_y + j};
+      const bool stays = slot_of.count(place) > 0;
+      expected += stays ? '#' : '.';
+      if (stays) {
+        CHECK(dem.slot(i, j) == slot_of[place]);
+        CHECK(dem.cell(dem.slot(i, j)).height_m == Approx(name(place.first, place.second)).margin(1e-6));
+        CHECK(left.count(dem.slot(i, j)) == 0);
+        CHECK_FALSE(dem.touched(dem.slot(i, j)));
+      } else {
+        CHECK(left.count(dem.slot(i, j)) == 1);
+        CHECK(dem.touched(dem.slot(i, j)));
+      }
+    }
+    expected += '\n';
+  }
+  CHECK(picture(dem) == expected);
+  CHECK(dem.origin_x_m() == Approx(0.1 * (row0 + 4 * blocks_x)).margin(1e-5));
+  CHECK(dem.origin_y_m() == Approx(0.1 * (col0 + 4 * blocks_y)).margin(1e-5));
+}
+
+TEST_CASE("dem: the ring survives a walk all around") {
+  Map dem = make_map(moving());
+  fill_names(dem);
+  for (const auto& [x, y] : {std::pair{0.4f, 0.0f}, {0.8f, 0.4f}, {0.8f, 1.2f}, {0.4f, 1.2f}, {0.0f, 0.8f}, {0.0f, 0.0f}}) {
+    dem.follow(x, y, [](int) {});
+  }
+  // Two blocks of rows and three of columns have been away.
+  std::string expected;
+  for (int i = 0; i < 12; ++i) expected += (i < 8 ? "................" : "............####") + std::string("\n");
+  CHECK(picture(dem) == expected);
+  CHECK(dem.cell(dem.slot(11, 15)).height_m == Approx(name(11, 7)).margin(1e-6));
+}
+
+TEST_CASE("dem: a small motion does not move the window") {
+  Map dem = make_map(moving());
+  fill_names(dem);
+  dem.follow(0.15f, -0.15f, [](int) { FAIL("no cell may leave"); });
+  CHECK(dem.origin_x_m() == 0.0f);
+  CHECK(dem.origin_y_m() == Approx(-0.8f));
+}
+
+TEST_CASE("dem: a fixed window stays") {
+  WindowSettings window = moving();
+  window.fixed = true;
+  Map dem = make_map(window);
+  fill_names(dem);
+  dem.follow(100.0f, 100.0f, [](int) { FAIL("no cell may leave"); });
+  CHECK(dem.add(at(0.05, 0.05)));
+}
+
+TEST_CASE("dem: a point goes to the cell that it lies in, with its offset from the centre") {
+  Map dem = make_map(moving());
+  REQUIRE(dem.add(at(0.38, -0.61, 0.2)));
+  const Cell& cell = dem.cell(dem.slot(3, 1));
+  CHECK(cell.valid());
+  CHECK(cell.dx_m == Approx(0.03).margin(1e-6));
+  CHECK(cell.dy_m == Approx(0.04).margin(1e-6));
+  CHECK(dem.centroid_x_m(3, cell) == Approx(0.38).margin(1e-6));
+  CHECK(dem.centroid_y_m(1, cell) == Approx(0.19).margin(1e-6));  // from the window's lowest corner
+}
+
+TEST_CASE("dem: points outside the window are refused on all four sides") {
+  Map dem = make_map(moving());
+  for (const auto& [x, y] : {std::pair{-1e-4, 0.0}, {1.2001, 0.0}, {0.5, -0.8001}, {0.5, 0.8001}, {1e30, 0.0}, {0.5, -1e30}}) {
+    CHECK_FALSE(dem.add(at(x, y)));
+  }
+  CHECK(dem.add(at(0.0, -0.8)));
+  CHECK(dem.add(at(1.1999, 0.7999)));
+}
+
+TEST_CASE("dem: NaN and infinity are refused in every value of a point") {
+  Map dem = make_map(moving());
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (float Point::*value : {&Point::x_m, &Point::y_m, &Point::z_m, &Point::variance_m2}) {
+      Point point = at(0.5, 0.0);
+      point.*value = bad;
+      CHECK_FALSE(dem.add(point));
+    }
+  }
+  CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, -1e-4f)));
+  CHECK(picture(dem).find('#') == std::string::npos);
+}
+
+TEST_CASE("dem: a point weighs the expected noise over its own plus the ground's") {
+  Map dem = make_map(moving());
+  const PlanePrior prior;
+  dem.add(at(0.05, 0.05, 0.0, 3e-4f));
+  CHECK(dem.cell(dem.slot(0, 8)).weight == Approx(prior.noise_m2 / (3e-4f + prior.texture_m2)));
+}
+
+TEST_CASE("dem: points that share their errors are worth fewer independent ones") {
+  Map dem = make_map(moving());
+  for (int k = 0; k < 9; ++k) dem.add(at(0.05, 0.05, 0.01 * k));
+  const Cell& cell = dem.cell(dem.slot(0, 8));
+  const PlaneMoments m = dem.moments(0, 8, cell);
+  const float worth = 1.0f / (1.0f + PlanePrior{}.common_share * 8.0f);  // Kish: 1 / (1 + rho (n - 1))
+  CHECK(m.points == Approx(9.0f * worth));
+  CHECK(m.weight == Approx(cell.weight * worth));
+  CHECK(m.zz == Approx(cell.scatter_m2 * worth));
+  CHECK(m.cells == 1.0f);
+}
+
+TEST_CASE("dem: the next valid cell is found across gaps, up to the reach and the window's edge") {
+  Map dem = make_map(moving());
+  dem.add(at(0.25, -0.45));  // (2, 3)
+  dem.add(at(0.85, -0.45));  // (8, 3)
+  dem.add(at(0.25, 0.75));   // (2, 15)
+  CHECK(dem.next_valid(2, 3, 1, 0, 10) == 6);
+  CHECK(dem.next_valid(8, 3, -1, 0, 10) == 6);
+  CHECK(dem.next_valid(2, 3, 1, 0, 6) == 6);
+  CHECK(dem.next_valid(2, 3, 1, 0, 5) == 0);
+  CHECK(dem.next_valid(2, 3, 0, 1, 64) == 12);
+  CHECK(dem.next_valid(2, 15, 0, 1, 64) == 0);
+  CHECK(dem.next_valid(2, 3, -1, 0, 64) == 0);
+  CHECK(dem.next_valid(0, 3, 1, 0, 10) == 2);  // asked from a cell that is not valid
+}
+
+TEST_CASE("dem: each pair of neighbours is linked once, with its distance") {
+  Map dem = make_map(moving());
+  for (const auto& [x, y] : {std::pair{0.05, -0.75}, {0.15, -0.75}, {0.45, -0.75}, {0.15, -0.55}}) dem.add(at(x, y));
+  std::map<std::pair<std::size_t, std::size_t>, int> links;
+  for_each_link(dem, 3, [&](const Link& link) {
+    CHECK(links.count({link.from, link.to}) == 0);
+    links[{link.from, link.to}] = link.distance;
+  });
+  const auto slot = [&](int i, int j) { return static_cast<std::size_t>(dem.slot(i, j)); };
+  CHECK(links.size() == 3);
+  CHECK(links[{slot(0, 0), slot(1, 0)}] == 1);
+  CHECK(links[{slot(1, 0), slot(4, 0)}] == 3);
+  CHECK(links[{slot(1, 0), slot(1, 2)}] == 2);
+}
+
+TEST_CASE("dem: what was touched is told until it is cleared") {
+  Map dem = make_map(moving());
+  dem.add(at(0.05, 0.05));
+  CHECK(dem.touched(dem.slot(0, 8)));
+  CHECK_FALSE(dem.touched(dem.slot(0, 9)));
+  dem.clear_touched();
+  CHECK_FALSE(dem.touched(dem.slot(0, 8)));
+}
+
+TEST_CASE("dem: a window smaller than its limits uses the rows and columns it was given") {
+  Map dem = make_map({.rows = 8, .cols = 4, .origin_x_m = 0.0f, .origin_y_m = 0.0f});
+  dem.follow(1.2f, 0.4f, [](int) {});
+  fill_names(dem);
+  CHECK(picture(dem) == "####\n####\n####\n####\n####\n####\n####\n####\n");
+  dem.follow(1.6f, 0.4f, [](int) {});
+  CHECK(picture(dem) == "####\n####\n####\n####\n....\n....\n....\n....\n");
+}
+
+}  // namespace
+}  // namespace curbline

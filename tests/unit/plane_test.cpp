@@ -1,0 +1,201 @@
+// Moments, evidence and fit of planes, against the same formulas from all points at once in double.
+#include "curbline/plane.hpp"
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "support/terrain.hpp"
+
+namespace curbline {
+namespace {
+
+using test::Noise;
+using test::Patch;
+
+PlaneMoments of_point(const Point& p, float weight = 1.0f) {
+  PlaneMoments m;
+  m.points = m.cells = 1.0f;
+  m.weight = weight;
+  m.x = p.x_m;
+  m.y = p.y_m;
+  m.z = p.z_m;
+  return m;
+}
+
+PlaneMoments of_points(const std::vector<Point>& points) {
+  PlaneMoments m;
+  for (const Point& p : points) m.add(of_point(p));
+  return m;
+}
+
+/// ln p(z | points on one plane), normal-inverse-gamma: noise ~ IG(a0, a0 V0), level and slopes ~ N((mean z, 0, 0), noise / V0)
+/// about the centroid; plus (n / 2) ln(2 pi V0), the part that log_evidence() leaves out.
+double evidence_by_definition(const std::vector<Point>& points, const PlanePrior& prior) {
+  const double V0 = prior.noise_m2, a0 = prior.degrees, b0 = a0 * V0, n = static_cast<double>(points.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Point& p : points) mean += Eigen::Vector3d(p.x_m, p.y_m, p.z_m) / n;
+  const Eigen::Matrix3d L0 = V0 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d m0(mean.z(), 0.0, 0.0);
+  Eigen::Matrix3d L = L0;
+  Eigen::Vector3d r = L0 * m0;
+  double q = m0.dot(L0 * m0);
+  for (const Point& p : points) {
+    const Eigen::Vector3d phi(1.0, p.x_m - mean.x(), p.y_m - mean.y());
+    L += phi * phi.transpose();
+    r += phi * static_cast<double>(p.z_m);
+    q += static_cast<double>(p.z_m) * static_cast<double>(p.z_m);
+  }
+  q -= r.dot(L.ldlt().solve(r));
+  const double a = a0 + 0.5 * n, b = b0 + 0.5 * q;
+  return 0.5 * (std::log(L0.determinant()) - std::log(L.determinant())) + a0 * std::log(b0) - a * std::log(b) + std::lgamma(a) -
+         std::lgamma(a0) + 0.5 * n * std::log(V0);
+}
+
+TEST_CASE("plane moments: merged, they are those of the union") {
+  Noise noise;
+  const auto left = test::sample({0, 1, 0, 1}, 0.1, 0.01, noise, [](double x, double y) { return 0.2 * x - 0.1 * y; });
+  const auto right = test::sample({1, 2, -1, 1}, 0.1, 0.01, noise, [](double, double) { return 0.3; });
+  std::vector<Point> both = left;
+  both.insert(both.end(), right.begin(), right.end());
+  PlaneMoments merged = of_points(left);
+  merged.add(of_points(right));
+
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Point& p : both) mean += Eigen::Vector3d(p.x_m, p.y_m, p.z_m) / static_cast<double>(both.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Point& p : both) {
+    const Eigen::Vector3d d = Eigen::Vector3d(p.x_m, p.y_m, p.z_m) - mean;
+    scatter += d * d.transpose();
+  }
+  CHECK(merged.points == 300.0f);
+  CHECK(merged.cells == 300.0f);
+  CHECK(merged.weight == 300.0f);
+  CHECK(merged.x == Approx(mean.x()).margin(1e-6));
+  CHECK(merged.y == Approx(mean.y()).margin(1e-6));
+  CHECK(merged.z == Approx(mean.z()).margin(1e-6));
+  CHECK(merged.xx == Approx(scatter(0, 0)).epsilon(1e-5));
+  CHECK(merged.xy == Approx(scatter(0, 1)).epsilon(1e-5));
+  CHECK(merged.yy == Approx(scatter(1, 1)).epsilon(1e-5));
+  CHECK(merged.xz == Approx(scatter(0, 2)).epsilon(1e-5));
+  CHECK(merged.yz == Approx(scatter(1, 2)).epsilon(1e-5));
+  CHECK(merged.zz == Approx(scatter(2, 2)).epsilon(1e-5));
+}
+
+TEST_CASE("plane moments: a point of weight two counts as two points there") {
+  const Point p{0.3f, -0.2f, 0.1f}, q{1.0f, 0.5f, 0.0f};
+  PlaneMoments twice = of_points({p, p, q}), heavy = of_point(p, 2.0f);
+  heavy.add(of_point(q));
+  CHECK(heavy.x == Approx(twice.x));
+  CHECK(heavy.z == Approx(twice.z));
+  CHECK(heavy.xz == Approx(twice.xz));
+  CHECK(heavy.zz == Approx(twice.zz));
+}
+
+TEST_CASE("plane moments: nothing added to nothing is nothing, not NaN") {
+  PlaneMoments m;
+  m.add(PlaneMoments{});
+  CHECK(m.weight == 0.0f);
+  CHECK(m.x == 0.0f);
+}
+
+TEST_CASE("plane evidence: agrees with its definition, from one point to ten thousand") {
+  const double spacing = GENERATE(2.0, 0.9, 0.5, 0.1, 0.02);
+  const double sd = GENERATE(0.001, 0.01, 0.1);
+  Noise noise;
+  const auto points = test::sample({1, 3, -1, 1}, spacing, sd, noise, [](double x, double y) { return -0.9 + 0.07 * x - 0.03 * y; });
+  const PlanePrior prior;
+  const double truth = evidence_by_definition(points, prior);
+  INFO(points.size() << " points, noise " << sd);
+  // Stirling's series to 1 / x leaves 1 / (360 x^3) at x = 2.5; the rest is float.
+  CHECK(log_evidence(of_points(points), prior) == Approx(truth).epsilon(1e-4).margin(1e-3));
+}
+
+TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a step lose") {
+  Noise noise;
+  const PlanePrior prior;
+  const auto gain = [&](double step_m) {
+    const auto low = test::sample({0, 1, 0, 1}, 0.1, 0.01, noise, [](double x, double) { return 0.05 * x; });
+    const auto high = test::sample({1, 2, 0, 1}, 0.1, 0.01, noise, [&](double x, double) { return 0.05 * x + step_m; });
+    PlaneMoments both = of_points(low);
+    both.add(of_points(high));
+    return log_evidence(both, prior) - log_evidence(of_points(low), prior) - log_evidence(of_points(high), prior);
+  };
+  CHECK(gain(0.0) > 0.0f);
+  CHECK(gain(0.10) < 0.0f);
+  CHECK(gain(-0.10) < 0.0f);
+}
+
+TEST_CASE("plane fit: recovers level, slopes and noise within their standard deviations") {
+  Noise noise;
+  const double sd = 0.008;
+  const auto points = test::sample({0, 4, -2, 2}, 0.1, sd, noise, [](double x, double y) { return -0.88 + 0.07 * x - 0.02 * y; });
+  const auto n = static_cast<float>(points.size());
+  const Plane plane = fit_plane(of_points(points), n, PlanePrior{}, 0.0f);
+  const double level_sd = sd / std::sqrt(n), slope_sd = level_sd / std::sqrt(16.0 / 12.0);
+  CHECK(plane.alive());
+  CHECK(plane.height_m(2.0f, 0.0f) == Approx(-0.74).margin(4 * level_sd));
+  CHECK(plane.slope_x == Approx(0.07).margin(4 * slope_sd));
+  CHECK(plane.slope_y == Approx(-0.02).margin(4 * slope_sd));
+  CHECK(plane.variance_m2 == Approx(sd * sd).epsilon(4 * std::sqrt(2.0 / n)));
+}
+
+TEST_CASE("plane fit: no plane is known better than the floor") {
+  Noise noise;
+  const auto points = test::sample({0, 1, 0, 1}, 0.1, 0.0, noise, [](double, double) { return 0.0; });
+  CHECK(fit_plane(of_points(points), 100.0f, PlanePrior{}, 25e-6f).variance_m2 == 25e-6f);
+}
+
+TEST_CASE("plane fit: the height is best known at the centroid and worse the further away") {
+  Noise noise;
+  const auto points = test::sample({0, 2, 0, 1}, 0.1, 0.01, noise, [](double x, double) { return 0.1 * x; });
+  const Plane plane = fit_plane(of_points(points), 200.0f, PlanePrior{}, 0.0f);
+  const float centre = plane.height_variance_m2(plane.x_m, plane.y_m);
+  CHECK(centre == Approx(plane.variance_m2 / 200.0f));
+  CHECK(plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m) > centre);
+  CHECK(plane.height_variance_m2(plane.x_m + 2.0f, plane.y_m) > plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m));
+  // Known less well along its short side: 4 times the variance of a slope over half the length.
+  CHECK(plane.height_variance_m2(plane.x_m, plane.y_m + 1.0f) - centre ==
+        Approx(4.0f * (plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m) - centre)).epsilon(0.15));
+}
+
+TEST_CASE("plane fit: the stated variance of a height is the one that repeated fits show") {
+  Noise noise;
+  const int fits = 2000;
+  double sum = 0.0, sum2 = 0.0, stated = 0.0;
+  for (int k = 0; k < fits; ++k) {
+    const auto points = test::sample({0, 1, 0, 1}, 0.1, 0.01, noise, [](double, double) { return 0.0; });
+    const Plane plane = fit_plane(of_points(points), 100.0f, PlanePrior{}, 0.0f);
+    const double height = plane.height_m(1.5f, 0.5f);
+    sum += height;
+    sum2 += height * height;
+    stated += plane.height_variance_m2(1.5f, 0.5f) / fits;
+  }
+  const double variance = sum2 / fits - sum / fits * sum / fits;
+  CHECK(stated == Approx(variance).epsilon(4.0 * std::sqrt(2.0 / fits)));
+}
+
+TEST_CASE("plane fit: far from the origin it keeps its digits") {
+  Noise noise;
+  const auto points = test::sample({0, 2, 0, 2}, 0.1, 0.005, noise, [](double x, double y) { return 0.05 * x + 0.02 * y; });
+  // Shifts that float can add exactly to rounded coordinates, so that both sets are the same points.
+  std::vector<Point> near_by = points, far_away;
+  for (Point& p : near_by) {
+    p.x_m = std::round(p.x_m * 1024.0f) / 1024.0f;
+    p.y_m = std::round(p.y_m * 1024.0f) / 1024.0f;
+    p.z_m = std::round(p.z_m * 16384.0f) / 16384.0f;
+    far_away.push_back({p.x_m + 1024.0f, p.y_m - 2048.0f, p.z_m + 128.0f, p.variance_m2});
+  }
+  const PlanePrior prior;
+  const PlaneMoments a = of_points(near_by), b = of_points(far_away);
+  CHECK(log_evidence(b, prior) == Approx(log_evidence(a, prior)).epsilon(2e-3));
+  const Plane p = fit_plane(a, 400.0f, prior, 0.0f), q = fit_plane(b, 400.0f, prior, 0.0f);
+  CHECK(q.slope_x == Approx(p.slope_x).margin(1e-4));
+  CHECK(q.slope_y == Approx(p.slope_y).margin(1e-4));
+  CHECK(q.height_m(1025.0f, -2047.0f) == Approx(p.height_m(1.0f, 1.0f) + 128.0f).margin(1e-4));
+}
+
+}  // namespace
+}  // namespace curbline

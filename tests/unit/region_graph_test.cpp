@@ -1,0 +1,197 @@
+// Merging by evidence on graphs small enough to check by hand or by trying everything.
+#include "curbline/region_graph.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "support/terrain.hpp"
+
+namespace curbline {
+namespace {
+
+constexpr Limits limits{.regions = 64, .links = 256};
+using Graph = RegionGraph<limits>;
+
+/// A square of ground of 0.4 m with 16 points, as a leaf is.
+PlaneMoments leaf(double x0, double y0, double height_m, test::Noise& noise, double slope = 0.0) {
+  PlaneMoments all;
+  for (const Point& p : test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise, [&](double x, double) { return height_m + slope * x; })) {
+    PlaneMoments m;
+    m.points = m.cells = m.weight = 1.0f;
+    m.x = p.x_m;
+    m.y = p.y_m;
+    m.z = p.z_m;
+    all.add(m);
+  }
+  return all;
+}
+
+Graph::Index add(Graph& graph, const PlaneMoments& moments) {
+  const auto node = graph.add_node();
+  REQUIRE(node != Graph::none);
+  graph.moments(node) = moments;
+  return node;
+}
+
+TEST_CASE("region graph: two halves of a plane merge, two sides of a step do not") {
+  const auto graph = std::make_unique<Graph>();
+  test::Noise noise;
+  graph->clear();
+  const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
+  const auto c = add(*graph, leaf(0.8, 0.0, 0.12, noise)), d = add(*graph, leaf(1.2, 0.0, 0.12, noise));
+  for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, d}}) REQUIRE(graph->link(from, to));
+  graph->merge(PlanePrior{});
+  CHECK(graph->root(a) == graph->root(b));
+  CHECK(graph->root(c) == graph->root(d));
+  CHECK(graph->root(a) != graph->root(c));
+}
+
+TEST_CASE("region graph: nodes without a link never merge, alike as they are") {
+  const auto graph = std::make_unique<Graph>();
+  test::Noise noise;
+  const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
+  CHECK(graph->merge(PlanePrior{}) == 2);  // the evidence of each, nothing else
+  CHECK(graph->root(a) != graph->root(b));
+}
+
+TEST_CASE("region graph: a merged node has the moments of both") {
+  const auto graph = std::make_unique<Graph>();
+  test::Noise noise;
+  const PlaneMoments left = leaf(0.0, 0.0, 0.0, noise), right = leaf(0.4, 0.0, 0.0, noise);
+  const auto a = add(*graph, left), b = add(*graph, right);
+  graph->link(a, b);
+  graph->merge(PlanePrior{});
+  PlaneMoments both = left;
+  both.add(right);
+  const PlaneMoments& merged = graph->moments(graph->root(a));
+  CHECK(merged.points == 32.0f);
+  CHECK(merged.x == Approx(both.x));
+  CHECK(merged.zz == Approx(both.zz));
+}
+
+TEST_CASE("region graph: a second link between two nodes takes no place, whichever end comes first") {
+  constexpr Limits two{.regions = 8, .links = 2};
+  const auto graph = std::make_unique<RegionGraph<two>>();
+  const auto a = graph->add_node(), b = graph->add_node(), c = graph->add_node(), d = graph->add_node();
+  CHECK(graph->link(a, b));
+  CHECK(graph->link(a, b));
+  CHECK(graph->link(b, a));
+  CHECK(graph->link(b, c));
+  CHECK(graph->link(c, b));
+  CHECK_FALSE(graph->link(c, d));  // the store is full
+  CHECK(graph->link(a, b));        // but known links are still known
+}
+
+TEST_CASE("region graph: a full store refuses nodes") {
+  constexpr Limits three{.regions = 3, .links = 8};
+  const auto graph = std::make_unique<RegionGraph<three>>();
+  for (int k = 0; k < 3; ++k) CHECK(graph->add_node() == k);
+  CHECK(graph->add_node() == RegionGraph<three>::none);
+  CHECK(graph->nodes() == 3);
+  graph->clear();
+  CHECK(graph->nodes() == 0);
+  CHECK(graph->add_node() == 0);
+}
+
+/// A chequered street: an 8 x 8 grid of leaves on three planes with noise, linked to their neighbours in the order given.
+std::vector<int> partition_of_street(std::uint32_t link_order) {
+  static const auto graph = std::make_unique<Graph>();
+  graph->clear();
+  test::Noise noise(5);
+  std::vector<Graph::Index> nodes;
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const double x = 0.4 * i, y = 0.4 * j;
+      nodes.push_back(add(*graph, j < 3 ? leaf(x, y, 0.0, noise) : j < 6 ? leaf(x, y, 0.06, noise) : leaf(x, y, 0.0, noise, 0.15)));
+    }
+  }
+  std::vector<std::pair<int, int>> links;
+  for (int k = 0; k < 64; ++k) {
+    if (k % 8 < 7) links.emplace_back(k, k + 1);
+    if (k < 56) links.emplace_back(k, k + 8);
+  }
+  std::mt19937 engine(link_order);
+  for (std::size_t k = links.size(); link_order > 0 && k > 1; --k) {
+    std::swap(links[k - 1], links[engine() % k]);
+    if (engine() % 2 == 0) std::swap(links[k - 1].first, links[k - 1].second);
+  }
+  for (const auto& [a, b] : links) REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]));
+  graph->merge(PlanePrior{});
+  std::vector<int> first_of_root(64, -1), partition;
+  for (int k = 0; k < 64; ++k) {
+    int& first = first_of_root[graph->root(nodes[static_cast<std::size_t>(k)])];
+    if (first < 0) first = k;
+    partition.push_back(first);
+  }
+  return partition;
+}
+
+TEST_CASE("region graph: three planes are found whole") {
+  const auto partition = partition_of_street(0);
+  for (std::size_t k = 0; k < 64; ++k) CHECK(partition[k] == (k % 8 < 3 ? 0 : k % 8 < 6 ? 3 : 6));
+}
+
+TEST_CASE("region graph: the order in which links were added does not matter") {
+  const auto partition = partition_of_street(0);
+  for (std::uint32_t order = 1; order <= 20; ++order) CHECK(partition_of_street(order) == partition);
+}
+
+/// Sum of the scores that merging raises.
+double score(const std::vector<PlaneMoments>& leaves, const std::vector<int>& block_of) {
+  double total = 0.0;
+  for (int block = 0; block < static_cast<int>(leaves.size()); ++block) {
+    PlaneMoments m;
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      if (block_of[k] == block) m.add(leaves[k]);
+    }
+    if (m.points > 0.0f) total += static_cast<double>(log_evidence(m, PlanePrior{}) + log_gamma(m.cells));
+  }
+  return total;
+}
+
+TEST_CASE("region graph: on a short chain greedy merging finds the best partition of all") {
+  test::Noise noise(11);
+  std::vector<PlaneMoments> leaves;
+  for (const double height : {0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.2}) leaves.push_back(leaf(0.4 * static_cast<double>(leaves.size()), 0.0, height, noise));
+  // A partition of a chain into runs: bit k set says that a run ends after leaf k.
+  double best = -1e30;
+  unsigned best_cuts = 0;
+  for (unsigned cuts = 0; cuts < 128; ++cuts) {
+    std::vector<int> block_of(8, 0);
+    for (std::size_t k = 1; k < 8; ++k) block_of[k] = block_of[k - 1] + static_cast<int>(cuts >> (k - 1) & 1u);
+    const double s = score(leaves, block_of);
+    if (s > best) {
+      best = s;
+      best_cuts = cuts;
+    }
+  }
+  const auto graph = std::make_unique<Graph>();
+  std::vector<Graph::Index> nodes;
+  for (const PlaneMoments& m : leaves) nodes.push_back(add(*graph, m));
+  for (std::size_t k = 1; k < nodes.size(); ++k) graph->link(nodes[k - 1], nodes[k]);
+  graph->merge(PlanePrior{});
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const bool cut = (best_cuts >> (k - 1) & 1u) != 0;
+    CHECK((graph->root(nodes[k - 1]) != graph->root(nodes[k])) == cut);
+  }
+}
+
+TEST_CASE("region graph: it computes at most the evidences that its header states") {
+  const auto graph = std::make_unique<Graph>();
+  test::Noise noise;
+  // A ring of 32 leaves that all merge: each merge renews at most two links.
+  std::vector<Graph::Index> nodes;
+  for (int k = 0; k < 32; ++k) nodes.push_back(add(*graph, leaf(0.4 * (k % 8), 0.4 * (k / 8), 0.0, noise)));
+  for (std::size_t k = 0; k < 32; ++k) graph->link(nodes[k], nodes[(k + 1) % 32]);
+  const int evidences = graph->merge(PlanePrior{});
+  for (const auto node : nodes) CHECK(graph->root(node) == graph->root(nodes[0]));
+  CHECK(evidences <= 32 + 32 + 2 * 31);
+}
+
+}  // namespace
+}  // namespace curbline

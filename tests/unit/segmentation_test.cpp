@@ -1,0 +1,146 @@
+// Leaves and regions: where they part, where they join, and what a scan line leaves alone.
+#include "curbline/segmentation.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::fill;
+using test::small_settings;
+using test::Stages;
+
+std::array<BlockCell, 16> block(float step_m, float variance_m2 = 3e-4f) {
+  std::array<BlockCell, 16> cells{};
+  for (std::size_t k = 0; k < cells.size(); ++k) cells[k] = {k % 4 < 2 ? 0.0f : step_m, variance_m2, true};
+  return cells;
+}
+
+/// Regions of the whole window; REQUIREs that every valid cell has one.
+template <typename S>
+std::set<int> regions(const S& stages) {
+  std::set<int> names;
+  for (int i = 0; i < stages.dem.rows(); ++i) {
+    for (int j = 0; j < stages.dem.cols(); ++j) {
+      if (!stages.dem.cell(stages.dem.slot(i, j)).valid()) continue;
+      REQUIRE(stages.region_at(i, j) != decltype(stages.segmentation)::none);
+      names.insert(stages.region_at(i, j));
+    }
+  }
+  return names;
+}
+
+TEST_CASE("segmentation: a flat block is one leaf, named by its first cell") {
+  const BlockLeaves leaves = cut_block(block(0.0f), 2.0f);
+  for (const auto leaf : leaves) CHECK(leaf == 0);
+}
+
+TEST_CASE("segmentation: a block is cut on a step and nowhere else") {
+  const BlockLeaves leaves = cut_block(block(0.12f), 2.0f);
+  for (std::size_t k = 0; k < leaves.size(); ++k) CHECK(leaves[k] == (k % 4 < 2 ? 0 : 2));
+}
+
+TEST_CASE("segmentation: a step within the cells' noise does not cut a block") {
+  const BlockLeaves leaves = cut_block(block(0.12f, 0.15f * 0.15f), 2.0f);
+  for (const auto leaf : leaves) CHECK(leaf == 0);
+}
+
+TEST_CASE("segmentation: cells without points belong to no leaf and are reached across") {
+  auto cells = block(0.0f);
+  for (std::size_t i = 0; i < 4; ++i) cells[4 * i + 1].valid = false;
+  const BlockLeaves leaves = cut_block(cells, 2.0f);
+  for (std::size_t k = 0; k < leaves.size(); ++k) CHECK(leaves[k] == (k % 4 == 1 ? 255 : 0));
+  const BlockLeaves nothing = cut_block(std::array<BlockCell, 16>{}, 2.0f);
+  for (const auto leaf : nothing) CHECK(leaf == 255);
+}
+
+TEST_CASE("segmentation: a plane is one region, however it slopes") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  const double slope = GENERATE(0.0, 0.1, -0.3);
+  fill(stages->dem, [&](double x, double y) { return slope * x + 0.05 * y; });
+  stages->segment();
+  CHECK(regions(*stages).size() == 1);
+}
+
+TEST_CASE("segmentation: two planes with a step between them are two regions, parted at the step") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double y) { return 0.03 * x + 0.02 * y + (x < 1.4 ? 0.0 : 0.12); });
+  stages->segment();
+  CHECK(regions(*stages).size() == 2);
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) CHECK(stages->region_at(i, j) == stages->region_at(i < 14 ? 0 : 23, 0));
+  }
+}
+
+TEST_CASE("segmentation: a region splits again when new cells show a step") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  // Far apart and few, the first cells look like one slope.
+  test::Noise noise;
+  for (const Point& p : test::sample({0.0, 0.2, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.0; })) stages->dem.add(p);
+  for (const Point& p : test::sample({1.0, 1.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.12; })) stages->dem.add(p);
+  stages->infer();
+  CHECK(stages->region_at(0, 5) == stages->region_at(10, 5));
+  for (const Point& p : test::sample({0.2, 2.4, 0.0, 2.4}, 0.05, 0.002, noise, [](double x, double) { return x < 1.0 ? 0.0 : 0.12; })) {
+    stages->dem.add(p);
+  }
+  stages->infer();
+  CHECK(stages->region_at(0, 5) == stages->region_at(9, 5));
+  CHECK(stages->region_at(10, 5) == stages->region_at(23, 5));
+  CHECK(stages->region_at(9, 5) != stages->region_at(10, 5));
+}
+
+TEST_CASE("segmentation: what no line touched keeps its region, though its neighbours are cut anew") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  // Three strips: only the last one is touched again.
+  fill(stages->dem, [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.24; });
+  stages->infer();
+  const auto first = stages->region_at(0, 0), middle = stages->region_at(8, 0), last = stages->region_at(16, 0);
+  REQUIRE(regions(*stages) == std::set<int>{first, middle, last});
+  const auto before = stages->counters.evidences;
+  stages->dem.add({2.05f, 1.05f, 0.24f, 1e-4f});
+  stages->infer();
+  CHECK(regions(*stages) == std::set<int>{first, middle, last});
+  for (int j = 0; j < 24; ++j) CHECK(stages->region_at(3, j) == first);
+  // The first strip took part as one node: the leaves of the other two are 2 x 12 blocks.
+  CHECK(stages->counters.evidences - before < 3 * 2 * 12 + 2 * 2 * 12);
+}
+
+TEST_CASE("segmentation: without a touched cell nothing is cut or merged") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer();
+  const auto names = regions(*stages);
+  const auto before = stages->counters.evidences;
+  stages->infer();
+  CHECK(regions(*stages) == names);
+  CHECK(stages->counters.evidences - before == 3);  // two nodes and their link
+}
+
+TEST_CASE("segmentation: regions reach across gaps as far as links do, and no further") {
+  Settings settings = small_settings();
+  settings.segmentation.link_reach = 6;
+  const int gap = GENERATE(5, 6);  // cells without points
+  const auto stages = std::make_unique<Stages<>>(settings);
+  test::Noise noise;
+  const auto flat = [](double, double) { return 0.0; };
+  for (const Point& p : test::sample({0.0, 0.8, 0.0, 2.4}, 0.05, 0.002, noise, flat)) stages->dem.add(p);
+  for (const Point& p : test::sample({0.8 + 0.1 * gap, 2.4, 0.0, 2.4}, 0.05, 0.002, noise, flat)) stages->dem.add(p);
+  stages->segment();
+  CHECK(regions(*stages).size() == (gap == 5 ? 1 : 2));
+}
+
+TEST_CASE("segmentation: a full store joins leaves, counts, and still gives each cell a region") {
+  constexpr Limits tight{.rows = 24, .cols = 24, .planes = 6, .regions = 4, .links = 2};
+  const auto stages = std::make_unique<Stages<tight>>(small_settings());
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->segment();
+  CHECK(stages->counters.regions_full == 32);  // 36 leaves and 4 nodes
+  CHECK(stages->counters.links_full > 0);
+  CHECK(regions(*stages).size() <= 4);
+}
+
+}  // namespace
+}  // namespace curbline

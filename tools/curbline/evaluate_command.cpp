@@ -1,0 +1,27 @@
+#include <iostream>
+#include <memory>
+
+#include "curbline/commands.hpp"
+#include "curbline/evaluate.hpp"
+
+namespace curbline::tools {
+
+void add_evaluate(CLI::App& app) {
+  struct Options {
+    std::string dir, paper;
+    bool json = false;
+  };
+  auto* command = app.add_subcommand("evaluate", "Scores against truth");
+  auto o = std::make_shared<Options>();
+  auto* dir = command->add_option("dir", o->dir, "directory that simulate wrote; results of replay in it are scored, or made");
+  auto* paper = command->add_option("--paper", o->paper, "folder of clouds with regions: the paper's tables");
+  dir->excludes(paper);
+  command->add_flag("--json", o->json, "figures as JSON on stdout instead of a table");
+  command->callback([o, command] {
+    if (o->dir.empty() && o->paper.empty()) throw CLI::RequiredError(command->get_name() + ": DIR or --paper DATA");
+    const nlohmann::json figures = o->paper.empty() ? evaluate_truth(o->dir, !o->json) : evaluate_paper(o->paper, !o->json);
+    if (o->json) std::cout << figures.dump(2) << '\n';
+  });
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,90 @@
+#include "curbline/host_pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/bad_input.hpp"
+
+namespace curbline::tools {
+namespace {
+
+template <Limits limits>
+class PipelineOf final : public HostPipeline {
+ public:
+  explicit PipelineOf(const Settings& settings) {
+    if (const Status status = pipeline_.init(settings); status != Status::ok) {
+      throw BadInput(std::string("the pipeline refuses the robot's description: ") + to_string(status));
+    }
+  }
+  bool add_tilt(const TiltReading& reading) override { return pipeline_.add_tilt(reading); }
+  bool add_pose(const Pose& pose) override { return pipeline_.add_pose(pose); }
+  Status take(const ScanLine& line) override { return pipeline_.take(line); }
+  void observe(std::span<const Point> points) override { pipeline_.observe(points); }
+  int settle() override { return pipeline_.settle(); }
+  std::span<const Curb> curbs() const override { return pipeline_.curbs(); }
+  const Counters& counters() const override { return pipeline_.counters(); }
+
+  Grid grid() const override {
+    const Dem<limits>& dem = pipeline_.dem();
+    return {dem.origin_x_m(), dem.origin_y_m(), dem.cell_x_m(), dem.cell_y_m(), dem.rows(), dem.cols()};
+  }
+
+  Map map() const override {
+    Map map;
+    map.grid = grid();
+    map.cells.resize(map.grid.cells());
+    const Dem<limits>& dem = pipeline_.dem();
+    for (int i = 0; i < dem.rows(); ++i) {
+      for (int j = 0; j < dem.cols(); ++j) map.cells[map.grid.at(i, j)] = cell(i, j);
+    }
+    for (int label = 0; label < limits.planes; ++label) add_plane(map, label);
+    for (const Curb& curb : pipeline_.curbs()) map.curbs.push_back(to_map_curb(curb));
+    return map;
+  }
+
+ private:
+  MapCell cell(int i, int j) const {
+    const Dem<limits>& dem = pipeline_.dem();
+    const Cell& from = dem.cell(dem.slot(i, j));
+    if (!from.valid()) return {};
+    const auto label = pipeline_.label(i, j);
+    MapCell to;
+    to.height_m = from.height_m;
+    to.variance_m2 = from.variance_m2(pipeline_.settings().segmentation.cell);
+    to.points = static_cast<int>(from.points);
+    to.label = label == no_label<limits> ? -1 : label;
+    to.probability = pipeline_.label_probability(i, j);
+    return to;
+  }
+
+  void add_plane(Map& map, int label) const {
+    const Plane& plane = pipeline_.plane(label);
+    if (!plane.alive()) return;
+    const double at_corner = plane.height_m(0.0f, 0.0f);
+    map.planes.push_back({at_corner - plane.slope_x * map.grid.x0_m - plane.slope_y * map.grid.y0_m, plane.slope_x, plane.slope_y,
+                          std::sqrt(plane.variance_m2), label});
+  }
+
+  Pipeline<limits> pipeline_;
+};
+
+template <Limits limits>
+bool fits(const Settings& settings) {
+  return settings.window.rows <= limits.rows && settings.window.cols <= limits.cols && settings.laser.beams <= limits.beams;
+}
+
+}  // namespace
+
+std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
+  if (fits<board_limits>(settings)) return std::make_unique<PipelineOf<board_limits>>(settings);
+  if (fits<wide_limits>(settings)) return std::make_unique<PipelineOf<wide_limits>>(settings);
+  if (fits<largest_limits>(settings)) return std::make_unique<PipelineOf<largest_limits>>(settings);
+  throw BadInput("a window of " + std::to_string(settings.window.rows) + " x " + std::to_string(settings.window.cols) +
+                 " cells; expected at most 512 x 512");
+}
+
+MapCurb to_map_curb(const Curb& curb) {
+  return {curb.x0_m, curb.y0_m, curb.x1_m, curb.y1_m, curb.height_m, curb.height_sd_m, curb.probability, to_string(curb.kind)};
+}
+
+}  // namespace curbline::tools

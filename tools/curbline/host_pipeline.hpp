@@ -1,0 +1,42 @@
+// The pipeline of the firmware on the host: the same template, with limits chosen at run time by the size of the window.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "curbline/curb_tracer.hpp"
+#include "curbline/pipeline.hpp"
+#include "curbline/settings.hpp"
+#include "map/map.hpp"
+
+namespace curbline::tools {
+
+/// Limits of the firmware boards: 40 x 40 cells, 16 planes, 1081 beams.
+inline constexpr Limits board_limits{};
+/// For larger windows on the host. A leaf a cell is the worst case; one in three is more than streets need.
+inline constexpr Limits wide_limits{.rows = 128, .cols = 128, .planes = 64, .beams = 2881, .tilt_samples = 1024, .poses = 256,
+                                    .regions = 6000, .links = 16000, .borders = 8192, .curbs = 2048};
+inline constexpr Limits largest_limits{.rows = 512, .cols = 512, .planes = 250, .beams = 2881, .tilt_samples = 1024, .poses = 256,
+                                       .regions = 88000, .links = 260000, .borders = 65000, .curbs = 16384};
+
+class HostPipeline {
+ public:
+  virtual ~HostPipeline() = default;
+  virtual bool add_tilt(const TiltReading& reading) = 0;
+  virtual bool add_pose(const Pose& pose) = 0;
+  virtual Status take(const ScanLine& line) = 0;
+  virtual void observe(std::span<const Point> points) = 0;
+  virtual int settle() = 0;
+  virtual std::span<const Curb> curbs() const = 0;
+  virtual const Counters& counters() const = 0;
+  /// Place of the window now, and everything in it.
+  virtual Grid grid() const = 0;
+  virtual Map map() const = 0;
+};
+
+/// Throws BadInput if the settings are refused; a window beyond 512 x 512 cells is.
+std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings);
+
+MapCurb to_map_curb(const Curb& curb);
+
+}  // namespace curbline::tools

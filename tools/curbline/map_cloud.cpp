@@ -1,0 +1,30 @@
+#include "curbline/map_cloud.hpp"
+
+#include "curbline/host_pipeline.hpp"
+
+namespace curbline::tools {
+
+Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
+  Settings settings;
+  apply_window(options, settings.window);
+  const Grid grid = asked_grid(options, settings.window);
+  if (options.method != MapMethod::curbline) {
+    reference::Options reference = reference_options(options);
+    reference.max_height_m = static_cast<double>(settings.window.max_height_m);
+    return reference::map_cloud(cloud, grid, reference);
+  }
+  // Nothing is known of the sensor: every point has the variance that the prior expects.
+  const PlanePrior& prior = settings.planes.prior;
+  const float variance_m2 = prior.noise_m2 - prior.texture_m2;
+  std::vector<Point> points;
+  points.reserve(cloud.size());
+  for (const Point3& p : cloud) {
+    points.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), variance_m2});
+  }
+  const auto pipeline = make_host_pipeline(settings);
+  pipeline->observe(points);
+  pipeline->settle();
+  return crop(pipeline->map(), grid);
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,14 @@
+// A whole cloud to a map, by any method.
+#pragma once
+
+#include <span>
+
+#include "curbline/map_options.hpp"
+#include "map/map.hpp"
+
+namespace curbline::tools {
+
+/// Window, cell size, height and method as the options have them; the robot stands at the origin.
+Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
+
+}  // namespace curbline::tools

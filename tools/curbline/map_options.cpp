@@ -1,0 +1,136 @@
+#include "curbline/map_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "curbline/dem.hpp"
+#include "formats/atomic_file.hpp"
+#include "formats/csv.hpp"
+#include "picture/picture.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr int most_cells = 512;
+
+int cells_along(double length_m, double cell_m) { return static_cast<int>(std::ceil(length_m / cell_m - 1e-6)); }
+int whole_blocks(int cells) { return (cells + block_side - 1) / block_side * block_side; }
+
+}  // namespace
+
+void add_map_options(CLI::App& command, MapOptions& options) {
+  auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")->expected(2);
+  auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
+  origin->needs(size);
+  size->needs(origin);
+  command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
+  command.add_option("--max-height", options.max_height_m, "points above are ignored, metres");
+  const std::map<std::string, MapMethod> methods{
+      {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em}, {"segment", MapMethod::segment}};
+  command.add_option("--method", options.method, "curbline, or the paper's steps: crf-em, em, segment")
+      ->transform(CLI::CheckedTransformer(methods).description(""))
+      ->option_text("METHOD");
+  const std::map<std::string, reference::EdgePotential> edges{{"potts", reference::EdgePotential::potts},
+                                                              {"eq10", reference::EdgePotential::eq10}};
+  command.add_option("--edge", options.edge, "edge potential of crf-em: potts (factor 10) or eq10")
+      ->transform(CLI::CheckedTransformer(edges).description(""))
+      ->option_text("EDGE");
+  command.add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--labels", options.labels, "CSV of the valid cells");
+  command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout");
+  command.add_option("--picture", options.picture, "PNG or SVG");
+  command.add_flag("--json", options.json, "summary on stdout");
+}
+
+void apply_window(const MapOptions& options, WindowSettings& window) {
+  if (!options.cell.empty()) {
+    window.cell_x_m = static_cast<float>(options.cell.front());
+    window.cell_y_m = static_cast<float>(options.cell.back());
+  }
+  for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
+    if (!(cell_m > 0.0f && cell_m <= 10.0f)) throw BadInput("--cell " + std::to_string(cell_m) + "; expected metres in (0, 10]");
+  }
+  if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
+  if (!options.fixed()) return;
+  for (const double length_m : options.size) {
+    if (!(length_m > 0)) throw BadInput("--size " + std::to_string(length_m) + "; expected metres above 0");
+  }
+  const double rows = options.size[0] / static_cast<double>(window.cell_x_m), cols = options.size[1] / static_cast<double>(window.cell_y_m);
+  if (!(std::max(rows, cols) < most_cells + 0.5)) throw BadInput("--size: more than 512 cells along one side; expected larger cells or a smaller window");
+  window.fixed = true;
+  window.origin_x_m = static_cast<float>(options.origin[0]);
+  window.origin_y_m = static_cast<float>(options.origin[1]);
+  window.rows = whole_blocks(cells_along(options.size[0], static_cast<double>(window.cell_x_m)));
+  window.cols = whole_blocks(cells_along(options.size[1], static_cast<double>(window.cell_y_m)));
+}
+
+Grid asked_grid(const MapOptions& options, const WindowSettings& window) {
+  Grid grid{static_cast<double>(window.origin_x_m), static_cast<double>(window.origin_y_m), static_cast<double>(window.cell_x_m),
+            static_cast<double>(window.cell_y_m), window.rows, window.cols};
+  if (!options.cell.empty()) {
+    grid.dx_m = options.cell.front();
+    grid.dy_m = options.cell.back();
+  } else {  // float's 0.1 is not 0.1
+    grid.dx_m = std::round(grid.dx_m * 1e6) / 1e6;
+    grid.dy_m = std::round(grid.dy_m * 1e6) / 1e6;
+  }
+  if (!options.fixed()) return grid;
+  grid.x0_m = options.origin[0];
+  grid.y0_m = options.origin[1];
+  grid.rows = cells_along(options.size[0], grid.dx_m);
+  grid.cols = cells_along(options.size[1], grid.dy_m);
+  return grid;
+}
+
+Map crop(const Map& map, const Grid& asked) {
+  Map out;
+  out.grid = asked;
+  out.planes = map.planes;
+  out.cells.resize(asked.cells());
+  for (int i = 0; i < asked.rows; ++i) {
+    for (int j = 0; j < asked.cols; ++j) out.cells[asked.at(i, j)] = map.cells[map.grid.at(i, j)];
+  }
+  const double x1 = asked.x0_m + asked.rows * asked.dx_m, y1 = asked.y0_m + asked.cols * asked.dy_m;
+  std::copy_if(map.curbs.begin(), map.curbs.end(), std::back_inserter(out.curbs), [&](const MapCurb& curb) {
+    return curb.x0_m + curb.x1_m < 2 * x1 && curb.y0_m + curb.y1_m < 2 * y1;
+  });
+  return out;
+}
+
+reference::Options reference_options(const MapOptions& options) {
+  reference::Options out;
+  out.method = options.method == MapMethod::segment ? reference::Method::segment
+               : options.method == MapMethod::em    ? reference::Method::em
+                                                    : reference::Method::crf_em;
+  out.edge = options.edge;
+  out.segment_scale = options.segment_scale;
+  return out;
+}
+
+void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary) {
+  // Everything is written beside its target first and takes its place only when all of it could be written.
+  std::unique_ptr<AtomicFile> labels, curbs;
+  if (!options.labels.empty()) {
+    labels = std::make_unique<AtomicFile>(options.labels);
+    write_labels(labels->stream(), map);
+  }
+  if (!options.curbs.empty() && options.curbs != "-") {
+    curbs = std::make_unique<AtomicFile>(options.curbs);
+    write_curbs(curbs->stream(), map.curbs);
+  }
+  if (!options.picture.empty()) draw_picture(map, options.picture, {.title = title});
+  if (labels) labels->commit();
+  if (curbs) curbs->commit();
+  if (options.json) {
+    summary["cells"] = std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
+    summary["planes"] = map.planes.size();
+    summary["curbs"] = map.curbs.size();
+    std::cout << summary.dump() << '\n';
+  }
+}
+
+}  // namespace curbline::tools

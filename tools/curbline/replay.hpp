@@ -1,0 +1,65 @@
+// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would have
+// them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "curbline/host_pipeline.hpp"
+#include "formats/can_log.hpp"
+#include "formats/carmen.hpp"
+#include "formats/trajectory.hpp"
+#include "robot/robot.hpp"
+
+namespace curbline::tools {
+
+/// The logs of one drive. `can` and `poses` are empty where the robot has none.
+struct ReplayLogs {
+  std::string scans;
+  std::string can;
+  std::string poses;
+};
+
+class Replay {
+ public:
+  /// Opens the logs. Throws BadInput if the robot needs one that is not given.
+  Replay(const Robot& robot, const ReplayLogs& logs);
+
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log.
+  bool step();
+
+  /// At the end of a log without one usable reading: throws BadInput that says so.
+  void check_complete() const;
+
+  const HostPipeline& pipeline() const { return *pipeline_; }
+  const CarmenLine& line() const { return line_; }   ///< the one step() took
+  Status status() const { return status_; }          ///< what the pipeline said of it
+  long tilt_readings() const { return tilt_readings_; }
+  long frames() const { return frames_; }
+
+  /// Curbs of the whole way: those in the window now and those of the parts it has left, as they were last.
+  std::vector<MapCurb> all_curbs() const;
+
+ private:
+  void feed_tilt(std::int64_t until_ns);
+  void feed_poses(std::int64_t until_ns);
+  void keep_leaving_curbs();
+
+  Robot robot_;
+  ReplayLogs logs_;
+  std::unique_ptr<HostPipeline> pipeline_;
+  CarmenReader scans_;
+  std::optional<CanLogReader> can_;
+  std::optional<TrajectoryReader> poses_;
+  CarmenLine line_;
+  Status status_ = Status::ok;
+  std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
+  long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;
+  Grid grid_before_;
+  std::vector<MapCurb> curbs_before_, left_behind_;
+};
+
+}  // namespace curbline::tools

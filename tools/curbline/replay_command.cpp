@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "curbline/commands.hpp"
+#include "curbline/map_options.hpp"
+#include "curbline/replay.hpp"
+#include "formats/csv.hpp"
+
+namespace curbline::tools {
+namespace {
+
+struct Options {
+  ReplayLogs logs;
+  std::string robot;
+  std::string speed = "max";
+  MapOptions map;
+};
+
+/// Keeps the log's own time, `speed` times as fast; 0 does not wait.
+class Pace {
+ public:
+  explicit Pace(double speed) : speed_(speed) {}
+  void wait_for(std::int64_t log_time_ns) {
+    if (speed_ <= 0) return;
+    if (first_ns_ == none) first_ns_ = log_time_ns;
+    const auto since_start = std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
+    std::this_thread::sleep_until(start_ + since_start);
+  }
+
+ private:
+  double speed_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  static constexpr std::int64_t none = INT64_MIN;
+  std::int64_t first_ns_ = none;
+};
+
+double parse_speed(const std::string& text) {
+  if (text == "max") return 0;
+  std::size_t used = 0;
+  double speed = 0;
+  try {
+    speed = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used != text.size() || !(speed > 0)) throw BadInput("--speed " + text + "; expected max or a number above 0");
+  return speed;
+}
+
+bool same_curb(const MapCurb& a, const MapCurb& b) {
+  return a.x0_m == b.x0_m && a.y0_m == b.y0_m && a.x1_m == b.x1_m && a.y1_m == b.y1_m && a.height_m == b.height_m &&
+         a.height_sd_m == b.height_sd_m && a.probability == b.probability && a.kind == b.kind;
+}
+
+/// Each curb that the last scan line found or changed, one JSON object a line.
+class CurbStream {
+ public:
+  void give_out(std::span<const Curb> curbs) {
+    std::vector<MapCurb> now;
+    for (const Curb& curb : curbs) {
+      now.push_back(to_map_curb(curb));
+      const auto same = [&](const MapCurb& old) { return same_curb(old, now.back()); };
+      if (std::none_of(before_.begin(), before_.end(), same)) write_curb_json(std::cout, now.back());
+    }
+    std::cout.flush();
+    before_ = std::move(now);
+  }
+
+ private:
+  std::vector<MapCurb> before_;
+};
+
+nlohmann::json summary_of(const Replay& replay) {
+  const Counters& c = replay.pipeline().counters();
+  return {{"lines", c.lines},
+          {"lines_dropped", c.lines_dropped},
+          {"points", c.points},
+          {"no_returns", c.no_returns},
+          {"tilt_readings", replay.tilt_readings()},
+          {"tilt_dropped", c.tilt_dropped},
+          {"beams_without_tilt", c.beams_without_tilt},
+          {"beams_extrapolated", c.beams_extrapolated},
+          {"poses_dropped", c.poses_dropped},
+          {"regions_full", c.regions_full},
+          {"links_full", c.links_full},
+          {"planes_full", c.planes_full},
+          {"curbs_full", c.curbs_full + c.borders_full}};
+}
+
+void run(const Options& o) {
+  Robot robot = read_robot(o.robot);
+  if (!o.logs.poses.empty()) robot.pose.still = false;
+  apply_window(o.map, robot.window);
+  if (o.map.method != MapMethod::curbline) {
+    throw BadInput("replay streams and only curbline does; expected --method curbline, or `curbline map` on a cloud");
+  }
+  Replay replay(robot, o.logs);
+  Pace pace(parse_speed(o.speed));
+  CurbStream stream;
+  while (replay.step()) {
+    pace.wait_for(replay.line().time_ns);
+    if (o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
+  }
+  replay.check_complete();
+  Map map = replay.pipeline().map();
+  if (o.map.fixed()) map = crop(map, asked_grid(o.map, robot.window));
+  if (!o.map.fixed()) map.curbs = replay.all_curbs();
+  give_out(o.map, map, o.logs.scans, summary_of(replay));
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
+  auto o = std::make_shared<Options>();
+  command->add_option("--scans", o->logs.scans, "scan lines, CARMEN log")->required();
+  command->add_option("--can", o->logs.can, "tilt frames, candump log");
+  command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory");
+  command->add_option("--robot", o->robot, "robot description")->required();
+  command->add_option("--speed", o->speed, "1 keeps the log's own time, max does not")->capture_default_str();
+  add_map_options(*command, o->map);
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace curbline::tools

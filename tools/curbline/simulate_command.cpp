@@ -1,0 +1,28 @@
+#include <iostream>
+#include <memory>
+
+#include "curbline/commands.hpp"
+#include "simulator/simulate.hpp"
+
+namespace curbline::tools {
+
+void add_simulate(CLI::App& app) {
+  struct Options {
+    std::string scene, robot, out;
+    SimulationOptions simulation;
+  };
+  auto* command = app.add_subcommand("simulate", "A scene to scan lines, CAN log, poses and truth");
+  auto o = std::make_shared<Options>();
+  command->add_option("--scene", o->scene, "name of a scene that ships, or a scene file")->required();
+  command->add_option("--robot", o->robot, "robot description")->required();
+  command->add_option("--out", o->out, "directory to write to")->required();
+  command->add_option("--seed", o->simulation.seed, "of the noise")->capture_default_str();
+  command->add_option("--duration", o->simulation.duration_s, "seconds; without: one nod, or the whole way of a robot that drives");
+  command->callback([o] {
+    const SimulationSummary summary = simulate(find_scene(o->scene), o->robot, o->out, o->simulation);
+    std::cerr << o->out << ": " << summary.lines << " scan lines, " << summary.tilt_frames << " tilt frames, " << summary.poses
+              << " poses in " << summary.duration_s << " s\n";
+  });
+}
+
+}  // namespace curbline::tools

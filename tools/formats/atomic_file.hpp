@@ -1,0 +1,33 @@
+// A file that is either written whole or not there: output goes to a name beside the target and takes the target's
+// place at commit(). What is not committed is removed, and the file that stood there before stays.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "formats/bad_input.hpp"
+
+namespace curbline::tools {
+
+class AtomicFile {
+ public:
+  /// Throws BadInput if nothing can be written there. A target that is no file but a device or pipe (/dev/stdout) is
+  /// written to directly.
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+
+  /// Throws BadInput if not everything could be written: then nothing is left of it.
+  void commit();
+
+ private:
+  std::string path_;       ///< as given, for errors
+  std::string target_;     ///< behind symbolic links
+  std::string temporary_;  ///< empty: writes to the target
+  std::ofstream stream_;
+};
+
+}  // namespace curbline::tools

@@ -1,0 +1,33 @@
+#include "formats/can_log.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include "candump/candump.hpp"
+
+namespace curbline::tools {
+
+std::optional<can::Frame> CanLogReader::next() {
+  while (const auto text = source_.next()) {
+    if (text->find_first_not_of(" \t") == std::string_view::npos || text->starts_with('#')) continue;
+    const candump::ParsedLine parsed = candump::parse_line(*text);
+    if (!parsed.ok()) source_.fail(std::string(parsed.error));
+    if (parsed.frame.time_ns < last_time_ns_) {
+      source_.fail("the time goes back; expected no less than that of the frame before");
+    }
+    last_time_ns_ = parsed.frame.time_ns;
+    interface_name_ = parsed.interface_name;
+    return parsed.frame;
+  }
+  if (interface_name_.empty()) throw BadInput(path() + ": no CAN frame; expected at least one line of candump -L");
+  return std::nullopt;
+}
+
+void write_can_frame(std::ostream& out, const can::Frame& frame, std::string_view interface_name) {
+  std::array<char, candump::max_line> line{};
+  const std::size_t length = candump::format_line(frame, interface_name, line);
+  if (length == 0) throw std::invalid_argument("write_can_frame: no frame of a CAN bus");
+  out.write(line.data(), static_cast<std::streamsize>(length)) << '\n';
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,36 @@
+// CAN frames in a candump log (candump/candump.hpp says what a line looks like), in order of time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "can/frame.hpp"
+#include "formats/line_reader.hpp"
+
+namespace curbline::tools {
+
+class CanLogReader {
+ public:
+  explicit CanLogReader(const std::string& path) : source_(path) {}
+
+  /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are passed over. Throws BadInput
+  /// for any other line that candump does not write, for a time before the last one, and for a file without a frame.
+  std::optional<can::Frame> next();
+
+  const std::string& path() const { return source_.path(); }
+  long line() const { return source_.line(); }                           ///< of the frame last given
+  const std::string& interface_name() const { return interface_name_; }  ///< the same
+
+ private:
+  LineReader source_;
+  std::string interface_name_;
+  std::int64_t last_time_ns_ = std::numeric_limits<std::int64_t>::min();
+};
+
+/// Writes one line. The frame must be one that a bus carries; times are cut to the microsecond, as candump has them.
+void write_can_frame(std::ostream& out, const can::Frame& frame, std::string_view interface_name);
+
+}  // namespace curbline::tools

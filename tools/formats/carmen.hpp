@@ -1,0 +1,51 @@
+// Laser scan lines in a CARMEN log, message RAWLASER1:
+//   RAWLASER1 type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode
+//             n range... n_remissions remission... ipc_timestamp host logger_timestamp
+// Radians, metres, seconds; one message a line. Other messages and # comments are passed over.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "curbline/settings.hpp"
+#include "formats/line_reader.hpp"
+
+namespace curbline::tools {
+
+struct CarmenLine {
+  std::int64_t time_ns = 0;  ///< ipc_timestamp: of beam 0
+  double start_angle_rad = 0.0;
+  double field_of_view_rad = 0.0;
+  double angular_resolution_rad = 0.0;  ///< from beam to beam
+  double maximum_range_m = 0.0;
+  double accuracy_m = 0.03;
+  std::vector<float> ranges_m;  ///< NaN: no return (written as maximum_range; read from r >= maximum_range or r <= 0)
+};
+
+class CarmenReader {
+ public:
+  explicit CarmenReader(const std::string& path) : source_(path) {}
+
+  /// The next scan line; nothing at the end. Throws BadInput for a line that is cut or holds anything but numbers, for
+  /// a time before the last one, and for a file without a scan line.
+  std::optional<CarmenLine> next();
+
+  const std::string& path() const { return source_.path(); }
+  long line() const { return source_.line(); }  ///< of the scan line last given
+
+ private:
+  LineReader source_;
+  std::optional<std::int64_t> last_time_ns_;
+};
+
+/// Throws BadInput("file:line: ...") unless the scan line has the beams and bearings of the robot's laser: as many
+/// beams, the first and last within half a step.
+void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const std::string& file, long line);
+
+/// Writes one line: ranges to the millimetre, angles to 1e-9 rad, times to the microsecond.
+void write_carmen(std::ostream& out, const CarmenLine& scan);
+
+}  // namespace curbline::tools

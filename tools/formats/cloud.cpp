@@ -1,0 +1,128 @@
+#include "formats/cloud.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "formats/fields.hpp"
+#include "formats/line_reader.hpp"
+#include "formats/pcd.hpp"
+
+namespace curbline::tools {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "KITTI clouds are little-endian");
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Which columns x, y and z stand in.
+struct Columns {
+  std::array<int, 3> of_axis{0, 1, 2};
+
+  int last() const { return *std::max_element(of_axis.begin(), of_axis.end()); }
+};
+
+/// The axis that a column's name means, "X", "y_m", "//z": 0 to 2, or -1.
+int axis_of(std::string_view name) {
+  const std::size_t start = std::min(name.find_first_not_of("/\""), name.size());
+  const std::string word = lower(std::string(name.substr(start)));
+  if (word.empty() || word[0] < 'x' || word[0] > 'z') return -1;
+  return word.size() == 1 || std::isalnum(static_cast<unsigned char>(word[1])) == 0 ? word[0] - 'x' : -1;
+}
+
+bool is_header(std::string_view line) {
+  const std::string start = lower(std::string(line.substr(std::min(line.find_first_not_of(" \t/\""), line.size()), 3)));
+  return !start.empty() && std::isalpha(static_cast<unsigned char>(start[0])) != 0 && start != "nan" && start != "inf";
+}
+
+Columns read_header(const LineReader& source, Fields fields) {
+  Columns columns{{-1, -1, -1}};
+  for (int column = 0; !fields.at_end(); ++column) {
+    const int axis = axis_of(fields.word("a column name"));
+    if (axis >= 0) columns.of_axis[static_cast<std::size_t>(axis)] = column;
+  }
+  for (const int column : columns.of_axis) {
+    if (column < 0) source.fail("no such columns; expected numbers, or names with x, y and z among them");
+  }
+  return columns;
+}
+
+Point3 read_point(Fields& fields, const Columns& columns) {
+  static constexpr std::array<std::string_view, 3> names{"x", "y", "z"};
+  std::array<double, 3> value{};
+  for (int column = 0; column <= columns.last(); ++column) {
+    const auto axis = static_cast<std::size_t>(std::find(columns.of_axis.begin(), columns.of_axis.end(), column) -
+                                               columns.of_axis.begin());
+    if (axis < 3) {
+      value[axis] = fields.number(names[axis]);
+    } else {
+      fields.word("a column");
+    }
+  }
+  return {value[0], value[1], value[2]};
+}
+
+std::vector<Point3> read_text(const std::string& path) {
+  LineReader source(path);
+  std::vector<Point3> points;
+  Columns columns;
+  bool first = true;
+  while (const auto line = source.next()) {
+    const auto apart = line->find(',') == std::string_view::npos ? Fields::Apart::blanks : Fields::Apart::commas;
+    Fields fields(source, *line, apart);
+    if (fields.at_end() || line->starts_with('#')) continue;
+    if (first && is_header(*line)) {
+      columns = read_header(source, fields);
+    } else {
+      points.push_back(read_point(fields, columns));
+    }
+    first = false;
+  }
+  return points;
+}
+
+std::vector<Point3> read_kitti(const std::string& path) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes % 16 != 0) {
+    throw BadInput(path + ": " + std::to_string(bytes) + " bytes; expected a multiple of 16, float32 x y z intensity");
+  }
+  LineReader source(path);
+  std::vector<Point3> points;
+  std::array<float, 4> record{};
+  while (source.read_bytes(record.data(), sizeof record)) {
+    if (!std::isfinite(record[0]) || !std::isfinite(record[1]) || !std::isfinite(record[2])) {
+      throw BadInput(path + ": point " + std::to_string(points.size()) +
+                     " is not finite; expected float32 x y z intensity");
+    }
+    points.push_back({record[0], record[1], record[2]});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Point3> read_cloud(const std::string& path) {
+  const std::string ending = lower(std::filesystem::path(path).extension().string());
+  std::vector<Point3> points;
+  if (ending == ".xyz" || ending == ".csv") {
+    points = read_text(path);
+  } else if (ending == ".pcd") {
+    points = read_pcd(path);
+  } else if (ending == ".bin") {
+    points = read_kitti(path);
+  } else {
+    throw BadInput(path + ": unknown kind of cloud; expected a name that ends in .xyz, .csv, .pcd or .bin");
+  }
+  if (points.empty()) throw BadInput(path + ": no points; expected at least one");
+  return points;
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,120 @@
+#include "formats/csv.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "formats/decimals.hpp"
+#include "formats/fields.hpp"
+#include "formats/line_reader.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr std::string_view label_columns = "x_m,y_m,height_m,variance_m2,points,label,probability";
+constexpr std::string_view curb_columns = "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind";
+constexpr int places = 6;
+
+void expect_header(LineReader& source, std::string_view columns) {
+  const auto header = source.next();
+  if (header != columns) source.fail("other columns than expected, " + std::string(columns));
+}
+
+double read_probability(Fields& fields) {
+  const double value = fields.number("probability");
+  if (!(value >= 0.0 && value <= 1.0)) fields.fail("probability", decimals(value, places), "0 to 1");
+  return value;
+}
+
+/// Reads the rows below the header, one call of `read_row` each.
+template <typename Row, typename ReadRow>
+std::vector<Row> read_rows(const std::string& path, std::string_view columns, ReadRow read_row) {
+  LineReader source(path);
+  expect_header(source, columns);
+  std::vector<Row> rows;
+  while (const auto line = source.next()) {
+    Fields fields(source, *line, Fields::Apart::commas);
+    rows.push_back(read_row(fields));
+    fields.expect_end();
+  }
+  return rows;
+}
+
+}  // namespace
+
+void write_labels(std::ostream& out, const Map& map) {
+  std::string text = std::string(label_columns) + "\n";
+  for (int i = 0; i < map.grid.rows; ++i) {
+    for (int j = 0; j < map.grid.cols; ++j) {
+      const MapCell& cell = map.cells[map.grid.at(i, j)];
+      if (cell.points == 0) continue;
+      for (const double metres : {map.grid.x_m(i), map.grid.y_m(j), cell.height_m})
+        text += decimals(metres, places) + ",";
+      text +=
+          decimals(cell.variance_m2, 9) + "," + std::to_string(cell.points) + "," + std::to_string(cell.label) + ",";
+      text += decimals(cell.probability, places) + "\n";
+    }
+  }
+  out << text;
+}
+
+void write_curbs(std::ostream& out, const std::vector<MapCurb>& curbs) {
+  std::string text = std::string(curb_columns) + "\n";
+  for (const MapCurb& c : curbs) {
+    for (const double value : {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.height_m, c.height_sd_m, c.probability}) {
+      text += decimals(value, places) + ",";
+    }
+    text += c.kind + "\n";
+  }
+  out << text;
+}
+
+void write_curb_json(std::ostream& out, const MapCurb& c) {
+  const auto rounded = [](double value) { return std::round(value * 1e6) / 1e6; };
+  const nlohmann::ordered_json object = {
+      {"x0_m", rounded(c.x0_m)},
+      {"y0_m", rounded(c.y0_m)},
+      {"x1_m", rounded(c.x1_m)},
+      {"y1_m", rounded(c.y1_m)},
+      {"height_m", rounded(c.height_m)},
+      {"height_sd_m", rounded(c.height_sd_m)},
+      {"probability", rounded(c.probability)},
+      {"kind", c.kind},
+  };
+  out << object.dump() << '\n';
+}
+
+std::vector<LabelledCell> read_labels(const std::string& path) {
+  return read_rows<LabelledCell>(path, label_columns, [](Fields& fields) {
+    constexpr std::int64_t most = std::numeric_limits<int>::max();
+    LabelledCell row;
+    row.x_m = fields.number("x_m");
+    row.y_m = fields.number("y_m");
+    row.cell.height_m = fields.number("height_m");
+    row.cell.variance_m2 = fields.number("variance_m2");
+    row.cell.points = static_cast<int>(fields.whole("points", 1, most));
+    row.cell.label = static_cast<int>(fields.whole("label", -1, most));
+    row.cell.probability = read_probability(fields);
+    return row;
+  });
+}
+
+std::vector<MapCurb> read_curbs(const std::string& path) {
+  return read_rows<MapCurb>(path, curb_columns, [](Fields& fields) {
+    MapCurb curb;
+    curb.x0_m = fields.number("x0_m");
+    curb.y0_m = fields.number("y0_m");
+    curb.x1_m = fields.number("x1_m");
+    curb.y1_m = fields.number("y1_m");
+    curb.height_m = fields.number("height_m");
+    curb.height_sd_m = fields.number("height_sd_m");
+    curb.probability = read_probability(fields);
+    curb.kind = fields.word("kind");
+    if (curb.kind != "step_up" && curb.kind != "step_down" && curb.kind != "crease") {
+      fields.fail("kind", curb.kind, "step_up, step_down or crease");
+    }
+    return curb;
+  });
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,32 @@
+// Numbers as text with fixed decimals, without locale and without streams' state. For the writers.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <string>
+
+namespace curbline::tools {
+
+/// Adds a value, "-0.250" for 3 places; at most 16 of them.
+inline void append_decimals(std::string& text, double value, int places) {
+  std::array<char, 336> buffer{};  // the largest double has 309 digits
+  const auto result =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, places);
+  text.append(buffer.data(), result.ptr);
+}
+
+inline std::string decimals(double value, int places) {
+  std::string text;
+  append_decimals(text, value, places);
+  return text;
+}
+
+/// Nanoseconds >= 0 as seconds, 6 or 9 decimals; with 6 the rest is cut, so that times stay in order.
+inline std::string seconds(std::int64_t time_ns, int places) {
+  std::string fraction = std::to_string(1'000'000'000 + time_ns % 1'000'000'000).substr(1);
+  fraction.resize(static_cast<std::size_t>(places));
+  return std::to_string(time_ns / 1'000'000'000) + "." + fraction;
+}
+
+}  // namespace curbline::tools

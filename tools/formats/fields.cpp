@@ -1,0 +1,94 @@
+#include "formats/fields.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include "candump/candump.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr std::string_view blanks = " \t";
+
+std::string_view trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// What can be shown of a field in one line of an error.
+std::string shown(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string out;
+  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out + (text.size() > most ? "..." : "");
+}
+
+}  // namespace
+
+Fields::Fields(const LineReader& source, std::string_view line, Apart apart)
+    : source_(source), rest_(trim(line)), apart_(apart), more_(!rest_.empty()) {}
+
+std::string_view Fields::word(std::string_view name) {
+  if (!more_) source_.fail("the line ends before " + std::string(name));
+  const std::size_t end = apart_ == Apart::commas ? rest_.find(',') : rest_.find_first_of(blanks);
+  const std::string_view field = rest_.substr(0, end);
+  if (end == std::string_view::npos) {
+    more_ = false;
+    rest_ = {};
+  } else {
+    rest_.remove_prefix(end + 1);
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+  }
+  return apart_ == Apart::commas ? trim(field) : field;
+}
+
+double Fields::number_or_nan(std::string_view name) {
+  const std::string_view field = word(name);
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (problem != std::errc{} || end != field.data() + field.size()) fail(name, field, "a number");
+  return value;
+}
+
+double Fields::number(std::string_view name) {
+  const double value = number_or_nan(name);
+  if (!std::isfinite(value)) fail(name, std::isnan(value) ? "nan" : "inf", "a finite number");
+  return value;
+}
+
+std::int64_t Fields::whole(std::string_view name, std::int64_t lowest, std::int64_t highest) {
+  const std::string_view field = word(name);
+  std::int64_t value = 0;
+  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (problem != std::errc{} || end != field.data() + field.size() || value < lowest || value > highest) {
+    fail(name, field, "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return value;
+}
+
+std::int64_t Fields::time_ns(std::string_view name) {
+  const std::string_view field = word(name);
+  if (const auto exact = candump::parse_time(field)) return *exact;
+  // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
+  double seconds = 0.0;
+  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), seconds);
+  if (problem != std::errc{} || end != field.data() + field.size() || !(seconds >= 0.0 && seconds < 9.2e9)) {
+    fail(name, field, "a time in seconds");
+  }
+  const double whole = std::floor(seconds);
+  return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
+}
+
+void Fields::expect_end() const {
+  if (more_) source_.fail("more fields than expected, from \"" + shown(rest_) + "\" on");
+}
+
+void Fields::fail(std::string_view name, std::string_view got, const std::string& expected) const {
+  source_.fail(std::string(name) + " is \"" + shown(got) + "\"; expected " + expected);
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,82 @@
+#include "formats/line_reader.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace curbline::tools {
+
+LineReader::LineReader(std::string path, std::size_t max_line)
+    : path_(std::move(path)), max_line_(max_line), file_(std::fopen(path_.c_str(), "rb")), buffer_(max_line + 1) {
+  if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno));
+}
+
+std::optional<std::string_view> LineReader::next() {
+  std::size_t searched = 0;  // bytes of the line without a line end
+  for (;;) {
+    const char* const start = buffer_.data() + begin_;
+    const void* const found = std::memchr(start + searched, '\n', end_ - begin_ - searched);
+    if (found != nullptr) return take(static_cast<std::size_t>(static_cast<const char*>(found) - start), 1);
+    searched = end_ - begin_;
+    if (searched > max_line_) {
+      ++line_;
+      fail("line longer than " + std::to_string(max_line_) + " bytes; expected text");
+    }
+    if (at_end_) break;
+    fill();
+  }
+  if (begin_ == end_) {
+    if (line_ == 0) throw BadInput(path_ + ": the file is empty");
+    return std::nullopt;
+  }
+  unterminated_ = true;
+  return take(end_ - begin_, 0);
+}
+
+std::string_view LineReader::take(std::size_t length, std::size_t end_bytes) {
+  std::string_view line(buffer_.data() + begin_, length);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  begin_ += length + end_bytes;
+  ++line_;
+  return line;
+}
+
+/// Makes room behind what is left, which is shorter than the buffer, and reads once. read() and not fread(), which
+/// would wait until a pipe has filled the buffer.
+void LineReader::fill() {
+  std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
+  end_ -= begin_;
+  begin_ = 0;
+  constexpr std::size_t chunk = 1 << 16;
+  ssize_t got = 0;
+  do {
+    got = ::read(::fileno(file_.get()), buffer_.data() + end_, std::min(chunk, buffer_.size() - end_));
+  } while (got < 0 && errno == EINTR);
+  if (got < 0) throw BadInput(path_ + ": cannot be read: " + std::strerror(errno));
+  if (got == 0) at_end_ = true;
+  end_ += static_cast<std::size_t>(got);
+}
+
+bool LineReader::read_bytes(void* to, std::size_t bytes) {
+  char* out = static_cast<char*>(to);
+  while (bytes > 0) {
+    if (begin_ == end_) {
+      if (at_end_) return false;
+      fill();
+    }
+    const std::size_t ready = std::min(bytes, end_ - begin_);
+    out = std::copy_n(buffer_.data() + begin_, ready, out);
+    begin_ += ready;
+    bytes -= ready;
+  }
+  return true;
+}
+
+void LineReader::fail(const std::string& what) const {
+  throw BadInput(path_, line_, unterminated_ ? what + " (the file ends within this line)" : what);
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,56 @@
+// Streams a file line by line: what every text format below reads from. Memory is bounded by the longest line allowed,
+// not by the file; a pipe gives its lines as they come.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/bad_input.hpp"
+
+namespace curbline::tools {
+
+class LineReader {
+ public:
+  /// A scan line of 1081 ranges is 10 kB; what is longer than this is not the text it is taken for.
+  static constexpr std::size_t default_max_line = std::size_t{1} << 20;
+
+  /// Throws BadInput if the file cannot be opened.
+  explicit LineReader(std::string path, std::size_t max_line = default_max_line);
+
+  /// The next line without its end (LF or CR LF), valid until the next call; nothing at the end of the file. Throws
+  /// BadInput if the line is too long, the file empty or reading fails.
+  std::optional<std::string_view> next();
+
+  /// Reads bytes that follow the last line, for formats with a text header. False if the file ends before.
+  bool read_bytes(void* to, std::size_t bytes);
+
+  const std::string& path() const { return path_; }
+  long line() const { return line_; }  ///< number of the last line given, from 1
+
+  /// Throws BadInput for the last line given; adds that the file ends within it, if it does.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  void fill();
+  std::string_view take(std::size_t length, std::size_t end_bytes);
+
+  std::string path_;
+  std::size_t max_line_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  ///< what has been read and not yet given
+  long line_ = 0;
+  bool at_end_ = false;
+  bool unterminated_ = false;  ///< the last line given had no line end
+};
+
+}  // namespace curbline::tools

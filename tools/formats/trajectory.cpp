@@ -1,0 +1,50 @@
+#include "formats/trajectory.hpp"
+
+#include <cmath>
+
+#include "formats/decimals.hpp"
+#include "formats/fields.hpp"
+
+namespace curbline::tools {
+namespace {
+
+TrajectoryPose parse_pose(Fields& fields) {
+  TrajectoryPose pose;
+  pose.time_ns = fields.time_ns("time");
+  pose.x_m = fields.number("tx");
+  pose.y_m = fields.number("ty");
+  pose.z_m = fields.number("tz");
+  pose.qx = fields.number("qx");
+  pose.qy = fields.number("qy");
+  pose.qz = fields.number("qz");
+  pose.qw = fields.number("qw");
+  fields.expect_end();
+  const double norm = std::sqrt(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
+  if (!(std::abs(norm - 1.0) <= 0.01)) fields.fail("the quaternion's norm", decimals(norm, 3), "1 within 0.01");
+  for (double* part : {&pose.qx, &pose.qy, &pose.qz, &pose.qw}) *part /= norm;
+  return pose;
+}
+
+}  // namespace
+
+std::optional<TrajectoryPose> TrajectoryReader::next() {
+  while (const auto text = source_.next()) {
+    Fields fields(source_, *text);
+    if (fields.at_end() || text->starts_with('#')) continue;
+    const TrajectoryPose pose = parse_pose(fields);
+    if (pose.time_ns < last_time_ns_) source_.fail("the time goes back; expected no less than that of the pose before");
+    last_time_ns_ = pose.time_ns;
+    return pose;
+  }
+  if (last_time_ns_ < 0) throw BadInput(path() + ": no pose; expected at least one line of time tx ty tz qx qy qz qw");
+  return std::nullopt;
+}
+
+void write_trajectory_pose(std::ostream& out, const TrajectoryPose& pose) {
+  std::string line = seconds(pose.time_ns, 9);
+  for (const double metres : {pose.x_m, pose.y_m, pose.z_m}) line += " " + decimals(metres, 6);
+  for (const double part : {pose.qx, pose.qy, pose.qz, pose.qw}) line += " " + decimals(part, 9);
+  out << line << '\n';
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,41 @@
+// Poses of the robot, T_map_base, in a TUM trajectory: one a line, `time tx ty tz qx qy qz qw`; seconds, metres, unit
+// quaternion; # comments are passed over.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "formats/line_reader.hpp"
+
+namespace curbline::tools {
+
+struct TrajectoryPose {
+  std::int64_t time_ns = 0;
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;  ///< of norm 1
+};
+
+class TrajectoryReader {
+ public:
+  explicit TrajectoryReader(const std::string& path) : source_(path) {}
+
+  /// The next pose; nothing at the end. Throws BadInput for a line that is cut or holds anything but numbers, for a
+  /// quaternion whose norm differs from 1 by more than 0.01 (within, it is normalised), for a time before the last one,
+  /// and for a file without a pose.
+  std::optional<TrajectoryPose> next();
+
+  const std::string& path() const { return source_.path(); }
+  long line() const { return source_.line(); }  ///< of the pose last given
+
+ private:
+  LineReader source_;
+  std::int64_t last_time_ns_ = std::numeric_limits<std::int64_t>::min();
+};
+
+/// Writes one line: times to the nanosecond, metres to 1e-6, quaternions to 1e-9.
+void write_trajectory_pose(std::ostream& out, const TrajectoryPose& pose);
+
+}  // namespace curbline::tools

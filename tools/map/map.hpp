@@ -1,0 +1,55 @@
+// A finished map, as every method gives it out: what the label and curb files, the pictures and the scores are made of.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace curbline::tools {
+
+/// The place of a grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
+struct Grid {
+  double x0_m = 0, y0_m = 0;
+  double dx_m = 0.1, dy_m = 0.1;
+  int rows = 0;  ///< along x
+  int cols = 0;  ///< along y
+  std::size_t cells() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols); }
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j); }
+  double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< of a cell's centre
+  double y_m(int j) const { return y0_m + (j + 0.5) * dy_m; }
+};
+
+struct MapCell {
+  double height_m = 0;     ///< mean height
+  double variance_m2 = 0;  ///< of the cell's posterior
+  int points = 0;          ///< 0: the cell is invalid and every other field means nothing
+  int label = -1;          ///< of the plane; -1: none
+  double probability = 0;  ///< of that label
+};
+
+/// z = z0 + sx x + sy y, in the grid's frame.
+struct MapPlane {
+  double z0_m = 0, sx = 0, sy = 0;
+  double sd_m = 0;  ///< of cells about the plane
+  int label = -1;
+};
+
+/// A straight piece of curb line. height_m: far side less near side, as seen from the robot: above 0 is a step up.
+struct MapCurb {
+  double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
+  double height_m = 0, height_sd_m = 0, probability = 0;
+  std::string kind;  ///< step_up, step_down, crease
+};
+
+struct Map {
+  Grid grid;
+  std::vector<MapCell> cells;  ///< grid.cells(), index grid.at(i, j)
+  std::vector<MapPlane> planes;
+  std::vector<MapCurb> curbs;
+};
+
+struct Point3 {
+  double x = 0, y = 0, z = 0;
+};
+
+}  // namespace curbline::tools

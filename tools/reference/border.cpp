@@ -1,0 +1,70 @@
+#include "reference/border.hpp"
+
+#include <cmath>
+
+namespace curbline::tools::reference {
+namespace {
+
+const MapPlane* plane_of(const Map& map, int label) {
+  for (const MapPlane& plane : map.planes) {
+    if (plane.label == label) return &plane;
+  }
+  return nullptr;
+}
+
+double height(const MapPlane& plane, double x, double y) { return plane.z0_m + plane.sx * x + plane.sy * y; }
+
+/// Labels on the low and the high side of a border along `axis`, -1 where there is none.
+struct Sides {
+  int low = -1, high = -1;
+  bool operator==(const Sides&) const = default;
+  bool border() const { return low != high; }
+};
+
+/// Sides of the border between cell (i, j) and the next along x (axis 0) or y.
+Sides sides(const Map& map, int i, int j, int axis) {
+  const MapCell& a = map.cells[map.grid.at(i, j)];
+  const MapCell& b = map.cells[axis == 0 ? map.grid.at(i + 1, j) : map.grid.at(i, j + 1)];
+  return a.points > 0 && b.points > 0 ? Sides{a.label, b.label} : Sides{};
+}
+
+MapCurb make_curb(const Map& map, const Sides& sides, int axis, double x0, double y0, double x1, double y1) {
+  MapCurb curb{x0, y0, x1, y1, 0, 1, 1, "crease"};
+  const MapPlane* low = plane_of(map, sides.low);
+  const MapPlane* high = plane_of(map, sides.high);
+  if (low == nullptr || high == nullptr) return curb;
+  const double x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
+  const double step = height(*high, x, y) - height(*low, x, y);
+  curb.height_m = (axis == 0 ? x : y) >= 0 ? step : -step;  // the side nearer to the origin is near
+  curb.height_sd_m = std::hypot(low->sd_m, high->sd_m);
+  if (std::abs(step) > 2 * curb.height_sd_m) curb.kind = curb.height_m > 0 ? "step_up" : "step_down";
+  return curb;
+}
+
+}  // namespace
+
+std::vector<MapCurb> borders(const Map& map) {
+  const Grid& g = map.grid;
+  std::vector<MapCurb> out;
+  for (int axis = 0; axis < 2; ++axis) {
+    const int lines = (axis == 0 ? g.rows : g.cols) - 1, length = axis == 0 ? g.cols : g.rows;
+    for (int line = 0; line < lines; ++line) {
+      const auto at = [&](int k) { return k >= length ? Sides{} : axis == 0 ? sides(map, line, k, 0) : sides(map, k, line, 1); };
+      for (int first = 0; first < length;) {
+        const Sides here = at(first);
+        int end = first + 1;
+        while (end < length && at(end) == here) ++end;
+        if (here.border()) {
+          const double across = axis == 0 ? g.x0_m + (line + 1) * g.dx_m : g.y0_m + (line + 1) * g.dy_m;
+          const double from = axis == 0 ? g.y0_m + first * g.dy_m : g.x0_m + first * g.dx_m;
+          const double to = axis == 0 ? g.y0_m + end * g.dy_m : g.x0_m + end * g.dx_m;
+          out.push_back(axis == 0 ? make_curb(map, here, 0, across, from, across, to) : make_curb(map, here, 1, from, across, to, across));
+        }
+        first = end;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace curbline::tools::reference

@@ -1,0 +1,41 @@
+// The published method (Maye, Kaestner and Siegwart, ICRA 2012) as a batch in double precision: what the streaming pipeline is
+// compared with. Cells, graph segmentation, least squares, EM with beliefs from loopy belief propagation. Where the
+// paper's text and its code differ, the code is followed (each file says where); eq. (10) can be asked for.
+#pragma once
+
+#include <span>
+
+#include "map/map.hpp"
+
+namespace curbline::tools::reference {
+
+enum class Method {
+  segment,  ///< the graph segmentation alone
+  em,       ///< then EM for a mixture of planes, cells independent
+  crf_em,   ///< the E-step by belief propagation on the grid: the paper's algorithm
+};
+
+enum class EdgePotential {
+  potts,  ///< the constant factor of its code: exp(potts) for equal labels, 1 otherwise
+  eq10,   ///< the paper's eq. (10), from the cells' heights and variances
+};
+
+/// How a message is computed: the result is the same but for rounding.
+enum class Messages {
+  general,     ///< the K x K matrix of the edge, as a general engine for factor graphs does: O(K^2)
+  two_valued,  ///< from the sum of the sender's belief: O(K)
+};
+
+struct Options {
+  Method method = Method::crf_em;
+  EdgePotential edge = EdgePotential::potts;
+  double potts = 10;
+  double segment_scale = 100;  ///< s of Felzenszwalb and Huttenlocher
+  double max_height_m = 1e9;   ///< points above it are ignored
+  Messages messages = Messages::two_valued;
+};
+
+/// Labels are numbered by the size of their component, the largest first. O(EM steps x BP sweeps x cells x K) or K^2.
+Map map_cloud(std::span<const Point3> cloud, const Grid& grid, const Options& options);
+
+}  // namespace curbline::tools::reference

@@ -1,0 +1,101 @@
+#include "robot/robot.hpp"
+
+#include <numbers>
+
+#include "formats/bad_input.hpp"
+#include "robot/parts.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+void read_mount(RobotTable table, MountSettings& mount) {
+  for (const auto& [key, value] : {std::pair{"x_m", &mount.x_m}, {"y_m", &mount.y_m}, {"z_m", &mount.z_m}}) {
+    table.read(key, *value, {-100.0, 100.0});
+  }
+  table.read("roll_rad", mount.roll_rad, {-pi, pi});
+  table.read("pitch_rad", mount.pitch_rad, {-pi, pi});
+  table.read("yaw_rad", mount.yaw_rad, {-pi, pi});
+  table.done();
+}
+
+void read_tilt(RobotTable table, Robot& robot) {
+  TiltSettings& tilt = robot.tilt;
+  table.read("fixed", tilt.fixed);
+  table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, {-3.14, 3.14});
+  table.read("latency_s", tilt.latency_s, {-1.0, 1.0});
+  table.read("angle_sd_rad", tilt.angle_sd_rad, {0.0, 0.1});
+  table.read("time_sd_s", tilt.time_sd_s, {0.0, 1.0});
+  table.read("max_extrapolation_s", tilt.max_extrapolation_s, {1e-4, 10.0});
+  table.read("max_gap_s", tilt.max_gap_s, {1e-4, 10.0});
+  table.read("roll_sd_rad", tilt.roll_sd_rad, {0.0, 0.1});
+  table.read("pitch_sd_rad", tilt.pitch_sd_rad, {0.0, 0.1});
+  read_mount(table.table("mount"), tilt.T_base_tilt);
+  read_mount(table.table("laser"), tilt.T_tilt_laser);
+  read_tilt_signal(table.table("signal"), robot);
+  table.done();
+}
+
+void read_pose(RobotTable table, PoseSettings& pose) {
+  table.read("still", pose.still);
+  table.read("height_sd_m", pose.height_sd_m, {0.0, 1.0});
+  table.read("attitude_sd_rad", pose.attitude_sd_rad, {0.0, 0.1});
+  table.read("max_extrapolation_s", pose.max_extrapolation_s, {1e-4, 10.0});
+  table.done();
+}
+
+void read_window(RobotTable table, WindowSettings& window) {
+  for (const auto& [key, value] : {std::pair{"rows", &window.rows}, {"cols", &window.cols}}) {
+    table.read_whole(key, *value, 4, 512);
+    if (*value % 4 != 0) table.refuse(key, "is " + std::to_string(*value) + "; expected a multiple of 4");
+  }
+  table.read("cell_x_m", window.cell_x_m, {0.001, 10.0});
+  table.read("cell_y_m", window.cell_y_m, {0.001, 10.0});
+  table.read("origin_x_m", window.origin_x_m, {-1e6, 1e6});
+  table.read("origin_y_m", window.origin_y_m, {-1e6, 1e6});
+  table.read("fixed", window.fixed);
+  table.read("max_height_m", window.max_height_m, {-1e9, 1e9});
+  table.done();
+}
+
+void read_sweep(RobotTable table, Sweep& sweep) {
+  table.read("from_rad", sweep.from_rad, {-3.14, 3.14});
+  table.read("to_rad", sweep.to_rad, {-3.14, 3.14});
+  table.read("period_s", sweep.period_s, {0.01, 1000.0});
+  table.done();
+  if (!(sweep.from_rad < sweep.to_rad)) table.refuse("to_rad", "is not above from_rad");
+}
+
+void read_simulated(RobotTable table, SimulatedErrors& errors) {
+  table.read("dropout", errors.dropout, {0.0, 1.0});
+  table.read("beam_divergence_rad", errors.beam_divergence_rad, {0.0, 0.1});
+  table.read("tilt_rate_hz", errors.tilt_rate_hz, {0.1, 10'000.0});
+  table.read("tilt_jitter_s", errors.tilt_jitter_s, {0.0, 1.0});
+  table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, 10'000.0});
+  table.read("pose_position_sd_m", errors.pose_position_sd_m, {0.0, 1.0});
+  table.read("pose_attitude_sd_rad", errors.pose_attitude_sd_rad, {0.0, 0.1});
+  table.done();
+}
+
+}  // namespace
+
+Robot read_robot(const std::string& path) {
+  const toml::table parsed = RobotTable::parse(path);
+  RobotTable file(parsed, "", path);
+  Robot robot;
+  file.read("name", robot.name);
+  read_laser(file.table("laser"), robot);
+  read_tilt(file.table("tilt"), robot);
+  read_pose(file.table("pose"), robot.pose);
+  read_window(file.table("window"), robot.window);
+  read_sweep(file.table("sweep"), robot.sweep);
+  read_simulated(file.table("simulated"), robot.simulated);
+  read_tuning(file.table("tuning"), robot);
+  file.done();
+  const Status status = check(pipeline_settings(robot));
+  if (status != Status::ok) throw BadInput(path + ": " + to_string(status));
+  return robot;
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,56 @@
+// The description of a robot, as its TOML file gives it (tools/robots). Everything that simulate, replay and the daemon
+// need to know of the machine.
+#pragma once
+
+#include "can/signal.hpp"
+#include "curbline/settings.hpp"
+
+#include <string>
+
+namespace curbline::tools {
+
+/// What only the simulator needs to know of the robot's sensors.
+struct SimulatedErrors {
+  double dropout = 0.0;              ///< share of returns that are lost
+  double beam_divergence_rad = 0.0;  ///< full angle; a beam across an edge gives a mixed pixel
+  double tilt_rate_hz = 40.0;        ///< tilt frames a second
+  double tilt_jitter_s = 0.0;        ///< standard deviation of a frame's time stamp
+  double pose_rate_hz = 20.0;
+  double pose_position_sd_m = 0.0;
+  double pose_attitude_sd_rad = 0.0;
+};
+
+/// How the servo nods, for the simulator.
+struct Sweep {
+  double from_rad = -0.2, to_rad = 1.1;  ///< tilt > 0 looks down
+  double period_s = 6.0;                 ///< there and back
+};
+
+struct Robot {
+  std::string name = "robot";
+  std::string laser_model = "utm-30lx";  ///< utm-30lx, lms-151, lms-200: presets of `laser` (and of scan_rate_hz)
+  double scan_rate_hz = 40.0;
+  LaserSettings laser{};
+  TiltSettings tilt{};
+  PoseSettings pose{};
+  WindowSettings window{};
+  SegmentationSettings segmentation{};
+  PlaneSettings planes{};
+  LabelSettings labels{};
+  CurbSettings curbs{};
+  can::Signal tilt_signal = can::cia402_position(1);
+  Sweep sweep{};
+  SimulatedErrors simulated{};
+};
+
+/// Reads a TOML file. Throws BadInput naming file, line and key: unknown key, wrong type, value out of range. Keys bear
+/// the names of the fields, units included; all have a default. tools/robots/README.md lists them.
+Robot read_robot(const std::string& path);
+
+/// What Pipeline::init() takes.
+inline Settings pipeline_settings(const Robot& robot) {
+  return {robot.window,       robot.laser,  robot.tilt,   robot.pose,
+          robot.segmentation, robot.planes, robot.labels, robot.curbs};
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,58 @@
+#include "robot/parts.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr double farthest_rad = 1e6;
+
+/// The preset of a servo, with the keys that only presets have.
+can::Signal read_servo(RobotTable& table) {
+  std::string servo = "cia402";
+  table.read("servo", servo);
+  const auto node = [&](int lowest, int highest) {
+    std::uint8_t number = 1;
+    table.read_whole("node", number, lowest, highest);
+    return number;
+  };
+  if (servo == "cia402") return can::cia402_position(node(1, 127));
+  if (servo == "odrive") return can::odrive_encoder_estimates(node(0, 63));
+  if (servo == "vesc") return can::vesc_status_4(node(0, 255));
+  if (servo == "cubemars") return can::cubemars_servo(node(0, 255));
+  if (servo == "robstride") return can::robstride_feedback(node(0, 255));
+  if (servo == "mini-cheetah") {
+    double p_max_rad = 12.5;
+    table.read("p_max_rad", p_max_rad, {0.1, 1000.0});
+    return can::mini_cheetah_reply(0, p_max_rad);  // the master's id by default
+  }
+  table.refuse("servo", "is \"" + servo + "\"; expected cia402, odrive, vesc, cubemars, robstride or mini-cheetah");
+}
+
+can::ByteOrder read_byte_order(RobotTable& table, can::ByteOrder otherwise) {
+  std::string word = otherwise == can::ByteOrder::little ? "little" : "big";
+  table.read("byte_order", word);
+  if (word != "little" && word != "big") table.refuse("byte_order", "is \"" + word + "\"; expected little or big");
+  return word == "little" ? can::ByteOrder::little : can::ByteOrder::big;
+}
+
+}  // namespace
+
+void read_tilt_signal(RobotTable table, Robot& robot) {
+  can::Signal signal = read_servo(table);
+  table.read_whole("id", signal.id, 0, 0x1FFFFFFF);
+  table.read_whole("id_mask", signal.id_mask, 0, 0x1FFFFFFF);
+  table.read("extended", signal.extended);
+  table.read_whole("start_bit", signal.start_bit, 0, 255);
+  table.read_whole("length", signal.length, 1, 64);
+  signal.order = read_byte_order(table, signal.order);
+  table.read("signed", signal.is_signed);
+  table.read("float", signal.is_float);
+  table.read("scale", signal.scale, {-farthest_rad, farthest_rad});
+  table.read("offset", signal.offset, {-farthest_rad, farthest_rad});
+  table.done();
+  if (signal.scale == 0.0) table.refuse("scale", "is 0; expected radians a count");
+  if (signal.is_float && signal.length != 32) table.refuse("length", "does not fit; expected 32 for a float");
+  if (!can::valid(signal)) table.refuse("id", "is too large; expected 11 bits (0x7FF), or 29 and extended = true");
+  robot.tilt_signal = signal;
+}
+
+}  // namespace curbline::tools

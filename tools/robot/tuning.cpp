@@ -1,0 +1,53 @@
+#include "robot/parts.hpp"
+
+namespace curbline::tools {
+namespace {
+
+void read_segmentation(RobotTable table, SegmentationSettings& segmentation) {
+  table.read("cell_degrees", segmentation.cell.degrees, {0.1, 1000.0});
+  table.read("cell_variance_m2", segmentation.cell.variance_m2, {1e-8, 1.0});
+  table.read("leaf_scale", segmentation.leaf_scale, {1e-3, 1e6});
+  table.read_whole("link_reach", segmentation.link_reach, 1, 64);
+  table.done();
+}
+
+void read_planes(RobotTable table, PlaneSettings& planes) {
+  table.read("noise_m2", planes.prior.noise_m2, {1e-8, 1.0});
+  table.read("degrees", planes.prior.degrees, {1.001, 1000.0});
+  table.read("min_sd_m", planes.min_sd_m, {1e-4, 1.0});
+  table.read("min_cells", planes.min_cells, {3.0, 1e6});
+  std::string update = planes.update == PlaneUpdate::regions ? "regions" : "responsibilities";
+  table.read("update", update);
+  if (update != "regions" && update != "responsibilities") {
+    table.refuse("update", "is \"" + update + "\"; expected regions or responsibilities");
+  }
+  planes.update = update == "regions" ? PlaneUpdate::regions : PlaneUpdate::responsibilities;
+  table.done();
+}
+
+void read_labels(RobotTable table, LabelSettings& labels) {
+  table.read("coupling", labels.coupling, {0.01, 7.9});
+  table.read("cell_sd_m", labels.cell_sd_m, {0.0, 1.0});
+  table.read_whole("link_reach", labels.link_reach, 1, 64);
+  table.read_whole("refresh_rows", labels.refresh_rows, 0, 512);
+  table.read_whole("max_messages", labels.max_messages, 4, 100'000'000);
+  table.done();
+}
+
+void read_curbs(RobotTable table, CurbSettings& curbs) {
+  table.read_whole("link_reach", curbs.link_reach, 1, 64);
+  table.read("max_roughness_m", curbs.max_roughness_m, {1e-3, 1.0});
+  table.done();
+}
+
+}  // namespace
+
+void read_tuning(RobotTable table, Robot& robot) {
+  read_segmentation(table.table("segmentation"), robot.segmentation);
+  read_planes(table.table("planes"), robot.planes);
+  read_labels(table.table("labels"), robot.labels);
+  read_curbs(table.table("curbs"), robot.curbs);
+  table.done();
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,94 @@
+#include "simulator/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace curbline::tools {
+namespace {
+
+constexpr double touch_m = 1e-6;  // nearer, two corners are one
+constexpr double aside_m = 1e-5;  // how far to either side of an edge its regions are looked up
+
+struct Edge {
+  Point2 a, b;
+  double length_m() const { return std::hypot(b.x - a.x, b.y - a.y); }
+  Point2 at(double t) const { return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}; }
+};
+
+std::vector<Edge> edges_of(const Polygon& outline) {
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    edges.push_back({outline[i], outline[(i + 1) % outline.size()]});
+  }
+  return edges;
+}
+
+/// Notes where along `edge`, 0 to 1, the other edge crosses it, and where its ends touch it.
+void note_meetings(const Edge& edge, const Edge& other, std::vector<double>& cuts) {
+  const double length = edge.length_m();
+  const double ux = (edge.b.x - edge.a.x) / length, uy = (edge.b.y - edge.a.y) / length;
+  const auto along = [&](Point2 p) { return (p.x - edge.a.x) * ux + (p.y - edge.a.y) * uy; };
+  const auto aside = [&](Point2 p) { return (p.y - edge.a.y) * ux - (p.x - edge.a.x) * uy; };
+  const double left_a = aside(other.a), left_b = aside(other.b);
+  const auto note = [&](double distance_m) {
+    if (distance_m > touch_m && distance_m < length - touch_m) {
+      cuts.push_back(distance_m / length);
+    }
+  };
+  if (std::abs(left_a) < touch_m) note(along(other.a));
+  if (std::abs(left_b) < touch_m) note(along(other.b));
+  if ((left_a > 0) != (left_b > 0)) {
+    note(along(other.at(left_a / (left_a - left_b))));
+  }
+}
+
+/// Where the edge must be cut so that each piece has one region on either side.
+std::vector<double> cuts_of(const Edge& edge, const std::vector<std::vector<Edge>>& all, std::size_t own) {
+  std::vector<double> cuts{0, 1};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k != own) {
+      for (const Edge& other : all[k]) note_meetings(edge, other, cuts);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  const double near = touch_m / edge.length_m();
+  cuts.erase(std::unique(cuts.begin(), cuts.end(), [near](double a, double b) { return b - a < near; }), cuts.end());
+  cuts.back() = 1;
+  return cuts;
+}
+
+}  // namespace
+
+// A visible piece between two regions lies on an edge of the later one: were it on an edge of the earlier one only, the
+// later one would cover both sides. So each piece is found once, where the upper of its regions is the edge's own.
+std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& regions) {
+  std::vector<std::vector<Edge>> all;
+  for (const GroundRegion& region : regions) {
+    all.push_back(edges_of(region.outline));
+  }
+  std::vector<Boundary> out;
+  for (std::size_t own = 0; own < regions.size(); ++own) {
+    for (const Edge& edge : all[own]) {
+      const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
+      const double ny = (edge.b.x - edge.a.x) / edge.length_m() * aside_m;
+      const std::vector<double> cuts = cuts_of(edge, all, own);
+      bool goes_on = false;
+      for (std::size_t i = 1; i < cuts.size(); ++i) {
+        const Point2 middle = edge.at((cuts[i - 1] + cuts[i]) / 2);
+        const int left = region_at(regions, {middle.x + nx, middle.y + ny});
+        const int right = region_at(regions, {middle.x - nx, middle.y - ny});
+        const bool visible = left != right && std::max(left, right) == static_cast<int>(own);
+        if (visible && goes_on && out.back().left == left && out.back().right == right) {
+          out.back().to = edge.at(cuts[i]);
+        } else if (visible) {
+          out.push_back({edge.at(cuts[i - 1]), edge.at(cuts[i]), left, right});
+        }
+        goes_on = visible;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,18 @@
+// Where two regions of the ground meet, as seen from above: the vertical faces that the laser hits, and the true curbs.
+#pragma once
+
+#include "simulator/scene.hpp"
+
+namespace curbline::tools {
+
+/// A straight piece between two regions. Left and right are as seen when going from `from` to `to`; -1 is the void.
+struct Boundary {
+  Point2 from, to;
+  int left = -1, right = -1;
+};
+
+/// Every visible piece once, as long as its edge and its neighbours allow. O(edges^2). Strips narrower than 20 um are
+/// overlooked.
+std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& regions);
+
+}  // namespace curbline::tools

@@ -1,0 +1,63 @@
+#include "simulator/scene.hpp"
+
+#include "formats/bad_input.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace curbline::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The source tree's scenes, and those that were installed beside the program.
+std::vector<fs::path> scene_folders() {
+  std::vector<fs::path> folders{CURBLINE_SCENES};
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (!failed) {
+    folders.push_back(program.parent_path().parent_path() / "share/curbline/scenes");
+  }
+  return folders;
+}
+
+}  // namespace
+
+std::vector<std::string> shipped_scenes() {
+  std::set<std::string> names;
+  for (const fs::path& folder : scene_folders()) {
+    std::error_code failed;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+      if (entry.path().extension() == ".toml") {
+        names.insert(entry.path().stem().string());
+      }
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+Scene find_scene(const std::string& name_or_path) {
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
+    return read_scene(name_or_path);
+  }
+  for (const fs::path& folder : scene_folders()) {
+    const fs::path file = folder / (name_or_path + ".toml");
+    if (fs::exists(file)) {
+      return read_scene(file.string());
+    }
+  }
+  std::string known;
+  for (const std::string& name : shipped_scenes()) {
+    known += " " + name;
+  }
+  throw BadInput("no scene '" + name_or_path + "'; expected a file or one of:" + known);
+}
+
+int region_at(const std::vector<GroundRegion>& regions, Point2 p) {
+  const auto top =
+      std::find_if(regions.rbegin(), regions.rend(), [p](const GroundRegion& region) { return region.holds(p); });
+  return static_cast<int>(regions.rend() - top) - 1;
+}
+
+}  // namespace curbline::tools

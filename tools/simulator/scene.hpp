@@ -1,0 +1,71 @@
+// A scene: the ground as planes over polygons, obstacles that stand or move on it, and where the robot goes. Read from
+// a TOML file (tools/scenes/README.md lists the keys); metres, radians, seconds, z up.
+//
+// The ground is the height of the last region that holds a point; a point in none is void and returns no beam. Where
+// two regions meet at different heights, a vertical face joins them. Obstacles are upright prisms.
+#pragma once
+
+#include "simulator/polygon.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace curbline::tools {
+
+/// z = z0 + sx x + sy y.
+struct SurfacePlane {
+  double z0_m = 0, sx = 0, sy = 0;
+  double height_m(Point2 p) const { return z0_m + sx * p.x + sy * p.y; }
+};
+
+/// A part of the ground. Without an outline it lies everywhere.
+struct GroundRegion {
+  std::string name;
+  Polygon outline;
+  SurfacePlane plane;
+  bool holds(Point2 p) const { return outline.empty() || contains(outline, p); }
+};
+
+/// An upright prism: box, wall, post, person, car.
+struct Obstacle {
+  std::string name;
+  Polygon outline;  ///< footprint at time 0: convex, counterclockwise
+  double height_m = 1;
+  std::optional<double> base_m;  ///< z of its underside; without, it stands on the ground under its centre
+  Point2 velocity_m_s;
+  bool moves() const { return velocity_m_s.x != 0 || velocity_m_s.y != 0; }
+};
+
+/// One way point is a robot that stands. Otherwise it drives the legs in turn and turns on the spot between them.
+struct RobotPath {
+  std::vector<Point2> waypoints{{0, 0}};
+  double yaw_rad = 0;  ///< of a robot that stands
+  double speed_m_s = 1;
+  double turn_rate_rad_s = 0.6;
+  bool follows_terrain = false;  ///< true: pitch and roll are the ground's; false: the base stays level
+  bool stands() const { return waypoints.size() == 1; }
+};
+
+struct Scene {
+  std::string file;    ///< where it was read from, for messages
+  std::string source;  ///< its text, to be copied beside what is simulated
+  std::vector<GroundRegion> regions;
+  std::vector<Obstacle> obstacles;
+  RobotPath path;
+};
+
+/// Reads a scene file. Throws BadInput with file, line and key: an unknown key, a wrong type, a polygon that crosses
+/// itself.
+Scene read_scene(const std::string& path);
+
+/// The same for a file (a name with '/' or ending in .toml) or the name of a scene that ships.
+Scene find_scene(const std::string& name_or_path);
+
+/// Names of the scenes that ship, sorted.
+std::vector<std::string> shipped_scenes();
+
+/// Index of the region on top there, or -1 in the void. O(corners).
+int region_at(const std::vector<GroundRegion>& regions, Point2 p);
+
+}  // namespace curbline::tools

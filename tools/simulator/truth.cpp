@@ -1,0 +1,131 @@
+#include "simulator/truth.hpp"
+
+#include "simulator/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace curbline::tools {
+namespace {
+
+constexpr double step_m = 0.01;  // less at both ends is a crease
+constexpr double margin_m = 10;
+
+bool same(const SurfacePlane& a, const SurfacePlane& b) {
+  return std::abs(a.z0_m - b.z0_m) < 1e-9 && std::abs(a.sx - b.sx) < 1e-9 && std::abs(a.sy - b.sy) < 1e-9;
+}
+
+int plane_index(const GroundRegion& region, std::vector<TruthPlane>& planes) {
+  const auto found =
+      std::find_if(planes.begin(), planes.end(), [&](const TruthPlane& p) { return same(p.plane, region.plane); });
+  const auto index = static_cast<int>(found - planes.begin());
+  if (found == planes.end()) {
+    planes.push_back({region.name, region.plane});
+  }
+  return index;
+}
+
+TruthCurb curb_between(Point2 from, Point2 to, const SurfacePlane& left, const SurfacePlane& right) {
+  TruthCurb curb;
+  curb.from = from;
+  curb.to = to;
+  curb.from_step_m = left.height_m(from) - right.height_m(from);
+  curb.to_step_m = left.height_m(to) - right.height_m(to);
+  const Point2 middle{(from.x + to.x) / 2, (from.y + to.y) / 2};
+  curb.left_z_m = left.height_m(middle);
+  curb.right_z_m = right.height_m(middle);
+  curb.height_m = std::abs(curb.left_z_m - curb.right_z_m);
+  curb.kind = std::max(std::abs(curb.from_step_m), std::abs(curb.to_step_m)) < step_m ? "crease" : "step";
+  return curb;
+}
+
+/// One curb, or two where the step changes its sign on the way.
+void append_curbs(const Boundary& piece, const SurfacePlane& left, const SurfacePlane& right,
+                  std::vector<TruthCurb>& out) {
+  const TruthCurb whole = curb_between(piece.from, piece.to, left, right);
+  if (whole.from_step_m * whole.to_step_m >= 0) {
+    out.push_back(whole);
+    return;
+  }
+  const double t = whole.from_step_m / (whole.from_step_m - whole.to_step_m);
+  const Point2 level{piece.from.x + t * (piece.to.x - piece.from.x), piece.from.y + t * (piece.to.y - piece.from.y)};
+  out.push_back(curb_between(piece.from, level, left, right));
+  out.push_back(curb_between(level, piece.to, left, right));
+}
+
+/// A rectangle about everything that has an outline.
+Polygon about_all(const Truth& truth) {
+  Polygon corners{{0, 0}};
+  for (const TruthRegion& region : truth.regions) {
+    corners.insert(corners.end(), region.outline.begin(), region.outline.end());
+  }
+  const Bounds all = bounds(corners);
+  return rectangle({all.x0 - margin_m, all.y0 - margin_m}, {all.x1 + margin_m, all.y1 + margin_m});
+}
+
+}  // namespace
+
+int Truth::region_at(double x_m, double y_m) const {
+  for (std::size_t i = regions.size(); i-- > 0;) {
+    if (regions[i].outline.empty() || contains(regions[i].outline, {x_m, y_m})) {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+int Truth::plane_at(double x_m, double y_m) const {
+  const int region = region_at(x_m, y_m);
+  return region < 0 ? -1 : regions[static_cast<std::size_t>(region)].plane;
+}
+
+double Truth::terrain_height(double x_m, double y_m) const {
+  const int plane = plane_at(x_m, y_m);
+  return plane < 0 ? std::numeric_limits<double>::quiet_NaN()
+                   : planes[static_cast<std::size_t>(plane)].plane.height_m({x_m, y_m});
+}
+
+bool Truth::obstacle_at(double x_m, double y_m) const {
+  return std::any_of(obstacles.begin(), obstacles.end(), [&](const TruthObstacle& obstacle) {
+    return contains(obstacle.outline, {x_m, y_m});
+  });
+}
+
+Truth make_truth(const Scene& scene, double start_time_s) {
+  Truth truth;
+  truth.start_time_s = start_time_s;
+  for (const GroundRegion& region : scene.regions) {
+    truth.regions.push_back({region.name, region.outline, plane_index(region, truth.planes)});
+  }
+  for (const Boundary& piece : visible_boundaries(scene.regions)) {
+    if (piece.left < 0 || piece.right < 0) {
+      continue;
+    }
+    const SurfacePlane& left = scene.regions[static_cast<std::size_t>(piece.left)].plane;
+    const SurfacePlane& right = scene.regions[static_cast<std::size_t>(piece.right)].plane;
+    if (!same(left, right)) {
+      append_curbs(piece, left, right, truth.curbs);
+    }
+  }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (!obstacle.moves()) {
+      truth.obstacles.push_back({obstacle.name, obstacle.outline});
+    }
+  }
+  return truth;
+}
+
+std::vector<Region> drawn_regions(const Truth& truth) {
+  std::vector<Region> out;
+  for (auto region = truth.regions.rbegin(); region != truth.regions.rend(); ++region) {
+    Region drawn;
+    for (const Point2 p : region->outline.empty() ? about_all(truth) : region->outline) {
+      drawn.push_back({p.x, p.y});
+    }
+    out.push_back(drawn);
+  }
+  return out;
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,66 @@
+// What a simulated scene truly is, in the map frame of the simulated data: for scoring. Written as truth.json
+// beside the data.
+#pragma once
+
+#include "formats/regions.hpp"
+#include "simulator/scene.hpp"
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace curbline::tools {
+
+struct TruthPlane {
+  std::string name;  ///< of the first region that lies in it
+  SurfacePlane plane;
+};
+
+/// As drawn, without what later regions cover. Regions of one plane share its index.
+struct TruthRegion {
+  std::string name;
+  Polygon outline;  ///< empty: everywhere
+  int plane = 0;
+};
+
+/// A straight piece of the line between two planes; left and right as seen when going from `from` to `to`.
+struct TruthCurb {
+  Point2 from, to;
+  double from_step_m = 0, to_step_m = 0;  ///< left less right at each end; the sign is the same all along
+  double left_z_m = 0, right_z_m = 0;     ///< in the middle
+  double height_m = 0;                    ///< mean step, >= 0
+  std::string kind;                       ///< step: 1 cm or more at one end at least; crease: less
+};
+
+/// Where an obstacle stands from beginning to end, and the ground cannot be seen.
+struct TruthObstacle {
+  std::string name;
+  Polygon outline;
+};
+
+struct Truth {
+  double start_time_s = 0;
+  std::vector<TruthPlane> planes;
+  std::vector<TruthRegion> regions;  ///< a later one covers an earlier one
+  std::vector<TruthCurb> curbs;
+  std::vector<TruthObstacle> obstacles;
+
+  int region_at(double x_m, double y_m) const;          ///< index, or -1 in the void
+  int plane_at(double x_m, double y_m) const;           ///< index, or -1 in the void
+  double terrain_height(double x_m, double y_m) const;  ///< metres; NaN in the void
+  bool obstacle_at(double x_m, double y_m) const;
+};
+
+/// Of a scene in its map frame (in_map_frame).
+Truth make_truth(const Scene& scene, double start_time_s);
+
+void write_truth(std::ostream& out, const Truth& truth);
+
+/// The polygons for regions.gt, the topmost first: a point lies in the first that holds it. A region that lies
+/// everywhere is drawn 10 m beyond all others.
+std::vector<Region> drawn_regions(const Truth& truth);
+
+/// Reads DIR/truth.json. Throws BadInput if it is missing or not as written.
+Truth read_truth(const std::string& dir);
+
+}  // namespace curbline::tools
