@@ -29,7 +29,7 @@ class LabelField {
     std::array<float, candidates> probability;   ///< sums to 1
   };
 
-  void init(const LabelSettings& settings);
+  void init(const LabelSettings& settings, const PlanePrior& prior);
 
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = Site{}; }
@@ -64,6 +64,7 @@ class LabelField {
   static Logs normalised(const Site& site, const Logs& logs);
 
   LabelSettings settings_{};
+  float noise_m2_ = 0.0f;  ///< of a cell with one point of weight 1
   int band_ = 0;  ///< first row to refresh in the next update()
   std::array<float, 65> boost_{};  ///< exp(J / distance) - 1
   std::array<Site, Dem<limits>::capacity> sites_{};
@@ -71,8 +72,9 @@ class LabelField {
 };
 
 template <Limits limits>
-void LabelField<limits>::init(const LabelSettings& settings) {
+void LabelField<limits>::init(const LabelSettings& settings, const PlanePrior& prior) {
   settings_ = settings;
+  noise_m2_ = prior.noise_m2;
   sites_.fill(Site{});
   flag_.fill(quiet);
   band_ = 0;
@@ -148,7 +150,7 @@ template <Limits limits>
 void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, Site& site) {
   const Cell& cell = dem.cell(dem.slot(i, j));
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
-  const float cell_variance = settings_.cell_sd_m * settings_.cell_sd_m / cell.weight;
+  const float cell_variance = noise_m2_ / cell.weight;
   Logs best{};
   std::array<LabelType, candidates> label{none, none, none};
   for (int k = 0; k < limits.planes; ++k) {

@@ -22,7 +22,7 @@ struct PlanePrior {
   float noise_m2 = 0.01f * 0.01f;  ///< expected noise of a point of weight 1: repeatability of the range-finder
   float texture_m2 = 0.005f * 0.005f;  ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
   float degrees = 2.0f;            ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
-  float common_share = 0.5f;       ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0, 1]
+  float common_share = 0.5f;       ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
 };
 // The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
 
@@ -50,7 +50,8 @@ struct Plane {
   }
 };
 
-/// Posterior mean of the plane and mean square residual, not below floor_m2. `cells`: how many cells the moments span.
-Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior, float floor_m2);
+/// Posterior mean of the plane and mean square residual, not below what the points of a cell share of the expected noise:
+/// averaging over a cell does not help against that. `cells`: how many cells the moments span.
+Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior);
 
 }  // namespace curbline

@@ -123,7 +123,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const Segmentation<lim
     const auto cells = static_cast<float>(largest_[n].cells);
     cells_ += cells;
     if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label_of_rank_[n]]) continue;
-    plane = fit_plane(moments_[n], cells, settings_.prior, settings_.min_sd_m * settings_.min_sd_m);
+    plane = fit_plane(moments_[n], cells, settings_.prior);
   }
 
   for_each_cell([&](int, int, int s) {
@@ -224,7 +224,7 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
     if (!planes_[l].alive() || cells[l] < 3.0f) continue;
-    planes_[l] = fit_plane(moments_[l], cells[l], settings_.prior, settings_.min_sd_m * settings_.min_sd_m);
+    planes_[l] = fit_plane(moments_[l], cells[l], settings_.prior);
   }
 }
 

@@ -76,15 +76,13 @@ enum class PlaneUpdate : unsigned char {
 };
 
 struct PlaneSettings {
-  PlanePrior prior{};
-  float min_sd_m = 0.005f;   ///< no plane is known better than this: flatness of pavement, resolution of the range
+  PlanePrior prior{};        ///< no plane is known better than the part of the noise that the points of a cell share
   float min_cells = 8.0f;    ///< regions below are not planes: eight cells are the least that a 2 x 4 strip has
   PlaneUpdate update = PlaneUpdate::regions;
 };
 
 struct LabelSettings {
   float coupling = 3.0f;       ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
-  float cell_sd_m = 0.005f;    ///< of a cell's one point about its true mean: footprint and roughness
   int link_reach = 10;         ///< as SegmentationSettings; the coupling falls as 1 / distance
   int refresh_rows = 2;        ///< rows of the window that every line visits in turn, touched or not, >= 0
   int max_messages = 2400;     ///< a call; what is left over waits for the next, >= 4

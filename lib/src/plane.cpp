@@ -54,7 +54,7 @@ float log_evidence(const PlaneMoments& m, const PlanePrior& prior) {
   return noise_term - 0.5f * log(volume) + 0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees);
 }
 
-Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior, float floor_m2) {
+Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   const Slopes slopes = solve(m, prior.noise_m2);
   const float per_cell = m.weight / cells / slopes.determinant;  // positions weigh by points; one cell is one observation
   Plane plane;
@@ -64,6 +64,7 @@ Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior, flo
   plane.slope_x = slopes.x;
   plane.slope_y = slopes.y;
   const float mean_square = slopes.residual_m2 / m.weight;
+  const float floor_m2 = prior.common_share * prior.noise_m2;
   plane.variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
   plane.cells = cells;
   plane.pxx = (m.yy + prior.noise_m2) * per_cell;

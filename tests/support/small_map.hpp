@@ -43,7 +43,7 @@ struct Stages {
     dem.init(s.window, s.planes.prior, 0.0f, 0.0f);
     segmentation.init(s.segmentation, s.planes.prior);
     mixture.init(s.planes);
-    field.init(s.labels);
+    field.init(s.labels, s.planes.prior);
     tracer.init(s.curbs);
   }
   void segment() { segmentation.update(dem, counters); }

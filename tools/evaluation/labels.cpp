@@ -82,7 +82,7 @@ double prediction_rmse(const Map& trained, const Map& other) {
       const MapCell& seen = other.cells[grid.at(i, j)];
       const MapPlane* plane = cell.points > 0 && seen.points > 0 ? plane_of(trained, cell.label) : nullptr;
       if (plane == nullptr) continue;
-      const double error = seen.height_m - (plane->z0_m + plane->sx * grid.x_m(i) + plane->sy * grid.y_m(j));
+      const double error = seen.height_m - (plane->z0_m + plane->sx * seen.x_m + plane->sy * seen.y_m);
       squares += error * error;
       ++cells;
     }

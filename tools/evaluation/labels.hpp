@@ -22,7 +22,7 @@ std::vector<int> regions_of_cells(const Grid& grid, std::span<const Region> regi
 /// V-measure over the valid cells that lie in a region; a cell without a label counts as one label of its own.
 double v_measure(const Map& map, std::span<const int> region_of_cell);
 
-/// The paper's RMSE of prediction: another map's cell heights by the planes of this map's labels, over the cells that are valid
+/// The paper's RMSE of prediction: another map's cell heights, at the centroids of its points, by the planes of this map's labels, over the cells that are valid
 /// in both and bear a label with a plane. NaN if there are none. Both maps on one grid.
 double prediction_rmse(const Map& trained, const Map& other);
 

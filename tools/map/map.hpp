@@ -20,6 +20,7 @@ struct Grid {
 };
 
 struct MapCell {
+  double x_m = 0, y_m = 0; ///< centroid of its points, or its centre
   double height_m = 0;     ///< mean height
   double variance_m2 = 0;  ///< of the cell's posterior
   int points = 0;          ///< 0: the cell is invalid and every other field means nothing

@@ -49,7 +49,8 @@ void colour_bar(cairo_t* cr, const Range& range, const Box& box) {
   set_font(cr, 12);
   for (int k = 0; k <= 4; ++k) {
     char words[32];
-    std::snprintf(words, sizeof words, "%.2f m", range.low + k / 4.0 * (range.high - range.low));
+    const double z = range.low + k / 4.0 * (range.high - range.low);
+    std::snprintf(words, sizeof words, "%.2f m", std::abs(z) < 0.005 ? 0.0 : z);
     text(cr, words, box.x + box.width + 6, box.y + box.height * (1 - k / 4.0) + 4);
   }
 }

@@ -59,7 +59,8 @@ Map to_map(const Dem& dem, const Labelling& labelling, const std::vector<Mixture
   map.cells.resize(dem.grid.cells());
   for (std::size_t v = 0; v < dem.valid.size(); ++v) {
     const DemCell& cell = dem.cell(v);
-    map.cells[dem.valid[v]] = {cell.height_m, cell.variance_m2(), cell.points, labelling.label[v], labelling.probability[v]};
+    const auto phi = dem.phi(v);
+    map.cells[dem.valid[v]] = {dem.grid.x0_m + phi[1], dem.grid.y0_m + phi[2], cell.height_m, cell.variance_m2(), cell.points, labelling.label[v], labelling.probability[v]};
   }
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const Eigen::Vector3d& w = planes[k].w;

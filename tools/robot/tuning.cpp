@@ -13,8 +13,9 @@ void read_segmentation(RobotTable table, SegmentationSettings& segmentation) {
 
 void read_planes(RobotTable table, PlaneSettings& planes) {
   table.read("noise_m2", planes.prior.noise_m2, {1e-8, 1.0});
+  table.read("texture_m2", planes.prior.texture_m2, {0.0, 1.0});
+  table.read("common_share", planes.prior.common_share, {0.01, 1.0});
   table.read("degrees", planes.prior.degrees, {1.001, 1000.0});
-  table.read("min_sd_m", planes.min_sd_m, {1e-4, 1.0});
   table.read("min_cells", planes.min_cells, {3.0, 1e6});
   std::string update = planes.update == PlaneUpdate::regions ? "regions" : "responsibilities";
   table.read("update", update);
@@ -27,7 +28,6 @@ void read_planes(RobotTable table, PlaneSettings& planes) {
 
 void read_labels(RobotTable table, LabelSettings& labels) {
   table.read("coupling", labels.coupling, {0.01, 7.9});
-  table.read("cell_sd_m", labels.cell_sd_m, {0.0, 1.0});
   table.read_whole("link_reach", labels.link_reach, 1, 64);
   table.read_whole("refresh_rows", labels.refresh_rows, 0, 512);
   table.read_whole("max_messages", labels.max_messages, 4, 100'000'000);

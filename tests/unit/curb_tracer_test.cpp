@@ -1,0 +1,233 @@
+// Curbs from labels: where they lie, how high they are, which way they go, and what is not one.
+#include "curbline/curb_tracer.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::fill;
+using test::Noise;
+using test::small_settings;
+using test::Stages;
+
+/// A window with this ground, labelled and traced from the robot's place.
+template <Limits limits = test::small_limits, typename Height>
+std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f, float robot_y_m = 0.0f, const Settings& settings = small_settings()) {
+  auto stages = std::make_unique<Stages<limits>>(settings);
+  fill(stages->dem, height_m);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace(robot_x_m, robot_y_m);
+  return stages;
+}
+
+double length_m(const Curb& c) { return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m); }
+
+double total_length_m(std::span<const Curb> curbs) {
+  double sum = 0.0;
+  for (const Curb& c : curbs) sum += length_m(c);
+  return sum;
+}
+
+double up(double x, double) { return x < 1.4 ? 0.0 : 0.12; }
+
+TEST_CASE("curb tracer: a step is one piece with its place, height and direction") {
+  const auto stages = traced(up);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.kind == CurbKind::step_up);
+  CHECK(curb.height_m == Approx(0.12).margin(4 * curb.height_sd_m));
+  CHECK(curb.height_sd_m > 0.0f);
+  CHECK(curb.height_sd_m < 0.002f);
+  CHECK(curb.x0_m == Approx(1.4).margin(0.01));
+  CHECK(curb.x1_m == Approx(1.4).margin(0.01));
+  CHECK(length_m(curb) == Approx(2.4).margin(0.02));
+  CHECK(curb.probability > 0.99f);
+  CHECK(curb.near_label == stages->label_at(0, 0));
+  CHECK(curb.far_label == stages->label_at(23, 0));
+}
+
+TEST_CASE("curb tracer: seen from above the same step goes down") {
+  const auto stages = traced(up, 2.3f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.kind == CurbKind::step_down);
+  CHECK(curb.height_m == Approx(-0.12).margin(4 * curb.height_sd_m));
+  CHECK(curb.near_label == stages->label_at(23, 0));
+}
+
+TEST_CASE("curb tracer: a step across y is found as well as one across x") {
+  const auto stages = traced([](double, double y) { return y < 1.0 ? 0.12 : 0.0; });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.kind == CurbKind::step_down);
+  CHECK(curb.y0_m == Approx(1.0).margin(0.01));
+  CHECK(curb.y1_m == Approx(1.0).margin(0.01));
+}
+
+TEST_CASE("curb tracer: an oblique step is straight and within half a cell") {
+  const double turn = GENERATE(0.3, 0.7, 1.2);
+  const double nx = std::cos(turn), ny = std::sin(turn);
+  const auto stages = traced([&](double x, double y) { return nx * (x - 1.2) + ny * (y - 1.2) < 0.0 ? 0.0 : 0.12; });
+  double length = 0.0;
+  for (const Curb& curb : stages->tracer.curbs()) {
+    CHECK(std::abs(nx * (curb.x0_m - 1.2) + ny * (curb.y0_m - 1.2)) < 0.05);
+    CHECK(std::abs(nx * (curb.x1_m - 1.2) + ny * (curb.y1_m - 1.2)) < 0.05);
+    length += length_m(curb);
+  }
+  CHECK(stages->tracer.curbs().size() <= 2);
+  CHECK(length == Approx(2.4 / std::max(nx, ny)).margin(0.2));
+}
+
+TEST_CASE("curb tracer: in the map frame a curb lies where it is, wherever the window is") {
+  Settings settings = small_settings();
+  settings.window.origin_x_m = -10.0f;
+  settings.window.origin_y_m = 30.0f;
+  const auto stages = traced([](double x, double) { return x < -9.0 ? 0.0 : 0.12; }, 0.5f, 1.2f, settings);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].x0_m == Approx(-9.0).margin(0.01));
+  CHECK(std::min(stages->tracer.curbs()[0].y0_m, stages->tracer.curbs()[0].y1_m) == Approx(30.0).margin(0.01));
+}
+
+TEST_CASE("curb tracer: slopes that meet are a crease, not a step") {
+  const auto stages = traced([](double x, double) { return x < 1.2 ? 0.0 : 0.3 * (x - 1.2); });
+  REQUIRE_FALSE(stages->tracer.curbs().empty());
+  for (const Curb& curb : stages->tracer.curbs()) {
+    CHECK(curb.kind == CurbKind::crease);
+    CHECK(std::abs(curb.height_m) < 0.02f);
+    CHECK(curb.x0_m == Approx(1.2).margin(0.1));
+  }
+}
+
+TEST_CASE("curb tracer: one plane has no curb") {
+  CHECK(traced([](double x, double y) { return 0.1 * x + 0.05 * y; })->tracer.curbs().empty());
+}
+
+TEST_CASE("curb tracer: a curved border becomes several pieces along the curve") {
+  // A corner with a radius of 1.4 m about (2.4, 2.4).
+  const auto radius = [](double x, double y) { return std::hypot(x - 2.4, y - 2.4); };
+  const auto stages = traced([&](double x, double y) { return radius(x, y) < 1.4 ? 0.12 : 0.0; });
+  CHECK(stages->tracer.curbs().size() >= 2);
+  for (const Curb& curb : stages->tracer.curbs()) {
+    // A cell for cutting the chain, half a cell for the border.
+    CHECK(radius(curb.x0_m, curb.y0_m) == Approx(1.4).margin(0.15));
+    CHECK(radius(0.5 * (curb.x0_m + curb.x1_m), 0.5 * (curb.y0_m + curb.y1_m)) == Approx(1.4).margin(0.15));
+    CHECK(curb.kind == CurbKind::step_up);
+  }
+  CHECK(total_length_m(stages->tracer.curbs()) == Approx(1.4 * 1.5708).epsilon(0.15));
+}
+
+TEST_CASE("curb tracer: a curb's face is looked through and the full step told") {
+  const int width = GENERATE(1, 2);  // cells whose height lies between
+  const double x0 = 1.0, x1 = 1.0 + 0.1 * width;
+  const auto stages = traced([&](double x, double) { return x < x0 ? 0.0 : x < x1 ? 0.07 : 0.14; });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.height_m == Approx(0.14).margin(4 * curb.height_sd_m + 0.002));
+  CHECK(curb.x0_m == Approx(0.5 * (x0 + x1)).margin(0.02));
+  CHECK(curb.kind == CurbKind::step_up);
+}
+
+TEST_CASE("curb tracer: a step of three cells' width is two curbs") {
+  const auto stages = traced([](double x, double) { return x < 1.0 ? 0.0 : x < 1.3 ? 0.07 : 0.14; });
+  REQUIRE(stages->tracer.curbs().size() == 2);
+  for (const Curb& curb : stages->tracer.curbs()) CHECK(curb.height_m == Approx(0.07).margin(4 * curb.height_sd_m));
+}
+
+TEST_CASE("curb tracer: clutter makes no curb, the ground beside it does") {
+  // A bush of 30 cm between the street and a step.
+  Noise noise;
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [&](double x, double y) { return x < 0.8 ? 0.0 : y < 1.2 ? 0.3 * noise.uniform() : 0.12; });
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace();
+  REQUIRE_FALSE(stages->tracer.curbs().empty());
+  for (const Curb& curb : stages->tracer.curbs()) {
+    CHECK(std::max(curb.y0_m, curb.y1_m) > 1.1f);
+    CHECK(curb.height_m == Approx(0.12).margin(0.02));
+  }
+}
+
+TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across a wider one") {
+  const int gap = GENERATE(4, 5);  // cells without points; the reach is 5 cells
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  for (const Point& p : test::sample({0, 1, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.0; })) stages->dem.add(p);
+  for (const Point& p : test::sample({1 + 0.1 * gap, 2.4, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.12; })) stages->dem.add(p);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace();
+  if (gap == 5) {
+    CHECK(stages->tracer.curbs().empty());
+  } else {
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].x0_m == Approx(1.2).margin(0.01));
+    CHECK(stages->tracer.curbs()[0].height_m == Approx(0.12).margin(4 * stages->tracer.curbs()[0].height_sd_m));
+  }
+}
+
+TEST_CASE("curb tracer: the stated deviation of a height is no smaller than repeated maps show") {
+  std::vector<double> heights;
+  double stated = 0.0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise(seed);
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, 0.008, noise, up)) stages->dem.add(p);
+    for (int pass = 0; pass < 2; ++pass) stages->infer(true);
+    stages->trace();
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    heights.push_back(stages->tracer.curbs()[0].height_m);
+    stated += stages->tracer.curbs()[0].height_sd_m / 40.0;
+  }
+  double sum2 = 0.0;
+  for (const double h : heights) sum2 += (h - 0.12) * (h - 0.12);
+  CHECK(stated > 0.8 * std::sqrt(sum2 / 40.0));
+}
+
+TEST_CASE("curb tracer: full stores refuse and count") {
+  constexpr Limits few{.rows = 24, .cols = 24, .planes = 6, .borders = 30, .curbs = 1};
+  const auto stages = traced<few>([](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.3; });
+  CHECK(stages->tracer.curbs().size() == 1);
+  CHECK(stages->counters.borders_full == 48 - 30);
+  CHECK(stages->counters.curbs_full > 0);
+}
+
+TEST_CASE("curb tracer: each kind has a word of its own") {
+  CHECK(std::string(to_string(CurbKind::step_up)) == "step_up");
+  CHECK(std::string(to_string(CurbKind::step_down)) == "step_down");
+  CHECK(std::string(to_string(CurbKind::crease)) == "crease");
+}
+
+TEST_CASE("line fit: a line through points lies within them, whatever its direction") {
+  const double turn = GENERATE(0.0, 0.5, 1.5707963, 2.0, 3.0);
+  LineFit fit;
+  const double ux = std::cos(turn), uy = std::sin(turn);
+  for (int k = -5; k <= 5; ++k) {
+    const double off = k % 2 == 0 ? 0.01 : -0.01;
+    fit.add(static_cast<float>(3.0 + 0.1 * k * ux - off * uy), static_cast<float>(-1.0 + 0.1 * k * uy + off * ux));
+  }
+  const auto s = fit.segment(static_cast<float>(3.0 - 0.5 * ux), static_cast<float>(-1.0 - 0.5 * uy), static_cast<float>(3.0 + 0.5 * ux),
+                             static_cast<float>(-1.0 + 0.5 * uy), 0.05f);
+  CHECK(s.x0_m == Approx(3.0 - 0.55 * ux).margin(0.005));
+  CHECK(s.y0_m == Approx(-1.0 - 0.55 * uy).margin(0.005));
+  CHECK(s.x1_m == Approx(3.0 + 0.55 * ux).margin(0.005));
+  CHECK(s.y1_m == Approx(-1.0 + 0.55 * uy).margin(0.005));
+  CHECK(std::abs(s.normal_x * ux + s.normal_y * uy) < 0.01);
+}
+
+TEST_CASE("line fit: points in one place have no direction and stay that place") {
+  LineFit fit;
+  for (int k = 0; k < 3; ++k) fit.add(1.0f, 2.0f);
+  const auto s = fit.segment(1.0f, 2.0f, 1.0f, 2.0f, 0.05f);
+  CHECK(s.x0_m == 1.0f);
+  CHECK(s.y1_m == 2.0f);
+}
+
+}  // namespace
+}  // namespace curbline

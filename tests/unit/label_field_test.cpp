@@ -1,0 +1,268 @@
+// Beliefs against the Potts field enumerated in double, and what the field does over time: deferral, refreshing, settling.
+#include "curbline/label_field.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::fill;
+using test::Noise;
+using test::small_limits;
+using test::small_settings;
+using test::Stages;
+
+/// A cell of a tiny map by its place and height.
+struct Site {
+  int i, j;
+  double height_m;
+};
+
+/// Planes of 0, 8 and 4 cm, learned on a window of their own; the sites are a map of their own on which labels are inferred.
+struct Tiny {
+  explicit Tiny(const std::vector<Site>& all, const Settings& s = small_settings()) : sites(all), settings(s), training(s) {
+    fill(training.dem, [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.08 : 0.04; }, 0.005);
+    training.segment();
+    training.mix();
+    dem.init(settings.window, settings.planes.prior, 0.0f, 0.0f);
+    field.init(settings.labels, settings.planes.prior);
+    for (const Site& site : sites) {
+      dem.add({static_cast<float>(0.1 * site.i + 0.05), static_cast<float>(0.1 * site.j + 0.05), static_cast<float>(site.height_m), 1e-4f});
+    }
+  }
+  int update(bool all = true) { return field.update(dem, training.mixture, all, counters); }
+  const Plane& plane(int label) const { return training.mixture.plane(label); }
+
+  std::vector<Site> sites;
+  Settings settings;
+  Stages<> training;
+  Dem<small_limits> dem{};
+  LabelField<small_limits> field{};
+  Counters counters{};
+};
+
+/// Level of the plane that a label stands for.
+double height_of(const Tiny& tiny, int label) { return tiny.plane(label).z_m; }
+
+/// Student t with 6 degrees of freedom about the plane, up to a constant.
+double log_node(const Tiny& tiny, const Site& site, int label) {
+  const Plane& plane = tiny.plane(label);
+  const Cell& cell = tiny.dem.cell(tiny.dem.slot(site.i, site.j));
+  const double variance = static_cast<double>(plane.variance_m2 + tiny.settings.planes.prior.noise_m2 / cell.weight);
+  const double residual = site.height_m - static_cast<double>(plane.height_m(0.1f * static_cast<float>(site.i) + 0.05f, 0.1f * static_cast<float>(site.j) + 0.05f));
+  return -0.5 * std::log(variance) - 3.5 * std::log(1.0 + residual * residual / (6.0 * variance));
+}
+
+/// Marginals of the field by the sum over all labellings: [site][label].
+std::vector<std::array<double, 3>> marginals_by_enumeration(const Tiny& tiny) {
+  const auto n = tiny.sites.size();
+  struct Pair {
+    std::size_t a, b;
+    double coupling;
+  };
+  std::vector<Pair> pairs;
+  for_each_link(tiny.dem, tiny.settings.labels.link_reach, [&](const Link& link) {
+    const auto index = [&](std::size_t slot) {
+      return static_cast<std::size_t>(std::find_if(tiny.sites.begin(), tiny.sites.end(), [&](const Site& s) {
+                                        return static_cast<std::size_t>(tiny.dem.slot(s.i, s.j)) == slot;
+                                      }) - tiny.sites.begin());
+    };
+    pairs.push_back({index(link.from), index(link.to), static_cast<double>(tiny.settings.labels.coupling) / link.distance});
+  });
+  std::vector<std::array<double, 3>> node(n), marginal(n, {0.0, 0.0, 0.0});
+  for (std::size_t s = 0; s < n; ++s) {
+    for (std::size_t l = 0; l < 3; ++l) node[s][l] = log_node(tiny, tiny.sites[s], static_cast<int>(l));
+  }
+  double total = 0.0;
+  std::vector<std::size_t> label(n, 0);
+  for (;;) {
+    double log_weight = 0.0;
+    for (std::size_t s = 0; s < n; ++s) log_weight += node[s][label[s]];
+    for (const Pair& pair : pairs) log_weight += label[pair.a] == label[pair.b] ? pair.coupling : 0.0;
+    const double weight = std::exp(log_weight - 10.0 * static_cast<double>(n));
+    total += weight;
+    for (std::size_t s = 0; s < n; ++s) marginal[s][label[s]] += weight;
+    std::size_t s = 0;
+    while (s < n && ++label[s] == 3) label[s++] = 0;
+    if (s == n) break;
+  }
+  for (auto& m : marginal) {
+    for (double& p : m) p /= total;
+  }
+  return marginal;
+}
+
+/// Largest difference between the field's beliefs and the enumerated ones.
+double worst_difference(const Tiny& tiny) {
+  const auto truth = marginals_by_enumeration(tiny);
+  double worst = 0.0;
+  for (std::size_t s = 0; s < tiny.sites.size(); ++s) {
+    const auto belief = tiny.field.belief(tiny.dem, tiny.sites[s].i, tiny.sites[s].j);
+    double sum = 0.0;
+    for (std::size_t c = 0; c < belief.label.size(); ++c) {
+      REQUIRE(belief.label[c] < 3);
+      worst = std::max(worst, std::abs(static_cast<double>(belief.probability[c]) - truth[s][belief.label[c]]));
+      sum += static_cast<double>(belief.probability[c]);
+    }
+    CHECK(sum == Approx(1.0).margin(1e-5));
+  }
+  return worst;
+}
+
+// A message is kept to half of 1/32 nat. A belief sums at most four, each of which may carry half as much again from
+// further away: 0.09 nat, which moves a probability by a quarter of it at most.
+constexpr double quantisation = 0.09 / 4;
+
+TEST_CASE("label field: on a row of cells one pass gives the exact beliefs") {
+  const auto tiny = std::make_unique<Tiny>(
+      std::vector<Site>{{2, 5, 0.0}, {3, 5, 0.015}, {4, 5, 0.02}, {5, 5, 0.05}, {6, 5, 0.03}, {7, 5, 0.06}, {8, 5, 0.07}, {9, 5, 0.02}});
+  tiny->update();
+  CHECK(worst_difference(*tiny) < quantisation);
+}
+
+TEST_CASE("label field: on a column of cells one pass gives the exact beliefs") {
+  const auto tiny = std::make_unique<Tiny>(
+      std::vector<Site>{{5, 2, 0.0}, {5, 3, 0.015}, {5, 4, 0.02}, {5, 5, 0.05}, {5, 6, 0.03}, {5, 7, 0.06}, {5, 8, 0.07}, {5, 9, 0.02}});
+  tiny->update();
+  CHECK(worst_difference(*tiny) < quantisation);
+}
+
+TEST_CASE("label field: across gaps the coupling falls with the distance, and the beliefs stay exact") {
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{1, 5, 0.0}, {3, 5, 0.02}, {6, 5, 0.025}, {7, 5, 0.06}, {17, 5, 0.05}, {23, 5, 0.03}});
+  tiny->update();
+  CHECK(worst_difference(*tiny) < quantisation);
+}
+
+TEST_CASE("label field: on a tree a second pass gives the exact beliefs") {
+  const auto tiny = std::make_unique<Tiny>(
+      std::vector<Site>{{4, 4, 0.0}, {5, 4, 0.02}, {6, 4, 0.05}, {5, 5, 0.03}, {5, 6, 0.02}, {6, 6, 0.07}, {7, 6, 0.05}, {5, 3, 0.01}});
+  for (int pass = 0; pass < 3; ++pass) tiny->update();
+  CHECK(worst_difference(*tiny) < quantisation);
+}
+
+TEST_CASE("label field: an isolated wrong cell is outvoted by its neighbours") {
+  std::vector<Site> sites;
+  for (int i = 8; i < 13; ++i) {
+    for (int j = 8; j < 13; ++j) sites.push_back({i, j, i == 10 && j == 10 ? 0.023 : 0.0});
+  }
+  const auto alone = std::make_unique<Tiny>(std::vector<Site>{{10, 10, 0.023}});
+  alone->update();
+  const auto among = std::make_unique<Tiny>(sites);
+  for (int pass = 0; pass < 3; ++pass) among->update();
+  const auto label = [](const Tiny& tiny, int i, int j) { return tiny.field.label(tiny.dem.slot(i, j)); };
+  CHECK(height_of(*alone, label(*alone, 10, 10)) == Approx(0.04).margin(1e-3));
+  CHECK(label(*among, 10, 10) == label(*among, 8, 8));
+  CHECK(height_of(*among, label(*among, 10, 10)) == Approx(0.0).margin(1e-3));
+}
+
+TEST_CASE("label field: a height far from all planes is still given the nearest, with finite beliefs") {
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{5, 5, 1e6}, {6, 5, -1e6}});
+  tiny->update();
+  for (const int i : {5, 6}) {
+    const auto belief = tiny->field.belief(tiny->dem, i, 5);
+    for (const float p : belief.probability) CHECK(is_finite(p));
+    CHECK(tiny->field.label(tiny->dem.slot(i, 5)) != tiny->field.none);
+  }
+}
+
+TEST_CASE("label field: without planes no cell has a label") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  stages->dem.add({1.0f, 1.0f, 0.0f, 1e-4f});
+  stages->infer();
+  CHECK(stages->label_at(10, 10) == stages->field.none);
+}
+
+TEST_CASE("label field: with fewer planes than candidates the others are none, with probability nought") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer(true);
+  const auto belief = stages->field.belief(stages->dem, 3, 3);
+  CHECK(belief.label[2] == stages->field.none);
+  CHECK(belief.probability[2] == 0.0f);
+  CHECK(belief.probability[0] > 0.99f);
+}
+
+TEST_CASE("label field: a cell that left the window is forgotten") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double, double) { return 0.0; });
+  stages->infer(true);
+  REQUIRE(stages->label_at(4, 4) != stages->field.none);
+  stages->field.forget(stages->dem.slot(4, 4));
+  CHECK(stages->label_at(4, 4) == stages->field.none);
+}
+
+TEST_CASE("label field: a line that touches nothing costs the refreshing of its rows only") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer(true);
+  const auto before = stages->counters.messages;
+  stages->infer();
+  CHECK(stages->counters.messages - before == 4u * 2u * 24u);
+}
+
+TEST_CASE("label field: the budget of messages is kept, what waits is counted and catches up") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = 400;
+  const auto bounded = std::make_unique<Stages<>>(settings), free = std::make_unique<Stages<>>(small_settings());
+  for (auto* stages : {bounded.get(), free.get()}) {
+    fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+    stages->segment();
+    stages->mix();
+  }
+  free->label(true);
+  bounded->label(false);
+  CHECK(bounded->counters.messages <= 400);
+  CHECK(bounded->counters.cells_deferred == 576 - 100);
+  CHECK(bounded->label_at(23, 23) == bounded->field.none);
+  for (int call = 0; call < 20; ++call) bounded->infer();
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) CHECK(bounded->label_at(i, j) == free->label_at(i, j));
+  }
+  const auto deferred = bounded->counters.cells_deferred;
+  bounded->infer();
+  CHECK(bounded->counters.cells_deferred == deferred);
+}
+
+TEST_CASE("label field: even the smallest budget reaches every cell in the end", "[!shouldfail]") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = 4;
+  REQUIRE(check(settings) == Status::ok);
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  for (int call = 0; call < 2000; ++call) stages->infer();
+  int without = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) without += stages->label_at(i, j) == stages->field.none;
+  }
+  CHECK(without == 0);
+}
+
+TEST_CASE("label field: on a map that no longer changes the kept field comes to where whole passes end") {
+  const auto lines = std::make_unique<Stages<>>(small_settings()), whole = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  const auto points = test::sample({0, 2.4, 0, 2.4}, 0.06, 0.02, noise, [](double x, double y) { return x + 0.5 * y < 1.7 ? 0.02 * x : 0.07; });
+  for (auto* stages : {lines.get(), whole.get()}) {
+    for (const Point& p : points) stages->dem.add(p);
+  }
+  for (int pass = 0; pass < 20; ++pass) whole->infer(true);
+  for (int line = 0; line < 20 * 12; ++line) lines->infer();  // 12 lines refresh all rows once
+  float worst = 0.0f;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      if (!whole->dem.cell(whole->dem.slot(i, j)).valid()) continue;
+      CHECK(lines->label_at(i, j) == whole->label_at(i, j));
+      const auto a = lines->field.belief(lines->dem, i, j), b = whole->field.belief(whole->dem, i, j);
+      for (std::size_t c = 0; c < a.label.size(); ++c) worst = std::max(worst, std::abs(a.probability[c] - b.probability[c]));
+    }
+  }
+  CHECK(worst < static_cast<float>(quantisation));
+}
+
+}  // namespace
+}  // namespace curbline

@@ -1,0 +1,406 @@
+// The whole way from scan lines to curbs: what is refused, what is survived, and what stays the same.
+#include "curbline/pipeline.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "support/heap_count.hpp"
+#include "support/nodding_laser.hpp"
+
+namespace curbline {
+namespace {
+
+using test::NoddingLaser;
+using test::Street;
+using FullPipeline = Pipeline<Limits{}>;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+
+/// Tilt readings of 100 Hz up to `line` and one beyond its end.
+void add_tilts(FullPipeline& pipeline, int line) {
+  const double end = NoddingLaser::line_time_s(line) + 0.03;
+  for (double t = end - NoddingLaser::line_s + 0.005; t <= end + 1e-9; t += 0.01) pipeline.add_tilt(NoddingLaser::tilt(t));
+}
+
+/// Takes lines [first, last) of a robot that stands before a street.
+void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, int first, int last) {
+  for (int line = first; line < last; ++line) {
+    add_tilts(pipeline, line);
+    const auto ranges = laser.ranges(street, line, [](double) { return 0.0; });
+    REQUIRE(pipeline.take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
+  }
+}
+
+std::unique_ptr<FullPipeline> started(const Settings& settings = NoddingLaser::settings()) {
+  auto pipeline = std::make_unique<FullPipeline>();
+  REQUIRE(pipeline->init(settings) == Status::ok);
+  return pipeline;
+}
+
+/// The longest piece of curb.
+const Curb& longest(std::span<const Curb> curbs) {
+  REQUIRE_FALSE(curbs.empty());
+  const auto length2 = [](const Curb& c) { return (c.x1_m - c.x0_m) * (c.x1_m - c.x0_m) + (c.y1_m - c.y0_m) * (c.y1_m - c.y0_m); };
+  return *std::max_element(curbs.begin(), curbs.end(), [&](const Curb& a, const Curb& b) { return length2(a) < length2(b); });
+}
+
+std::vector<char> bytes(std::span<const Curb> curbs) {
+  std::vector<char> out;
+  for (const Curb& c : curbs) {
+    for (const float v : {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.height_m, c.height_sd_m, c.probability}) {
+      const char* p = reinterpret_cast<const char*>(&v);
+      out.insert(out.end(), p, p + sizeof v);
+    }
+    out.push_back(static_cast<char>(c.kind));
+    out.push_back(static_cast<char>(c.near_label));
+    out.push_back(static_cast<char>(c.far_label));
+  }
+  return out;
+}
+
+TEST_CASE("pipeline: with the default limits it fits into 256 KiB") { CHECK(sizeof(FullPipeline) <= 256 * 1024); }
+
+TEST_CASE("pipeline: a step ahead is found with its place, height and direction from one sweep") {
+  const double step = GENERATE(0.12, -0.15);
+  const auto pipeline = started();
+  NoddingLaser laser;
+  stand(*pipeline, laser, {2.0, step}, 0, 200);
+  const Curb& curb = longest(pipeline->curbs());
+  CHECK(curb.kind == (step > 0.0 ? CurbKind::step_up : CurbKind::step_down));
+  CHECK(curb.height_m == Approx(step).margin(4 * curb.height_sd_m + 0.005));
+  // Half a cell; behind a step down the ground is hidden for |step| * 2 m / 1 m, and the border lies in the gap's middle.
+  const double hidden = step < 0.0 ? -step * 2.0 : 0.0;
+  CHECK(curb.x0_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
+  CHECK(curb.x1_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
+  CHECK(std::abs(curb.y1_m - curb.y0_m) > 3.0f);
+  CHECK(pipeline->counters().lines == 200);
+}
+
+TEST_CASE("pipeline: settings beyond the limits, or bad, are refused with the status that names them") {
+  const auto pipeline = std::make_unique<FullPipeline>();
+  const auto init = [&](auto&& change) {
+    Settings s = NoddingLaser::settings();
+    change(s);
+    return pipeline->init(s);
+  };
+  CHECK(init([](Settings& s) { s.window.rows = 44; }) == Status::bad_window);
+  CHECK(init([](Settings& s) { s.window.cols = 44; }) == Status::bad_window);
+  CHECK(init([](Settings& s) { s.laser.beams = 1082; }) == Status::bad_laser);
+  CHECK(init([](Settings& s) { s.window.cell_x_m = 0.0f; }) == Status::bad_window);
+  CHECK(init([](Settings& s) { s.laser.range_sd_m = nan; }) == Status::bad_laser);
+  CHECK(init([](Settings& s) { s.tilt.max_gap_s = 0.0f; }) == Status::bad_tilt);
+  CHECK(init([](Settings& s) { s.pose.height_sd_m = -1.0f; }) == Status::bad_pose);
+  CHECK(init([](Settings& s) { s.labels.coupling = 0.0f; }) == Status::bad_inference);
+  CHECK(init([](Settings&) {}) == Status::ok);
+}
+
+TEST_CASE("pipeline: before init, and after a refused one, it takes nothing and answers so") {
+  const auto pipeline = std::make_unique<FullPipeline>();
+  const std::vector<float> ranges(10, 2.0f);
+  const Point point{1.0f, 0.0f, 0.0f, 1e-4f};
+  const auto takes_nothing = [&] {
+    CHECK(pipeline->take({NoddingLaser::epoch_ns, ranges}) == Status::not_initialised);
+    pipeline->observe(std::span<const Point>(&point, 1));
+    pipeline->infer();
+    CHECK(pipeline->settle() == 0);
+    CHECK(pipeline->curbs().empty());
+    CHECK(pipeline->counters().points == 0);
+  };
+  takes_nothing();
+  Settings bad = NoddingLaser::settings();
+  bad.laser.beams = 0;
+  CHECK(pipeline->init(bad) == Status::bad_laser);
+  takes_nothing();
+}
+
+TEST_CASE("pipeline: each bad line is answered with its reason, counted, and changes nothing else") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  stand(*pipeline, laser, {}, 0, 50);
+  const auto before = bytes(pipeline->curbs());
+  const auto points = pipeline->counters().points;
+  const std::vector<float> ranges(NoddingLaser::beams, 2.0f), long_line(NoddingLaser::beams + 1, 2.0f);
+  const std::int64_t last = NoddingLaser::ns(NoddingLaser::line_time_s(49));
+  CHECK(pipeline->take({last, ranges}) == Status::line_out_of_order);
+  CHECK(pipeline->take({last - 1000, ranges}) == Status::line_out_of_order);
+  CHECK(pipeline->take({last + 25'000'000, long_line}) == Status::line_too_long);
+  CHECK(pipeline->take({last + 2'000'000'000, ranges}) == Status::no_tilt);
+  CHECK(pipeline->counters().lines_dropped == 4);
+  CHECK(pipeline->counters().lines == 50);
+  CHECK(pipeline->counters().points == points);
+  CHECK(bytes(pipeline->curbs()) == before);
+}
+
+TEST_CASE("pipeline: a robot that moves needs poses") {
+  Settings settings = NoddingLaser::settings();
+  settings.pose.still = false;
+  const auto pipeline = started(settings);
+  add_tilts(*pipeline, 0);
+  const std::vector<float> ranges(NoddingLaser::beams, 2.0f);
+  CHECK(pipeline->take({NoddingLaser::ns(0.0), ranges}) == Status::no_pose);
+  CHECK(pipeline->add_pose({NoddingLaser::ns(0.0)}));
+  CHECK(pipeline->take({NoddingLaser::ns(0.0), ranges}) == Status::ok);
+  CHECK_FALSE(pipeline->add_pose({NoddingLaser::ns(0.0)}));
+  CHECK(pipeline->counters().poses_dropped == 1);
+}
+
+TEST_CASE("pipeline: a laser at a fixed tilt needs no servo") {
+  Settings settings = NoddingLaser::settings();
+  settings.tilt.fixed = true;
+  settings.tilt.fixed_tilt_rad = 0.5f;
+  const auto pipeline = started(settings);
+  CHECK(pipeline->take({NoddingLaser::ns(0.0), std::vector<float>(NoddingLaser::beams, 2.0f)}) == Status::ok);
+  CHECK(pipeline->counters().points > 0);
+}
+
+TEST_CASE("pipeline: bad data leave no trace: the curbs are the same to the bit") {
+  const auto clean = started(), plagued = started();
+  NoddingLaser laser, same;
+  stand(*clean, laser, {}, 0, 220);
+  stand(*plagued, same, {}, 0, 100);
+  const std::int64_t now = NoddingLaser::ns(NoddingLaser::line_time_s(99));
+  const std::vector<float> ranges(NoddingLaser::beams, 1.5f), long_line(2000, 1.5f);
+  plagued->add_tilt({now - 1'000'000'000, 0.3f});
+  plagued->add_tilt({now + 500'000'000, nan});
+  plagued->add_tilt({now + 500'000'000, infinity});
+  plagued->add_pose({now, nan});
+  plagued->take({now, ranges});
+  plagued->take({now - 1'000'000'000, ranges});
+  plagued->take({now + 12'000'000, long_line});
+  plagued->take({now + 10'000'000'000, ranges});
+  const std::vector<Point> points{{nan, 0.0f, 0.0f, 1e-4f}, {1.0f, infinity, 0.0f, 1e-4f}, {1.0f, 0.0f, -infinity, 1e-4f}, {1.0f, 0.0f, 0.0f, nan},
+                                  {1e30f, 0.0f, 0.0f, 1e-4f}, {-5.0f, 0.0f, 0.0f, 1e-4f}};
+  plagued->observe(points);
+  CHECK(plagued->counters().tilt_dropped <= 3);
+  stand(*plagued, same, {}, 100, 220);
+  CHECK(plagued->counters().tilt_dropped == 3);
+  CHECK(plagued->counters().poses_dropped == 1);
+  CHECK(plagued->counters().lines_dropped == 4);
+  CHECK(bytes(plagued->curbs()) == bytes(clean->curbs()));
+  CHECK_FALSE(clean->curbs().empty());
+}
+
+TEST_CASE("pipeline: a line whose ranges are all bad is taken and does nothing") {
+  const auto pipeline = started();
+  add_tilts(*pipeline, 0);
+  std::vector<float> ranges(NoddingLaser::beams);
+  for (std::size_t i = 0; i < ranges.size(); ++i) ranges[i] = i % 3 == 0 ? nan : i % 3 == 1 ? infinity : -1.0f;
+  CHECK(pipeline->take({NoddingLaser::ns(0.0), ranges}) == Status::ok);
+  CHECK(pipeline->take({NoddingLaser::ns(0.001), {}}) == Status::ok);
+  CHECK(pipeline->counters().no_returns == NoddingLaser::beams);
+  CHECK(pipeline->counters().points == 0);
+  CHECK(pipeline->curbs().empty());
+}
+
+TEST_CASE("pipeline: points above the ceiling are ignored") {
+  Settings settings = NoddingLaser::settings();
+  settings.window.max_height_m = 0.5f;
+  const auto pipeline = started(settings);
+  const std::vector<Point> points{{1.0f, 0.0f, 0.4f, 1e-4f}, {1.0f, 0.0f, 0.6f, 1e-4f}};
+  pipeline->observe(points);
+  CHECK(pipeline->counters().points == 1);
+  CHECK(pipeline->counters().outside == 1);
+}
+
+TEST_CASE("pipeline: the same input gives the same bytes twice, also after a second init") {
+  const auto first = started();
+  NoddingLaser laser;
+  stand(*first, laser, {}, 0, 200);
+  const auto expected = bytes(first->curbs());
+  REQUIRE_FALSE(expected.empty());
+  NoddingLaser again, once_more;
+  const auto second = started();
+  stand(*second, again, {}, 0, 200);
+  CHECK(bytes(second->curbs()) == expected);
+  REQUIRE(first->init(NoddingLaser::settings()) == Status::ok);
+  CHECK(first->curbs().empty());
+  CHECK(first->counters().lines == 0);
+  stand(*first, once_more, {}, 0, 200);
+  CHECK(bytes(first->curbs()) == expected);
+}
+
+TEST_CASE("pipeline: observing alone changes no curb, inferring does") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  for (int line = 0; line < 200; ++line) {
+    add_tilts(*pipeline, line);
+    const auto ranges = laser.ranges({}, line, [](double) { return 0.0; });
+    REQUIRE(pipeline->observe({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
+  }
+  CHECK(pipeline->curbs().empty());
+  pipeline->infer();
+  CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
+}
+
+TEST_CASE("pipeline: project gives out the points that observe would take, and takes none") {
+  const auto pipeline = started();
+  add_tilts(*pipeline, 150);
+  NoddingLaser laser;
+  int points = 0;
+  const auto ranges = laser.ranges({}, 150, [](double) { return 0.0; });
+  CHECK(pipeline->project({NoddingLaser::ns(NoddingLaser::line_time_s(150)), ranges}, [&](const Point& p) {
+    ++points;
+    CHECK(p.variance_m2 > 0.0f);
+  }) == Status::ok);
+  CHECK(points > 300);
+  CHECK(pipeline->counters().points == 0);
+}
+
+TEST_CASE("pipeline: a finished map settles, and then nothing changes any more") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  stand(*pipeline, laser, {}, 0, 200);
+  const int passes = pipeline->settle(50);
+  CHECK(passes < 50);
+  const auto settled = bytes(pipeline->curbs());
+  CHECK(pipeline->settle(50) == 1);
+  CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
+  CHECK_FALSE(settled.empty());
+}
+
+TEST_CASE("pipeline: cells tell their plane and how sure it is") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  stand(*pipeline, laser, {}, 0, 200);
+  const auto near = pipeline->label(15, 20), far = pipeline->label(30, 20);
+  REQUIRE(near != no_label<Limits{}>);
+  REQUIRE(far != no_label<Limits{}>);
+  CHECK(near != far);
+  CHECK(pipeline->label_probability(15, 20) > 0.95f);
+  CHECK(pipeline->plane(near).height_m(1.55f, 2.05f) == Approx(0.0).margin(0.005));
+  CHECK(pipeline->plane(far).height_m(3.05f, 2.05f) == Approx(0.12).margin(0.005));
+}
+
+/// Drives at 0.5 m/s towards a step and returns the furthest that the curb strayed from it.
+struct Drive {
+  std::unique_ptr<FullPipeline> pipeline;
+  double worst_place_m = 0.0, worst_height_m = 0.0;
+  int sightings = 0;
+};
+
+Drive drive(const Street& street, int lines, const Settings& settings, bool all_poses = true) {
+  Drive out{started(settings)};
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  for (int line = 0; line < lines; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*out.pipeline, line);
+    if (all_poses || line % 40 < 20) {
+      out.pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+      out.pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    }
+    const auto ranges = laser.ranges(street, line, x);
+    out.pipeline->take({NoddingLaser::ns(t), ranges});
+    for (const Curb& curb : out.pipeline->curbs()) {
+      if (line < 200 || std::abs(curb.y1_m - curb.y0_m) < 2.0f) continue;
+      out.worst_place_m = std::max({out.worst_place_m, std::abs(curb.x0_m - street.step_x_m), std::abs(curb.x1_m - street.step_x_m)});
+      out.worst_height_m = std::max(out.worst_height_m, std::abs(std::abs(static_cast<double>(curb.height_m)) - street.step_m));
+      ++out.sightings;
+    }
+  }
+  return out;
+}
+
+Settings driving_settings() {
+  Settings settings = NoddingLaser::settings();
+  settings.pose.still = false;
+  return settings;
+}
+
+TEST_CASE("pipeline: while the robot drives the window follows and the curb stays where it is") {
+  const Drive d = drive({5.0, 0.12}, 480, driving_settings());  // to x = 6 m: past the step
+  CHECK(d.sightings > 100);
+  CHECK(d.worst_place_m < 0.1);
+  CHECK(d.worst_height_m < 0.02);
+  // The window begins at the robot, to half a block.
+  CHECK(d.pipeline->dem().origin_x_m() == Approx(6.0).margin(0.21));
+  CHECK(d.pipeline->dem().origin_y_m() == Approx(-2.0).margin(1e-4));
+}
+
+TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
+  const Drive d = drive({5.0, 0.12}, 400, driving_settings(), false);
+  CHECK(d.pipeline->counters().lines_dropped > 50);
+  CHECK(d.sightings > 20);
+  CHECK(d.worst_place_m < 0.1);
+}
+
+TEST_CASE("pipeline: with both tasks apart the window may move before labels follow") {
+  // Lines are taken in at their rate, inference comes every twentieth time.
+  const auto pipeline = started(driving_settings());
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  for (int line = 0; line < 400; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    REQUIRE(pipeline->observe({NoddingLaser::ns(t), laser.ranges({6.0, 0.12}, line, x)}) == Status::ok);
+    if (line % 20 == 19) pipeline->infer();
+  }
+  const Curb& curb = longest(pipeline->curbs());
+  CHECK(curb.height_m == Approx(0.12).margin(0.02));
+  CHECK(curb.x0_m == Approx(6.0).margin(0.1));
+}
+
+TEST_CASE("pipeline: a pose far off moves the window there and back, and the map starts afresh") {
+  const auto pipeline = started(driving_settings());
+  NoddingLaser laser;
+  const float jump = GENERATE(1000.0f, 1e6f);
+  for (int line = 0; line < 240; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), line == 20 ? jump : 0.0f});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), line == 20 ? jump : 0.0f});
+    REQUIRE(pipeline->take({NoddingLaser::ns(t), laser.ranges({}, line, [](double) { return 0.0; })}) == Status::ok);
+  }
+  CHECK(pipeline->dem().origin_x_m() == Approx(0.0).margin(1e-3));
+  CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
+}
+
+TEST_CASE("heap count: it sees an allocation") {
+  const long before = test::heap_count();
+  void* p = ::operator new(16);
+  CHECK(test::heap_count() == before + 1);
+  ::operator delete(p);
+  const auto q = std::make_unique<std::vector<int>>(100);
+  CHECK(test::heap_count() >= before + 3);
+}
+
+TEST_CASE("pipeline: nothing is taken from the heap, in any call") {
+  const auto pipeline = std::make_unique<FullPipeline>();
+  NoddingLaser laser;
+  std::vector<std::vector<float>> lines;
+  for (int line = 0; line < 100; ++line) lines.push_back(laser.ranges({}, line, [](double) { return 0.0; }));
+  Settings settings = driving_settings();
+  const std::vector<Point> points{{1.0f, 0.0f, 0.0f, 1e-4f}};
+  int good = 0;
+
+  const long before = test::heap_count();
+  good += pipeline->init(settings) == Status::ok;
+  for (int line = 0; line < 100; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), 0.01f * static_cast<float>(line)});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), 0.01f * static_cast<float>(line)});
+    const std::int64_t time = NoddingLaser::ns(t);
+    good += pipeline->take({time, lines[static_cast<std::size_t>(line)]}) == Status::ok;
+    good += pipeline->take({time, lines[0]}) == Status::ok;  // refused
+  }
+  pipeline->observe(points);
+  pipeline->infer();
+  pipeline->settle();
+  const long after = test::heap_count();
+
+  CHECK(after == before);
+  CHECK(good == 101);
+  CHECK_FALSE(pipeline->curbs().empty());
+}
+
+}  // namespace
+}  // namespace curbline

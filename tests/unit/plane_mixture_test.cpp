@@ -1,0 +1,194 @@
+// Labels of planes over time: who keeps its label, who is born, who dies, and who wins when there are too many.
+#include "curbline/plane_mixture.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::fill;
+using test::Noise;
+using test::Patch;
+using test::small_settings;
+using test::Stages;
+
+template <typename S, typename Height>
+void add_points(S& stages, const Patch& patch, Noise& noise, Height&& height_m) {
+  for (const Point& p : test::sample(patch, 0.05, 0.003, noise, height_m)) stages.dem.add(p);
+}
+
+template <typename S>
+int alive(const S& stages) {
+  int count = 0;
+  for (int l = 0; l < stages.mixture.capacity; ++l) count += stages.mixture.plane(l).alive();
+  return count;
+}
+
+TEST_CASE("plane mixture: each large region becomes a plane with its level and slopes") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  add_points(*stages, {0, 2.4, 0, 2.4}, noise, [](double x, double y) { return y < 1.2 ? 0.05 * x : 0.12 - 0.02 * y; });
+  stages->infer();
+  REQUIRE(alive(*stages) == 2);
+  const Plane& low = stages->mixture.plane(stages->label_at(12, 3));
+  const Plane& high = stages->mixture.plane(stages->label_at(12, 20));
+  // 288 cells of 4 points with noise of 3 mm; cells know nothing of their share of slope within.
+  CHECK(low.height_m(1.2f, 0.6f) == Approx(0.06).margin(4 * 0.003 / std::sqrt(4 * 288.0)));
+  CHECK(low.slope_x == Approx(0.05).margin(0.001));
+  CHECK(high.slope_y == Approx(-0.02).margin(0.002));
+  CHECK(low.cells == 288.0f);
+  CHECK(stages->mixture.cells() == 576.0f);
+}
+
+TEST_CASE("plane mixture: labels stay with their planes while regions grow") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  const auto ground = [](double x, double y) { return y < 0.8 ? 0.0 : y < 1.6 ? 0.12 : 0.06 + 0.05 * x; };
+  add_points(*stages, {0, 0.4, 0, 2.4}, noise, ground);
+  stages->infer();
+  const auto a = stages->label_at(1, 2), b = stages->label_at(1, 12), c = stages->label_at(1, 22);
+  REQUIRE(std::set<int>{a, b, c}.size() == 3);
+  for (int row = 4; row < 24; ++row) {
+    const double x = 0.1 * row;
+    add_points(*stages, {x, x + 0.1, 0, 2.4}, noise, ground);
+    stages->infer();
+    CHECK(stages->label_at(1, 2) == a);
+    CHECK(stages->label_at(1, 12) == b);
+    CHECK(stages->label_at(1, 22) == c);
+  }
+  CHECK(stages->label_at(23, 2) == a);
+  CHECK(stages->label_at(23, 12) == b);
+  CHECK(stages->label_at(23, 22) == c);
+}
+
+TEST_CASE("plane mixture: a plane is born with a fresh label and keeps those of others") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  add_points(*stages, {0, 1.2, 0, 2.4}, noise, [](double, double) { return 0.0; });
+  stages->infer();
+  const int first = stages->label_at(0, 0);
+  CHECK(stages->mixture.fresh(first));
+  add_points(*stages, {1.2, 2.4, 0, 2.4}, noise, [](double, double) { return 0.12; });
+  stages->infer();
+  const int second = stages->label_at(23, 0);
+  CHECK(second != first);
+  CHECK(stages->label_at(0, 0) == first);
+  CHECK(stages->mixture.fresh(second));
+  CHECK_FALSE(stages->mixture.fresh(first));
+  CHECK(stages->mixture.relabelled(stages->dem.slot(23, 0)));
+  CHECK_FALSE(stages->mixture.relabelled(stages->dem.slot(0, 0)));
+  CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == second);
+}
+
+TEST_CASE("plane mixture: a plane dies when two become one, and its label is told as fresh") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  // Two patches out of reach of each other, until the ground between them is seen.
+  const auto flat = [](double, double) { return 0.0; };
+  add_points(*stages, {0, 0.6, 0, 2.4}, noise, flat);
+  add_points(*stages, {1.7, 2.4, 0, 2.4}, noise, flat);
+  stages->infer();
+  REQUIRE(alive(*stages) == 2);
+  add_points(*stages, {0.6, 1.7, 0, 2.4}, noise, flat);
+  stages->infer(true);
+  REQUIRE(alive(*stages) == 1);
+  const int survivor = stages->label_at(0, 0), dead = 1 - survivor;
+  CHECK(stages->mixture.plane(survivor).alive());
+  CHECK_FALSE(stages->mixture.fresh(survivor));
+  CHECK(stages->mixture.fresh(dead));
+  for (int i = 0; i < 24; ++i) CHECK(stages->label_at(i, 12) == survivor);
+}
+
+TEST_CASE("plane mixture: regions smaller than the bound are no planes") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  add_points(*stages, {0, 1.2, 0, 1.2}, noise, [](double, double) { return 0.0; });
+  add_points(*stages, {1.2, 1.5, 0, 0.2}, noise, [](double, double) { return 0.5; });  // six cells
+  stages->infer();
+  CHECK(alive(*stages) == 1);
+  CHECK(stages->mixture.region_label(stages->dem.slot(13, 0)) == stages->mixture.none);
+}
+
+TEST_CASE("plane mixture: with more regions than planes the largest win and the others are counted") {
+  constexpr Limits two{.rows = 24, .cols = 24, .planes = 2};
+  const auto stages = std::make_unique<Stages<two>>(small_settings());
+  // Strips of 16, 20, 24 and 36 % of the window, the smaller first.
+  fill(stages->dem, [](double x, double) { return x < 0.4 ? 0.0 : x < 0.9 ? 0.2 : x < 1.5 ? 0.4 : 0.6; });
+  stages->segment();
+  stages->mix();
+  CHECK(stages->counters.planes_full == 2);
+  CHECK(alive(*stages) == 2);
+  const auto plane_of = [&](int i) { return stages->mixture.region_label(stages->dem.slot(i, 0)); };
+  CHECK(plane_of(0) == stages->mixture.none);
+  CHECK(plane_of(5) == stages->mixture.none);
+  REQUIRE(plane_of(10) != stages->mixture.none);
+  REQUIRE(plane_of(20) != stages->mixture.none);
+  CHECK(stages->mixture.plane(plane_of(10)).height_m(1.2f, 1.2f) == Approx(0.4).margin(1e-3));
+  CHECK(stages->mixture.plane(plane_of(20)).height_m(1.9f, 1.2f) == Approx(0.6).margin(1e-3));
+}
+
+TEST_CASE("plane mixture: when the window moves planes move against it") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double y) { return 0.1 * x - 0.05 * y; });
+  stages->infer();
+  const int label = stages->label_at(0, 0);
+  const float before = stages->mixture.plane(label).height_m(1.0f, 1.0f);
+  stages->mixture.shift(0.4f, -0.8f);
+  CHECK(stages->mixture.plane(label).height_m(1.0f - 0.4f, 1.0f + 0.8f) == Approx(before).margin(1e-6));
+}
+
+TEST_CASE("plane mixture: the M-step fits planes to cells by their responsibilities") {
+  Settings settings = small_settings();
+  settings.planes.update = PlaneUpdate::responsibilities;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer(true);
+  const int low = stages->label_at(0, 0), high = stages->label_at(23, 0);
+  REQUIRE(low != high);
+  // Half of the upper plane's cells are given to the lower one by a quarter.
+  stages->mixture.maximise(stages->dem, [&](int i, int j, auto&& visit) {
+    if (i < 12) return visit(low, 1.0f);
+    const float share = j < 12 ? 0.25f : 0.0f;
+    if (share > 0.0f) visit(low, share);
+    visit(high, 1.0f - share);
+  });
+  // 288 cells at 0, and 144 quarters at 0.12: the plane's mean is theirs.
+  const Plane& plane = stages->mixture.plane(low);
+  CHECK(plane.z_m == Approx(0.12 * 36.0 / 324.0).margin(1e-5));
+  CHECK(plane.cells == Approx(324.0f));
+  CHECK(stages->mixture.plane(high).z_m == Approx(0.12).margin(1e-5));
+  CHECK(stages->mixture.plane(high).cells == Approx(252.0f));
+}
+
+TEST_CASE("plane mixture: parameters from responsibilities are not overwritten by the regions") {
+  Settings settings = small_settings();
+  settings.planes.update = PlaneUpdate::responsibilities;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  stages->infer(true);
+  const int label = stages->label_at(0, 0);
+  stages->mixture.maximise(stages->dem, [&](int i, int, auto&& visit) { visit(label, i < 12 ? 1.0f : 0.5f); });
+  const float before = stages->mixture.plane(label).x_m;
+  CHECK(before < 1.2f);
+  stages->infer(true);
+  CHECK(stages->mixture.plane(label).x_m == before);
+}
+
+TEST_CASE("plane mixture: a plane that hardly a cell answers for keeps its parameters") {
+  Settings settings = small_settings();
+  settings.planes.update = PlaneUpdate::responsibilities;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.3; });
+  stages->infer(true);
+  const int label = stages->label_at(0, 0);
+  stages->mixture.maximise(stages->dem, [&](int i, int j, auto&& visit) { visit(label, i == 0 && j == 0 ? 1.0f : 0.0f); });
+  CHECK(stages->mixture.plane(label).z_m == Approx(0.3).margin(1e-4));
+}
+
+}  // namespace
+}  // namespace curbline

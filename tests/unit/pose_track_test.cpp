@@ -1,0 +1,132 @@
+// The robot's pose between and beyond the poses that were given.
+#include "curbline/pose_track.hpp"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+namespace curbline {
+namespace {
+
+constexpr Limits limits{.poses = 8};
+using Track = PoseTrack<limits>;
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t t0 = 1'290'682'980'000'000'000;
+
+/// A robot that drives 1 m/s along x and turns left by 0.5 rad/s.
+Pose driving(std::int64_t time_ns) {
+  const double s = static_cast<double>(time_ns - t0) * 1e-9;
+  return {time_ns, static_cast<float>(s), 2.0f, 0.1f, 0.0f, 0.0f, static_cast<float>(std::sin(0.25 * s)), static_cast<float>(std::cos(0.25 * s))};
+}
+
+Track track_of(int poses, PoseSettings settings = {}) {
+  settings.still = false;
+  Track track;
+  track.init(settings);
+  for (int k = 0; k < poses; ++k) REQUIRE(track.push(driving(t0 + 50 * ms * k)));
+  return track;
+}
+
+double yaw_of(const Pose& pose) {
+  const Eigen::Matrix3f R = make_transform(pose).rotation;
+  return std::atan2(static_cast<double>(R(1, 0)), static_cast<double>(R(0, 0)));
+}
+
+TEST_CASE("pose track: between two poses position and attitude are interpolated") {
+  const Track track = track_of(5);
+  for (int k = 0; k <= 40; ++k) {
+    Pose pose;
+    REQUIRE(track.at(t0 + 5 * ms * k, pose));
+    CHECK(pose.time_ns == t0 + 5 * ms * k);
+    CHECK(pose.x_m == Approx(0.005 * k).margin(1e-6));
+    CHECK(pose.y_m == 2.0f);
+    CHECK(yaw_of(pose) == Approx(0.0025 * k).margin(1e-5));
+  }
+}
+
+TEST_CASE("pose track: two quaternions of one attitude are interpolated the short way") {
+  Track track = track_of(1);
+  Pose pose = driving(t0 + 50 * ms);
+  for (float Pose::*q : {&Pose::qx, &Pose::qy, &Pose::qz, &Pose::qw}) pose.*q = -(pose.*q);
+  REQUIRE(track.push(pose));
+  Pose between;
+  REQUIRE(track.at(t0 + 25 * ms, between));
+  CHECK(yaw_of(between) == Approx(0.0125).margin(1e-5));
+}
+
+TEST_CASE("pose track: beyond its ends the robot goes on as it went, up to the bound") {
+  const Track track = track_of(5);
+  const std::int64_t last = t0 + 200 * ms;
+  Pose pose;
+  REQUIRE(track.at(last + 100 * ms, pose));
+  CHECK(pose.x_m == Approx(0.3).margin(1e-6));
+  CHECK(yaw_of(pose) == Approx(0.15).margin(1e-4));
+  CHECK_FALSE(track.at(last + 100 * ms + 1000, pose));
+  REQUIRE(track.at(t0 - 100 * ms, pose));
+  CHECK(pose.x_m == Approx(-0.1).margin(1e-6));
+  CHECK_FALSE(track.at(t0 - 100 * ms - 1000, pose));
+}
+
+TEST_CASE("pose track: between two poses that are far apart there is none, as its header says", "[!shouldfail]") {
+  Track track = track_of(1);
+  REQUIRE(track.push(driving(t0 + 10000 * ms)));
+  Pose pose;
+  CHECK_FALSE(track.at(t0 + 5000 * ms, pose));
+}
+
+TEST_CASE("pose track: without a pose there is none, with one the robot stands there") {
+  Track track = track_of(0);
+  Pose pose;
+  CHECK(track.empty());
+  CHECK_FALSE(track.at(t0, pose));
+  track = track_of(1);
+  REQUIRE(track.at(t0 + 99 * ms, pose));
+  CHECK(pose.x_m == 0.0f);
+  CHECK(pose.y_m == 2.0f);
+}
+
+TEST_CASE("pose track: poses that are not later, not finite or not unit quaternions are dropped") {
+  Track track = track_of(2);
+  CHECK_FALSE(track.push(driving(t0 + 50 * ms)));
+  CHECK_FALSE(track.push(driving(t0)));
+  for (float Pose::*value : {&Pose::x_m, &Pose::y_m, &Pose::z_m, &Pose::qx, &Pose::qy, &Pose::qz, &Pose::qw}) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+      Pose pose = driving(t0 + 100 * ms);
+      pose.*value = bad;
+      CHECK_FALSE(track.push(pose));
+    }
+  }
+  Pose zero = driving(t0 + 100 * ms);
+  zero.qz = zero.qw = 0.0f;
+  CHECK_FALSE(track.push(zero));
+  Pose loose = driving(t0 + 100 * ms);
+  loose.qw *= 1.02f;
+  CHECK_FALSE(track.push(loose));
+  CHECK(track.newest().time_ns == t0 + 50 * ms);
+  CHECK(track.push(driving(t0 + 100 * ms)));
+}
+
+TEST_CASE("pose track: the newest poses are kept, the oldest give way") {
+  const Track track = track_of(30);
+  Pose pose;
+  CHECK(track.newest().time_ns == t0 + 29 * 50 * ms);
+  REQUIRE(track.at(t0 + (2950 - 10) * ms / 2, pose));
+  CHECK(pose.x_m == Approx(1.47).margin(1e-5));
+  REQUIRE(track.at(t0 + 22 * 50 * ms, pose));
+  CHECK(pose.x_m == Approx(1.1).margin(1e-5));
+  CHECK_FALSE(track.at(t0 + 19 * 50 * ms, pose));
+}
+
+TEST_CASE("pose track: a pose turns and moves points as its quaternion says") {
+  const Eigen::Quaterniond q = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
+  const Eigen::Quaternionf f = q.cast<float>();
+  const Pose pose{t0, 1.0f, -2.0f, 0.3f, 1.005f * f.x(), 1.005f * f.y(), 1.005f * f.z(), 1.005f * f.w()};  // normalised here
+  const Eigen::Vector3d truth = q * Eigen::Vector3d(0.5, 1.5, -0.8) + Eigen::Vector3d(1.0, -2.0, 0.3);
+  const Eigen::Vector3f p = make_transform(pose) * Eigen::Vector3f(0.5f, 1.5f, -0.8f);
+  CHECK((p.cast<double>() - truth).norm() < 1e-6);
+}
+
+}  // namespace
+}  // namespace curbline

@@ -1,0 +1,163 @@
+// The tilt servo's readings: interpolation and its bounds, bad readings, and a reader beside a writer that never waits.
+#include "curbline/tilt_track.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <thread>
+
+namespace curbline {
+namespace {
+
+constexpr Limits limits{.tilt_samples = 16};
+using Track = TiltTrack<limits>;
+using Snapshot = TiltSnapshot<limits>;
+using Source = TiltAngle::Source;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t t0 = 1'290'682'980'025'000'000;  // nanoseconds of the epoch need more than 32 bits
+
+/// A track with readings every 25 ms of a servo that turns by 0.3 rad/s.
+std::unique_ptr<Track> turning(int readings, const TiltSettings& settings = {}) {
+  auto track = std::make_unique<Track>();
+  track->init(settings);
+  for (int k = 0; k < readings; ++k) REQUIRE(track->push({t0 + 25 * ms * k, -0.2f + 0.0075f * static_cast<float>(k)}));
+  return track;
+}
+
+Snapshot snapshot(const Track& track) {
+  Snapshot out;
+  track.snapshot(out);
+  return out;
+}
+
+TEST_CASE("tilt track: between two readings the angle is on the line through them") {
+  const auto track = turning(10);
+  Snapshot angles = snapshot(*track);
+  for (int k = 0; k <= 90; ++k) {
+    const TiltAngle a = angles.at(t0 + 5 * ms / 2 * k);
+    CHECK(a.source == Source::interpolated);
+    CHECK(a.angle_rad == Approx(-0.2 + 0.00075 * k).margin(1e-6));
+    CHECK(a.rate_rad_s == Approx(0.3).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("tilt track: beyond its ends the angle goes on at the same rate, up to the bound") {
+  const auto track = turning(10);
+  Snapshot angles = snapshot(*track);
+  const std::int64_t last = t0 + 225 * ms;
+  const auto at = [&](std::int64_t time) {
+    angles.rewind();
+    return angles.at(time);
+  };
+  CHECK(at(last).source == Source::interpolated);
+  CHECK(at(last + 50 * ms).source == Source::extrapolated);
+  CHECK(at(last + 50 * ms).angle_rad == Approx(-0.2 + 0.0675 + 0.015).margin(1e-6));
+  CHECK(at(last + 50 * ms + 1000).source == Source::none);
+  CHECK(at(t0 - 50 * ms).source == Source::extrapolated);
+  CHECK(at(t0 - 50 * ms).angle_rad == Approx(-0.2 - 0.015).margin(1e-6));
+  CHECK(at(t0 - 50 * ms - 1000).source == Source::none);
+}
+
+TEST_CASE("tilt track: a reading that comes late by the latency is put back to its time") {
+  TiltSettings settings;
+  settings.latency_s = GENERATE(0.0075f, -0.010f);
+  const auto track = turning(10, settings);
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0 + 100 * ms).angle_rad == Approx(-0.2 + 0.3 * (0.1 + static_cast<double>(settings.latency_s))).margin(2e-6));
+}
+
+TEST_CASE("tilt track: readings too far apart say nothing of the time between") {
+  TiltSettings settings;
+  settings.max_gap_s = 0.1f;
+  const auto track = std::make_unique<Track>();
+  track->init(settings);
+  track->push({t0, 0.1f});
+  track->push({t0 + 100 * ms, 0.2f});
+  track->push({t0 + 201 * ms, 0.3f});
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0 + 50 * ms).source == Source::interpolated);
+  CHECK(angles.at(t0 + 150 * ms).source == Source::none);
+  CHECK(angles.at(t0 + 201 * ms).source == Source::interpolated);  // its own moment
+  CHECK(angles.at(t0 + 210 * ms).source == Source::none);          // no rate to go on with
+}
+
+TEST_CASE("tilt track: without readings there is no angle, with one there is at its moment only") {
+  const auto track = std::make_unique<Track>();
+  track->init(TiltSettings{});
+  CHECK(snapshot(*track).at(t0).source == Source::none);
+  track->push({t0, 0.4f});
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0).source == Source::interpolated);
+  CHECK(angles.at(t0).angle_rad == 0.4f);
+  CHECK(angles.at(t0 + 1).source == Source::none);
+}
+
+TEST_CASE("tilt track: repeated, older and not finite readings are dropped and counted") {
+  const auto track = turning(3);
+  const auto at = t0 + 50 * ms;
+  CHECK_FALSE(track->push({at, 0.0f}));
+  CHECK_FALSE(track->push({at - 1, 0.0f}));
+  CHECK_FALSE(track->push({at + 25 * ms, std::numeric_limits<float>::quiet_NaN()}));
+  CHECK_FALSE(track->push({at + 25 * ms, -std::numeric_limits<float>::infinity()}));
+  CHECK(track->dropped() == 4);
+  CHECK(track->push({at + 25 * ms, 0.0f}));  // a dropped reading does not take its time along
+  CHECK(snapshot(*track).at(t0 + 25 * ms).angle_rad == Approx(-0.1925));
+}
+
+TEST_CASE("tilt track: the newest readings are kept") {
+  const auto track = turning(100);
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0 + (100 - 15) * 25 * ms).source == Source::interpolated);
+  CHECK(angles.at(t0 + 99 * 25 * ms).angle_rad == Approx(-0.2 + 0.0075 * 99).margin(1e-6));
+  angles.rewind();
+  CHECK(angles.at(t0).source == Source::none);
+}
+
+TEST_CASE("tilt track: after init it starts afresh") {
+  const auto track = turning(5);
+  track->push({t0, 0.0f});
+  track->init(TiltSettings{});
+  CHECK(track->dropped() == 0);
+  CHECK(snapshot(*track).at(t0).source == Source::none);
+  CHECK(track->push({t0 - 1000 * ms, 0.1f}));
+}
+
+TEST_CASE("tilt track: a snapshot beside a hammering writer is never torn") {
+  // The angle tells the reading's number, so that a time with another reading's angle would show.
+  const auto track = std::make_unique<Track>();
+  TiltSettings settings;
+  settings.max_gap_s = 1.0f;
+  track->init(settings);
+  constexpr int readings = 400000;
+  std::atomic<int> written{0};
+  std::thread writer([&] {
+    for (int k = 0; k < readings; ++k) {
+      track->push({t0 + static_cast<std::int64_t>(k) * ms, static_cast<float>(k)});
+      written.store(k + 1, std::memory_order_release);
+    }
+  });
+  int torn = 0, stale = 0, asked = 0;
+  Snapshot angles;
+  for (int k = 0; k < readings;) {
+    k = written.load(std::memory_order_acquire);
+    track->snapshot(angles);
+    // Asked in the middle between readings, rising: a descending or mixed pair has another angle or rate.
+    for (int back = 12; back > 0 && k > 16; --back) {
+      const TiltAngle a = angles.at(t0 + static_cast<std::int64_t>(k - back) * ms + ms / 2);
+      if (a.source != Source::interpolated) continue;  // replaced meanwhile
+      ++asked;
+      torn += std::abs(a.angle_rad - (static_cast<float>(k - back) + 0.5f)) > 0.1f || std::abs(a.rate_rad_s - 1000.0f) > 1.0f;
+    }
+    stale += k > 16 && angles.at(t0 + static_cast<std::int64_t>(k + readings) * ms).source != Source::none;
+  }
+  writer.join();
+  CHECK(torn == 0);
+  CHECK(stale == 0);
+  CHECK(asked > 10);
+}
+
+}  // namespace
+}  // namespace curbline
