@@ -1,10 +1,12 @@
 // Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
 // (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions, from the cells
 // that changed. A Potts message has two values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely
-// labels, all others count as impossible for it.
+// labels out of the planes near by (those of regions in its block or the eight around it), all others count as impossible for it.
+// So two pavements of one height on either side of a road keep their labels apart.
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 
@@ -56,7 +58,13 @@ class LabelField {
   };
   enum Flag : std::uint8_t { quiet, heard, visited, deferred };
   using Logs = std::array<float, candidates>;
+  using Planes = std::bitset<limits.planes>;
 
+  static std::size_t block_of(const Dem<limits>& dem, int i, int j) {
+    return static_cast<std::size_t>((i / block_side) * (dem.cols() / block_side) + j / block_side);
+  }
+
+  void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, Site& site);
   bool must_visit(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const;
   void send(const Dem<limits>& dem, int i, int j, int direction);
@@ -65,6 +73,7 @@ class LabelField {
 
   LabelSettings settings_{};
   float noise_m2_ = 0.0f;  ///< of a cell with one point of weight 1
+  std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block; of one update()
   int band_ = 0;  ///< first row to refresh in the next update()
   std::array<float, 65> boost_{};  ///< exp(J / distance) - 1
   std::array<Site, Dem<limits>::capacity> sites_{};
@@ -84,6 +93,7 @@ void LabelField<limits>::init(const LabelSettings& settings, const PlanePrior& p
 template <Limits limits>
 int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, bool all, Counters& counters) {
   const int rows = dem.rows(), cols = dem.cols();
+  find_planes_near_by(dem, mixture);
   const int band = band_ < rows ? band_ : 0;
   band_ = band + settings_.refresh_rows;
   int visits_left = all ? capacity : settings_.max_messages / directions;
@@ -145,6 +155,27 @@ bool LabelField<limits>::must_visit(const Dem<limits>& dem, const PlaneMixture<l
   return site.label[0] == none;
 }
 
+/// The planes of the regions in each block and those around it.
+template <Limits limits>
+void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
+  near_by_.fill({});
+  for (int i = 0; i < dem.rows(); i += block_side) {
+    for (int j = 0; j < dem.cols(); j += block_side) {
+      Planes here;
+      for (int k = 0; k < block_side * block_side; ++k) {
+        const int s = dem.slot(i + k / block_side, j + k % block_side);
+        const LabelType label = mixture.region_label(s);
+        if (dem.cell(s).valid() && label != none) here[label] = true;
+      }
+      for (int a = i - block_side; a <= i + block_side; a += block_side) {
+        for (int b = j - block_side; b <= j + block_side; b += block_side) {
+          if (a >= 0 && b >= 0 && a < dem.rows() && b < dem.cols()) near_by_[block_of(dem, a, b)] |= here;
+        }
+      }
+    }
+  }
+}
+
 /// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept.
 template <Limits limits>
 void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, Site& site) {
@@ -153,9 +184,11 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const float cell_variance = noise_m2_ / cell.weight;
   Logs best{};
   std::array<LabelType, candidates> label{none, none, none};
+  const Planes& near_by = near_by_[block_of(dem, i, j)];
+  const bool nothing_near = near_by.none();
   for (int k = 0; k < limits.planes; ++k) {
     const Plane& plane = mixture.plane(k);
-    if (!plane.alive()) continue;
+    if (!plane.alive() || !(nothing_near || near_by[static_cast<std::size_t>(k)])) continue;
     const float variance = plane.variance_m2 + cell_variance;
     const float residual = cell.height_m - plane.height_m(x, y);
     float u = 1.0f + residual * residual / (6.0f * variance);

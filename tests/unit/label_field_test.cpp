@@ -24,12 +24,16 @@ struct Site {
   double height_m;
 };
 
-/// Planes of 0, 8 and 4 cm, learned on a window of their own; the sites are a map of their own on which labels are inferred.
+/// Three planes of 0, 8 and 4 cm, learned from the half of a map with y < 1.2 m. The sites are another map, with cells in the
+/// other half only: no region is near them, so that they may lie on any of the planes.
 struct Tiny {
-  explicit Tiny(const std::vector<Site>& all, const Settings& s = small_settings()) : sites(all), settings(s), training(s) {
-    fill(training.dem, [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.08 : 0.04; }, 0.005);
+  explicit Tiny(const std::vector<Site>& all) : sites(all), settings(small_settings()), training(settings) {
+    Noise noise;
+    const auto height = [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.08 : 0.04; };
+    for (const Point& p : test::sample({0, 2.4, 0, 1.2}, 0.05, 0.005, noise, height)) training.dem.add(p);
     training.segment();
     training.mix();
+    for (int l = 0; l < 3; ++l) REQUIRE(plane(l).alive());
     dem.init(settings.window, settings.planes.prior, 0.0f, 0.0f);
     field.init(settings.labels, settings.planes.prior);
     for (const Site& site : sites) {
@@ -121,27 +125,27 @@ constexpr double quantisation = 0.09 / 4;
 
 TEST_CASE("label field: on a row of cells one pass gives the exact beliefs") {
   const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{2, 5, 0.0}, {3, 5, 0.015}, {4, 5, 0.02}, {5, 5, 0.05}, {6, 5, 0.03}, {7, 5, 0.06}, {8, 5, 0.07}, {9, 5, 0.02}});
+      std::vector<Site>{{2, 17, 0.0}, {3, 17, 0.015}, {4, 17, 0.02}, {5, 17, 0.05}, {6, 17, 0.03}, {7, 17, 0.06}, {8, 17, 0.07}, {9, 17, 0.02}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: on a column of cells one pass gives the exact beliefs") {
   const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{5, 2, 0.0}, {5, 3, 0.015}, {5, 4, 0.02}, {5, 5, 0.05}, {5, 6, 0.03}, {5, 7, 0.06}, {5, 8, 0.07}, {5, 9, 0.02}});
+      std::vector<Site>{{5, 14, 0.0}, {5, 15, 0.015}, {5, 16, 0.02}, {5, 17, 0.05}, {5, 18, 0.03}, {5, 19, 0.06}, {5, 20, 0.07}, {5, 21, 0.02}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: across gaps the coupling falls with the distance, and the beliefs stay exact") {
-  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{1, 5, 0.0}, {3, 5, 0.02}, {6, 5, 0.025}, {7, 5, 0.06}, {17, 5, 0.05}, {23, 5, 0.03}});
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{1, 17, 0.0}, {3, 17, 0.02}, {6, 17, 0.025}, {7, 17, 0.06}, {17, 17, 0.05}, {23, 17, 0.03}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: on a tree a second pass gives the exact beliefs") {
   const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{4, 4, 0.0}, {5, 4, 0.02}, {6, 4, 0.05}, {5, 5, 0.03}, {5, 6, 0.02}, {6, 6, 0.07}, {7, 6, 0.05}, {5, 3, 0.01}});
+      std::vector<Site>{{4, 17, 0.0}, {5, 17, 0.02}, {6, 17, 0.05}, {5, 18, 0.03}, {5, 19, 0.02}, {6, 19, 0.07}, {7, 19, 0.05}, {5, 16, 0.01}});
   for (int pass = 0; pass < 3; ++pass) tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
@@ -149,25 +153,39 @@ TEST_CASE("label field: on a tree a second pass gives the exact beliefs") {
 TEST_CASE("label field: an isolated wrong cell is outvoted by its neighbours") {
   std::vector<Site> sites;
   for (int i = 8; i < 13; ++i) {
-    for (int j = 8; j < 13; ++j) sites.push_back({i, j, i == 10 && j == 10 ? 0.023 : 0.0});
+    for (int j = 15; j < 20; ++j) sites.push_back({i, j, i == 10 && j == 17 ? 0.023 : 0.0});
   }
-  const auto alone = std::make_unique<Tiny>(std::vector<Site>{{10, 10, 0.023}});
+  const auto alone = std::make_unique<Tiny>(std::vector<Site>{{10, 17, 0.023}});
   alone->update();
   const auto among = std::make_unique<Tiny>(sites);
   for (int pass = 0; pass < 3; ++pass) among->update();
   const auto label = [](const Tiny& tiny, int i, int j) { return tiny.field.label(tiny.dem.slot(i, j)); };
-  CHECK(height_of(*alone, label(*alone, 10, 10)) == Approx(0.04).margin(1e-3));
-  CHECK(label(*among, 10, 10) == label(*among, 8, 8));
-  CHECK(height_of(*among, label(*among, 10, 10)) == Approx(0.0).margin(1e-3));
+  CHECK(height_of(*alone, label(*alone, 10, 17)) == Approx(0.04).margin(1e-3));
+  CHECK(label(*among, 10, 17) == label(*among, 8, 15));
+  CHECK(height_of(*among, label(*among, 10, 17)) == Approx(0.0).margin(1e-3));
 }
 
 TEST_CASE("label field: a height far from all planes is still given the nearest, with finite beliefs") {
-  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{5, 5, 1e6}, {6, 5, -1e6}});
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{5, 17, 1e6}, {6, 17, -1e6}});
   tiny->update();
   for (const int i : {5, 6}) {
-    const auto belief = tiny->field.belief(tiny->dem, i, 5);
+    const auto belief = tiny->field.belief(tiny->dem, i, 17);
     for (const float p : belief.probability) CHECK(is_finite(p));
-    CHECK(tiny->field.label(tiny->dem.slot(i, 5)) != tiny->field.none);
+    CHECK(tiny->field.label(tiny->dem.slot(i, 17)) != tiny->field.none);
+  }
+}
+
+TEST_CASE("label field: two pavements of one height keep their labels apart") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  const auto street = [](double x, double) { return x < 0.8 || x > 1.6 ? 0.12 : 0.0; };
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, 0.008, noise, street)) stages->dem.add(p);
+  for (int pass = 0; pass < 5; ++pass) stages->infer(true);
+  const auto left = stages->label_at(0, 0), right = stages->label_at(23, 0);
+  CHECK(left != right);
+  for (int j = 0; j < 24; ++j) {
+    for (int i = 0; i < 8; ++i) CHECK(stages->label_at(i, j) == left);
+    for (int i = 16; i < 24; ++i) CHECK(stages->label_at(i, j) == right);
   }
 }
 

@@ -85,6 +85,17 @@ TEST_CASE("plane mixture: a plane is born with a fresh label and keeps those of 
   CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == second);
 }
 
+TEST_CASE("plane mixture: a plane whose cells still wait for their labels is not born again", "[!shouldfail]") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = 400;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer();
+  REQUIRE(stages->label_at(23, 0) == stages->field.none);
+  stages->infer();
+  for (int l = 0; l < stages->mixture.capacity; ++l) CHECK_FALSE(stages->mixture.fresh(l));
+}
+
 TEST_CASE("plane mixture: a plane dies when two become one, and its label is told as fresh") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
