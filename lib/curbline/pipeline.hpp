@@ -60,8 +60,8 @@ class Pipeline {
   /// Second half: regions, planes, labels and curbs follow what was observed since. As often as time allows.
   void infer();
 
-  /// infer() with the whole label field, until no label changes or `passes` is reached: what a finished map wants. Returns
-  /// the passes made.
+  /// infer() with passes over the whole label field, until no label changes or `passes` is reached: what a finished map
+  /// wants. Returns the passes made.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. Valid until the next infer().
@@ -79,9 +79,11 @@ class Pipeline {
 
  private:
   Status place_line(const ScanLine& line, LineMotion& motion);
-  void follow(float x_m, float y_m);
+  void move_window(float x_m, float y_m);
   void take_point(const Point& point);
-  int infer_labels(bool whole_field);
+  void follow_regions();
+  int follow_labels(bool whole_field);
+  void follow_curbs();
 
   Settings settings_{};
   bool ready_ = false;
@@ -158,7 +160,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   if (!motion.still) {
     const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
-    follow(robot.x(), robot.y());
+    move_window(robot.x(), robot.y());
   }
   line_projection_.project(line, tilt_snapshot_, motion, counters_, take);
   return Status::ok;
@@ -201,7 +203,7 @@ void Pipeline<limits>::take_point(const Point& point) {
 
 /// Moves the window with the robot; what leaves it leaves every stage.
 template <Limits limits>
-void Pipeline<limits>::follow(float x_m, float y_m) {
+void Pipeline<limits>::move_window(float x_m, float y_m) {
   robot_x_m_ = x_m;
   robot_y_m_ = y_m;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
@@ -213,9 +215,32 @@ void Pipeline<limits>::follow(float x_m, float y_m) {
 }
 
 template <Limits limits>
-int Pipeline<limits>::infer_labels(bool whole_field) {
+void Pipeline<limits>::infer() {
+  if (!ready_) return;
+  follow_regions();
+  follow_labels(false);
+  follow_curbs();
+}
+
+template <Limits limits>
+int Pipeline<limits>::settle(int passes) {
+  if (!ready_) return 0;
+  follow_regions();
+  int pass = 1;
+  while (follow_labels(true) > 0 && pass < passes) ++pass;
+  follow_curbs();
+  return pass;
+}
+
+template <Limits limits>
+void Pipeline<limits>::follow_regions() {
   segmentation_.update(dem_, counters_);
   plane_mixture_.update(dem_, segmentation_, [this](int slot) { return label_field_.label(slot); }, counters_);
+}
+
+/// E-step, and the M-step if planes come from responsibilities. Returns how many labels changed.
+template <Limits limits>
+int Pipeline<limits>::follow_labels(bool whole_field) {
   const int changed = label_field_.update(dem_, plane_mixture_, whole_field, counters_);
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
@@ -230,19 +255,8 @@ int Pipeline<limits>::infer_labels(bool whole_field) {
 }
 
 template <Limits limits>
-void Pipeline<limits>::infer() {
-  if (!ready_) return;
-  infer_labels(false);
+void Pipeline<limits>::follow_curbs() {
   curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
-}
-
-template <Limits limits>
-int Pipeline<limits>::settle(int passes) {
-  if (!ready_) return 0;
-  int pass = 1;
-  while (infer_labels(true) > 0 && pass < passes) ++pass;
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
-  return pass;
 }
 
 template <Limits limits>

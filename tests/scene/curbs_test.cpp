@@ -63,7 +63,8 @@ TEST_CASE("scene: an island goes up and down again") {
 //   ____________ |
 //  /            \|                road: crown in the middle, falls by 3 %, climbs with the street by 5 % along y
 TEST_CASE("scene: a sloping street has the curb of a flat one") {
-  const auto pipeline = seen([](double x, double y) { return 0.05 * y + (x < 2.0 ? -0.03 * x : -0.06 + 0.12 + 0.02 * (x - 2.0)); });
+  const auto pipeline =
+      seen([](double x, double y) { return 0.05 * y + (x < 2.0 ? -0.03 * x : -0.06 + 0.12 + 0.02 * (x - 2.0)); });
   const auto curbs = across_the_window(pipeline->curbs(), 2.0);
   CHECK(total_length_m(curbs) > 3.8);
   for (const Curb& c : curbs) {

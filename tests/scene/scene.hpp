@@ -1,8 +1,8 @@
 // What scene tests share: a window of 4 x 4 m before the robot, filled from near to far as a laser that nods up does.
 //
 // Tolerances. Points have noise of 5 mm; a height is that of two planes, so its error is that of their posteriors,
-// Curb::height_sd_m: four of them are allowed. A border lies between two cells: half a cell of 0.1 m is allowed, and the
-// cells in which a step falls may go to either side.
+// Curb::height_sd_m: four of them are allowed. A border lies between two cells: half a cell of 0.1 m is allowed, and
+// the cells in which a step falls may go to either side.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,9 @@ std::unique_ptr<ScenePipeline> seen(Height&& height_m, std::uint32_t seed = 1) {
   return pipeline;
 }
 
-inline double length_m(const Curb& c) { return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m); }
+inline double length_m(const Curb& c) {
+  return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
+}
 
 /// Pieces along a line x = constant, as the window's whole width shows them.
 inline std::vector<Curb> across_the_window(std::span<const Curb> curbs, double x_m) {

@@ -54,7 +54,9 @@ TEST_CASE("scene: a gutter is a crease, and both its sides are planes") {
 //  ______________________|             ____________/        lowered: a ramp of 12 cm over 1 m
 //  0                     2             0           2  3
 TEST_CASE("scene: where a curb is lowered there is no step, beside it there is") {
-  const auto pipeline = seen([](double x, double y) { return x < 2.0 ? 0.0 : y < 0.0 ? 0.12 : x < 3.0 ? 0.12 * (x - 2.0) : 0.12; });
+  const auto pipeline = seen([](double x, double y) {
+    return x < 2.0 ? 0.0 : y < 0.0 ? 0.12 : x < 3.0 ? 0.12 * (x - 2.0) : 0.12;
+  });
   double step_length = 0.0;
   for (const Curb& c : across_the_window(pipeline->curbs(), 2.0)) {
     const bool beside = std::max(c.y0_m, c.y1_m) < 0.3f;

@@ -1,5 +1,5 @@
-// A nodding laser on a mast before a step, as the pipeline sees it: tilt readings, poses and scan lines of a street that is
-// flat but for one vertical step across x. Exact but for the noise asked for.
+// A nodding laser on a mast before a step, as the pipeline sees it: tilt readings, poses and scan lines of a street
+// that is flat but for one vertical step across x. Exact but for the noise asked for.
 #pragma once
 
 #include <cmath>
@@ -25,13 +25,14 @@ inline double range_to(const Street& street, double ox, double oz, double dx, do
   const double to_face = (street.step_x_m - ox) / dx;
   const bool starts_near = ox < street.step_x_m;
   const double first = starts_near ? to_near : to_far, second = starts_near ? to_far : to_near;
-  if (!(to_face > 0.0) || first <= to_face) return first;                // meets its own side
+  if (!(to_face > 0.0) || first <= to_face) return first;  // meets its own side
   const double z_face = oz + to_face * dz;
   if (z_face >= 0.0 && z_face < street.step_m && starts_near) return to_face;  // the face of a step up
   return second;
 }
 
-/// 40 lines a second over 180 degrees ahead at steps of half a degree, nodding from 15 to 75 degrees down and back in 10 s.
+/// 40 lines a second over 180 degrees ahead at steps of half a degree, nodding from 15 to 75 degrees down and back in
+/// 10 s.
 class NoddingLaser {
  public:
   static constexpr int beams = 361;
@@ -65,9 +66,12 @@ class NoddingLaser {
     const double interval = static_cast<double>(LaserSettings{}.beam_interval_s);
     std::vector<float> out(beams);
     for (int i = 0; i < beams; ++i) {
-      const double time = line_time_s(line) + interval * i, bearing = -1.5707963267948966 + 3.141592653589793 / 360.0 * i;
-      const double tilt = tilt_rad(time), ahead = std::cos(bearing) * std::cos(tilt), down = std::cos(bearing) * std::sin(tilt);
-      out[static_cast<std::size_t>(i)] = static_cast<float>(range_to(street, x_m(time), height_m, ahead, -down) + noise_sd_m * noise_.normal());
+      const double time = line_time_s(line) + interval * i,
+                   bearing = -1.5707963267948966 + 3.141592653589793 / 360.0 * i;
+      const double tilt = tilt_rad(time), ahead = std::cos(bearing) * std::cos(tilt),
+                   down = std::cos(bearing) * std::sin(tilt);
+      out[static_cast<std::size_t>(i)] =
+          static_cast<float>(range_to(street, x_m(time), height_m, ahead, -down) + noise_sd_m * noise_.normal());
     }
     return out;
   }

@@ -21,14 +21,16 @@ inline Settings small_settings(int rows = 24, int cols = 24) {
   return settings;
 }
 
-/// Gives each cell of a window four points about its centre at height_m(x, y) +- spread, so that cells have the same variance.
+/// Gives each cell of a window four points about its centre at height_m(x, y) +- spread, so that cells have the same
+/// variance.
 template <Limits limits, typename Height>
 void fill(Dem<limits>& dem, Height&& height_m, double spread_m = 0.002) {
   const double dx = dem.cell_x_m(), dy = dem.cell_y_m();
   for (int i = 0; i < dem.rows(); ++i) {
     for (int j = 0; j < dem.cols(); ++j) {
       for (int k = 0; k < 4; ++k) {
-        const double x = dem.origin_x_m() + (i + (k % 2 == 0 ? 0.3 : 0.7)) * dx, y = dem.origin_y_m() + (j + (k / 2 == 0 ? 0.3 : 0.7)) * dy;
+        const double x = dem.origin_x_m() + (i + (k % 2 == 0 ? 0.3 : 0.7)) * dx,
+                     y = dem.origin_y_m() + (j + (k / 2 == 0 ? 0.3 : 0.7)) * dy;
         const double z = height_m(x, y) + (k == 0 || k == 3 ? spread_m : -spread_m);
         dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1e-4f});
       }
@@ -48,7 +50,8 @@ struct Stages {
   }
   void segment() { segmentation.update(dem, counters); }
   void mix() {
-    mixture.update(dem, segmentation, [this](int slot) { return field.label(slot); }, counters);
+    mixture.update(
+        dem, segmentation, [this](int slot) { return field.label(slot); }, counters);
   }
   int label(bool all = true) {
     const int changed = field.update(dem, mixture, all, counters);
@@ -61,7 +64,9 @@ struct Stages {
     mix();
     label(all);
   }
-  void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) { tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, counters); }
+  void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
+    tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, counters);
+  }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
 

@@ -1,4 +1,5 @@
-// Synthetic ground for tests: points of a height field with noise, the same in every run and with every standard library.
+// Synthetic ground for tests: points of a height field with noise, the same in every run and with every standard
+// library.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,8 @@ struct Patch {
   double x0_m, x1_m, y0_m, y1_m;
 };
 
-/// One point somewhere in each square of a grid over the patch, row by row away from x0, with Gaussian noise of its height.
+/// One point somewhere in each square of a grid over the patch, row by row away from x0, with Gaussian noise of its
+/// height.
 template <typename Height>
 std::vector<Point> sample(const Patch& patch, double spacing_m, double noise_sd_m, Noise& noise, Height&& height_m) {
   std::vector<Point> points;

@@ -1,4 +1,5 @@
-// A cell against the posterior of a Gaussian with unknown mean and variance, computed from all points at once in double.
+// A cell against the posterior of a Gaussian with unknown mean and variance, computed from all points at once in
+// double.
 #include "curbline/cell.hpp"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ struct Reading {
 Cell cell_of(const std::vector<Reading>& readings) {
   Cell cell;
   for (const Reading& r : readings) {
-    cell.add(static_cast<float>(r.dx), static_cast<float>(r.dy), static_cast<float>(r.height), static_cast<float>(r.weight));
+    cell.add(static_cast<float>(r.dx), static_cast<float>(r.dy), static_cast<float>(r.height),
+             static_cast<float>(r.weight));
   }
   return cell;
 }
@@ -27,7 +29,8 @@ std::vector<Reading> readings(int count, double height, double sd) {
   test::Noise noise(7);
   std::vector<Reading> all;
   for (int k = 0; k < count; ++k) {
-    all.push_back({0.1 * (noise.uniform() - 0.5), 0.1 * (noise.uniform() - 0.5), height + sd * noise.normal(), 0.1 + noise.uniform()});
+    all.push_back({0.1 * (noise.uniform() - 0.5), 0.1 * (noise.uniform() - 0.5), height + sd * noise.normal(),
+                   0.1 + noise.uniform()});
   }
   return all;
 }

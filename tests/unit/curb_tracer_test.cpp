@@ -20,7 +20,8 @@ using test::Stages;
 
 /// A window with this ground, labelled and traced from the robot's place.
 template <Limits limits = test::small_limits, typename Height>
-std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f, float robot_y_m = 0.0f, const Settings& settings = small_settings()) {
+std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f, float robot_y_m = 0.0f,
+                                       const Settings& settings = small_settings()) {
   auto stages = std::make_unique<Stages<limits>>(settings);
   fill(stages->dem, height_m);
   for (int pass = 0; pass < 3; ++pass) stages->infer(true);
@@ -28,7 +29,9 @@ std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f
   return stages;
 }
 
-double length_m(const Curb& c) { return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m); }
+double length_m(const Curb& c) {
+  return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
+}
 
 double total_length_m(std::span<const Curb> curbs) {
   double sum = 0.0;
@@ -36,7 +39,9 @@ double total_length_m(std::span<const Curb> curbs) {
   return sum;
 }
 
-double up(double x, double) { return x < 1.4 ? 0.0 : 0.12; }
+double up(double x, double) {
+  return x < 1.4 ? 0.0 : 0.12;
+}
 
 TEST_CASE("curb tracer: a step is one piece with its place, height and direction") {
   const auto stages = traced(up);
@@ -159,8 +164,11 @@ TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across 
   const int gap = GENERATE(4, 5);  // cells without points; the reach is 5 cells
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
-  for (const Point& p : test::sample({0, 1, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.0; })) stages->dem.add(p);
-  for (const Point& p : test::sample({1 + 0.1 * gap, 2.4, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.12; })) stages->dem.add(p);
+  for (const Point& p : test::sample({0, 1, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.0; }))
+    stages->dem.add(p);
+  for (const Point& p :
+       test::sample({1 + 0.1 * gap, 2.4, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.12; }))
+    stages->dem.add(p);
   for (int pass = 0; pass < 3; ++pass) stages->infer(true);
   stages->trace();
   if (gap == 5) {
@@ -212,8 +220,8 @@ TEST_CASE("line fit: a line through points lies within them, whatever its direct
     const double off = k % 2 == 0 ? 0.01 : -0.01;
     fit.add(static_cast<float>(3.0 + 0.1 * k * ux - off * uy), static_cast<float>(-1.0 + 0.1 * k * uy + off * ux));
   }
-  const auto s = fit.segment(static_cast<float>(3.0 - 0.5 * ux), static_cast<float>(-1.0 - 0.5 * uy), static_cast<float>(3.0 + 0.5 * ux),
-                             static_cast<float>(-1.0 + 0.5 * uy), 0.05f);
+  const auto s = fit.segment(static_cast<float>(3.0 - 0.5 * ux), static_cast<float>(-1.0 - 0.5 * uy),
+                             static_cast<float>(3.0 + 0.5 * ux), static_cast<float>(-1.0 + 0.5 * uy), 0.05f);
   CHECK(s.x0_m == Approx(3.0 - 0.55 * ux).margin(0.005));
   CHECK(s.y0_m == Approx(-1.0 - 0.55 * uy).margin(0.005));
   CHECK(s.x1_m == Approx(3.0 + 0.55 * ux).margin(0.005));

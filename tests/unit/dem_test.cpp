@@ -17,7 +17,9 @@ namespace {
 constexpr Limits limits{.rows = 12, .cols = 16};
 using Map = Dem<limits>;
 
-WindowSettings moving() { return {.rows = 12, .cols = 16, .origin_x_m = 0.0f, .origin_y_m = -0.8f}; }
+WindowSettings moving() {
+  return {.rows = 12, .cols = 16, .origin_x_m = 0.0f, .origin_y_m = -0.8f};
+}
 
 Map make_map(const WindowSettings& window) {
   Map dem;
@@ -30,13 +32,17 @@ Point at(double x, double y, double z = 0.0, float variance = 1e-4f) {
 }
 
 /// Number of a cell of the endless grid: a height that tells where it was put.
-double name(int row, int col) { return 0.001 * (100 * row + col); }
+double name(int row, int col) {
+  return 0.001 * (100 * row + col);
+}
 
 /// One point in the middle of every cell.
 void fill_names(Map& dem) {
-  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)), col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
+  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)),
+            col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
   for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) REQUIRE(dem.add(at(0.1 * (row0 + i) + 0.05, 0.1 * (col0 + j) + 0.05, name(row0 + i, col0 + j))));
+    for (int j = 0; j < dem.cols(); ++j)
+      REQUIRE(dem.add(at(0.1 * (row0 + i) + 0.05, 0.1 * (col0 + j) + 0.05, name(row0 + i, col0 + j))));
   }
 }
 
@@ -71,7 +77,8 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
   dem.follow(2.0f, -1.2f, [](int) {});
   fill_names(dem);
   std::map<std::pair<int, int>, int> slot_of;  // of a cell of the endless grid
-  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)), col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
+  const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)),
+            col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
   for (int i = 0; i < 12; ++i) {
     for (int j = 0; j < 16; ++j) slot_of[{row0 + i, col0 + j}] = dem.slot(i, j);
   }
@@ -109,7 +116,8 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
 TEST_CASE("dem: the ring survives a walk all around") {
   Map dem = make_map(moving());
   fill_names(dem);
-  for (const auto& [x, y] : {std::pair{0.4f, 0.0f}, {0.8f, 0.4f}, {0.8f, 1.2f}, {0.4f, 1.2f}, {0.0f, 0.8f}, {0.0f, 0.0f}}) {
+  for (const auto& [x, y] :
+       {std::pair{0.4f, 0.0f}, {0.8f, 0.4f}, {0.8f, 1.2f}, {0.4f, 1.2f}, {0.0f, 0.8f}, {0.0f, 0.0f}}) {
     dem.follow(x, y, [](int) {});
   }
   // Two blocks of rows and three of columns have been away.
@@ -149,7 +157,8 @@ TEST_CASE("dem: a point goes to the cell that it lies in, with its offset from t
 
 TEST_CASE("dem: points outside the window are refused on all four sides") {
   Map dem = make_map(moving());
-  for (const auto& [x, y] : {std::pair{-1e-4, 0.0}, {1.2001, 0.0}, {0.5, -0.8001}, {0.5, 0.8001}, {1e30, 0.0}, {0.5, -1e30}}) {
+  for (const auto& [x, y] :
+       {std::pair{-1e-4, 0.0}, {1.2001, 0.0}, {0.5, -0.8001}, {0.5, 0.8001}, {1e30, 0.0}, {0.5, -1e30}}) {
     CHECK_FALSE(dem.add(at(x, y)));
   }
   CHECK(dem.add(at(0.0, -0.8)));

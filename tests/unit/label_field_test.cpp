@@ -1,4 +1,5 @@
-// Beliefs against the Potts field enumerated in double, and what the field does over time: deferral, refreshing, settling.
+// Beliefs against the Potts field enumerated in double, and what the field does over time: deferral, refreshing,
+// settling.
 #include "curbline/label_field.hpp"
 
 #include <algorithm>
@@ -24,8 +25,8 @@ struct Site {
   double height_m;
 };
 
-/// Three planes of 0, 8 and 4 cm, learned from the half of a map with y < 1.2 m. The sites are another map, with cells in the
-/// other half only: no region is near them, so that they may lie on any of the planes.
+/// Three planes of 0, 8 and 4 cm, learned from the half of a map with y < 1.2 m. The sites are another map, with cells
+/// in the other half only: no region is near them, so that they may lie on any of the planes.
 struct Tiny {
   explicit Tiny(const std::vector<Site>& all) : sites(all), settings(small_settings()), training(settings) {
     Noise noise;
@@ -37,7 +38,8 @@ struct Tiny {
     dem.init(settings.window, settings.planes.prior, 0.0f, 0.0f);
     field.init(settings.labels, settings.planes.prior);
     for (const Site& site : sites) {
-      dem.add({static_cast<float>(0.1 * site.i + 0.05), static_cast<float>(0.1 * site.j + 0.05), static_cast<float>(site.height_m), 1e-4f});
+      dem.add({static_cast<float>(0.1 * site.i + 0.05), static_cast<float>(0.1 * site.j + 0.05),
+               static_cast<float>(site.height_m), 1e-4f});
     }
   }
   int update(bool all = true) { return field.update(dem, training.mixture, all, counters); }
@@ -52,14 +54,18 @@ struct Tiny {
 };
 
 /// Level of the plane that a label stands for.
-double height_of(const Tiny& tiny, int label) { return tiny.plane(label).z_m; }
+double height_of(const Tiny& tiny, int label) {
+  return tiny.plane(label).z_m;
+}
 
 /// Student t with 6 degrees of freedom about the plane, up to a constant.
 double log_node(const Tiny& tiny, const Site& site, int label) {
   const Plane& plane = tiny.plane(label);
   const Cell& cell = tiny.dem.cell(tiny.dem.slot(site.i, site.j));
   const double variance = static_cast<double>(plane.variance_m2 + tiny.settings.planes.prior.noise_m2 / cell.weight);
-  const double residual = site.height_m - static_cast<double>(plane.height_m(0.1f * static_cast<float>(site.i) + 0.05f, 0.1f * static_cast<float>(site.j) + 0.05f));
+  const double residual =
+      site.height_m - static_cast<double>(plane.height_m(0.1f * static_cast<float>(site.i) + 0.05f,
+                                                         0.1f * static_cast<float>(site.j) + 0.05f));
   return -0.5 * std::log(variance) - 3.5 * std::log(1.0 + residual * residual / (6.0 * variance));
 }
 
@@ -73,11 +79,13 @@ std::vector<std::array<double, 3>> marginals_by_enumeration(const Tiny& tiny) {
   std::vector<Pair> pairs;
   for_each_link(tiny.dem, tiny.settings.labels.link_reach, [&](const Link& link) {
     const auto index = [&](std::size_t slot) {
-      return static_cast<std::size_t>(std::find_if(tiny.sites.begin(), tiny.sites.end(), [&](const Site& s) {
-                                        return static_cast<std::size_t>(tiny.dem.slot(s.i, s.j)) == slot;
-                                      }) - tiny.sites.begin());
+      return static_cast<std::size_t>(
+          std::find_if(tiny.sites.begin(), tiny.sites.end(),
+                       [&](const Site& s) { return static_cast<std::size_t>(tiny.dem.slot(s.i, s.j)) == slot; }) -
+          tiny.sites.begin());
     };
-    pairs.push_back({index(link.from), index(link.to), static_cast<double>(tiny.settings.labels.coupling) / link.distance});
+    pairs.push_back(
+        {index(link.from), index(link.to), static_cast<double>(tiny.settings.labels.coupling) / link.distance});
   });
   std::vector<std::array<double, 3>> node(n), marginal(n, {0.0, 0.0, 0.0});
   for (std::size_t s = 0; s < n; ++s) {
@@ -124,28 +132,47 @@ double worst_difference(const Tiny& tiny) {
 constexpr double quantisation = 0.09 / 4;
 
 TEST_CASE("label field: on a row of cells one pass gives the exact beliefs") {
-  const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{2, 17, 0.0}, {3, 17, 0.015}, {4, 17, 0.02}, {5, 17, 0.05}, {6, 17, 0.03}, {7, 17, 0.06}, {8, 17, 0.07}, {9, 17, 0.02}});
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{2, 17, 0.0},
+                                                             {3, 17, 0.015},
+                                                             {4, 17, 0.02},
+                                                             {5, 17, 0.05},
+                                                             {6, 17, 0.03},
+                                                             {7, 17, 0.06},
+                                                             {8, 17, 0.07},
+                                                             {9, 17, 0.02}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: on a column of cells one pass gives the exact beliefs") {
-  const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{5, 14, 0.0}, {5, 15, 0.015}, {5, 16, 0.02}, {5, 17, 0.05}, {5, 18, 0.03}, {5, 19, 0.06}, {5, 20, 0.07}, {5, 21, 0.02}});
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{5, 14, 0.0},
+                                                             {5, 15, 0.015},
+                                                             {5, 16, 0.02},
+                                                             {5, 17, 0.05},
+                                                             {5, 18, 0.03},
+                                                             {5, 19, 0.06},
+                                                             {5, 20, 0.07},
+                                                             {5, 21, 0.02}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: across gaps the coupling falls with the distance, and the beliefs stay exact") {
-  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{1, 17, 0.0}, {3, 17, 0.02}, {6, 17, 0.025}, {7, 17, 0.06}, {17, 17, 0.05}, {23, 17, 0.03}});
+  const auto tiny = std::make_unique<Tiny>(
+      std::vector<Site>{{1, 17, 0.0}, {3, 17, 0.02}, {6, 17, 0.025}, {7, 17, 0.06}, {17, 17, 0.05}, {23, 17, 0.03}});
   tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
 
 TEST_CASE("label field: on a tree a second pass gives the exact beliefs") {
-  const auto tiny = std::make_unique<Tiny>(
-      std::vector<Site>{{4, 17, 0.0}, {5, 17, 0.02}, {6, 17, 0.05}, {5, 18, 0.03}, {5, 19, 0.02}, {6, 19, 0.07}, {7, 19, 0.05}, {5, 16, 0.01}});
+  const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{3, 17, 0.05},
+                                                             {4, 17, 0.0},
+                                                             {5, 17, 0.02},
+                                                             {5, 18, 0.03},
+                                                             {5, 19, 0.02},
+                                                             {6, 19, 0.07},
+                                                             {7, 19, 0.05},
+                                                             {5, 16, 0.01}});
   for (int pass = 0; pass < 3; ++pass) tiny->update();
   CHECK(worst_difference(*tiny) < quantisation);
 }
@@ -264,7 +291,8 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end",
 TEST_CASE("label field: on a map that no longer changes the kept field comes to where whole passes end") {
   const auto lines = std::make_unique<Stages<>>(small_settings()), whole = std::make_unique<Stages<>>(small_settings());
   Noise noise;
-  const auto points = test::sample({0, 2.4, 0, 2.4}, 0.06, 0.02, noise, [](double x, double y) { return x + 0.5 * y < 1.7 ? 0.02 * x : 0.07; });
+  const auto points = test::sample({0, 2.4, 0, 2.4}, 0.06, 0.02, noise,
+                                   [](double x, double y) { return x + 0.5 * y < 1.7 ? 0.02 * x : 0.07; });
   for (auto* stages : {lines.get(), whole.get()}) {
     for (const Point& p : points) stages->dem.add(p);
   }
@@ -276,7 +304,8 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
       if (!whole->dem.cell(whole->dem.slot(i, j)).valid()) continue;
       CHECK(lines->label_at(i, j) == whole->label_at(i, j));
       const auto a = lines->field.belief(lines->dem, i, j), b = whole->field.belief(whole->dem, i, j);
-      for (std::size_t c = 0; c < a.label.size(); ++c) worst = std::max(worst, std::abs(a.probability[c] - b.probability[c]));
+      for (std::size_t c = 0; c < a.label.size(); ++c)
+        worst = std::max(worst, std::abs(a.probability[c] - b.probability[c]));
     }
   }
   CHECK(worst < static_cast<float>(quantisation));

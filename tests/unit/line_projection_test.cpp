@@ -57,16 +57,20 @@ Eigen::Isometry3d transform(double x, double y, double z, double roll, double pi
   return T;
 }
 
-Eigen::Isometry3d transform(const MountSettings& m) { return transform(m.x_m, m.y_m, m.z_m, m.roll_rad, m.pitch_rad, m.yaw_rad); }
+Eigen::Isometry3d transform(const MountSettings& m) {
+  return transform(m.x_m, m.y_m, m.z_m, m.roll_rad, m.pitch_rad, m.yaw_rad);
+}
 
 /// p_base = T_base_tilt R_y(tilt) T_tilt_laser p_laser, in double.
 Eigen::Vector3d in_base(const Settings& s, double range, double bearing, double tilt) {
   const Eigen::Vector3d p_laser(range * std::cos(bearing), range * std::sin(bearing), 0.0);
-  return transform(s.tilt.T_base_tilt) * (Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()) * (transform(s.tilt.T_tilt_laser) * p_laser));
+  return transform(s.tilt.T_base_tilt) *
+         (Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()) * (transform(s.tilt.T_tilt_laser) * p_laser));
 }
 
 double bearing_of(const Settings& s, std::size_t beam) {
-  return static_cast<double>(s.laser.first_bearing_rad) + static_cast<double>(beam) * static_cast<double>(s.laser.bearing_step_rad);
+  return static_cast<double>(s.laser.first_bearing_rad) +
+         static_cast<double>(beam) * static_cast<double>(s.laser.bearing_step_rad);
 }
 
 MountSettings any_mount(Noise& noise) {
@@ -74,7 +78,9 @@ MountSettings any_mount(Noise& noise) {
   return {within(1.0), within(1.0), within(1.0), within(3.0), within(1.5), within(3.0)};
 }
 
-double distance(const Point& p, const Eigen::Vector3d& truth) { return (Eigen::Vector3d(p.x_m, p.y_m, p.z_m) - truth).norm(); }
+double distance(const Point& p, const Eigen::Vector3d& truth) {
+  return (Eigen::Vector3d(p.x_m, p.y_m, p.z_m) - truth).norm();
+}
 
 TEST_CASE("line projection: any mount, tilt and bearing give the point of the chain of transforms") {
   Noise noise;
@@ -124,7 +130,8 @@ TEST_CASE("line projection: each beam has the tilt of its own time") {
   CHECK(bench->counters.beams_extrapolated == 0);
 }
 
-TEST_CASE("line projection: beams past the newest tilt are extrapolated and counted, further ones dropped and counted") {
+TEST_CASE(
+    "line projection: beams past the newest tilt are extrapolated and counted, further ones dropped and counted") {
   Settings s = base_settings();
   s.laser.beam_interval_s = 50e-6f;
   s.tilt.max_extrapolation_s = 0.010f;
@@ -145,7 +152,8 @@ TEST_CASE("line projection: NaN, infinity and readings out of range are no retur
   s.laser.max_range_m = 30.0f;
   const auto bench = std::make_unique<Bench>(s);
   const float inf = std::numeric_limits<float>::infinity();
-  const auto points = bench->project({std::numeric_limits<float>::quiet_NaN(), inf, -inf, 0.0f, -1.0f, 0.0999f, 30.0f, 65.0f, 0.1f, 29.99f});
+  const auto points = bench->project(
+      {std::numeric_limits<float>::quiet_NaN(), inf, -inf, 0.0f, -1.0f, 0.0999f, 30.0f, 65.0f, 0.1f, 29.99f});
   CHECK(points.size() == 2);
   CHECK(bench->counters.no_returns == 8);
 }
@@ -164,7 +172,8 @@ TEST_CASE("line projection: while the robot moves each beam starts from the pose
   s.tilt.T_base_tilt = {0.3f, 0.1f, 0.9f, 0.02f, -0.03f, 0.1f};
   const auto bench = std::make_unique<Bench>(s);
   // From (4, -2) heading 30 deg to 5 cm further on, heading 31 deg.
-  const Eigen::Quaterniond q0(Eigen::AngleAxisd(0.5236, Eigen::Vector3d::UnitZ())), q1(Eigen::AngleAxisd(0.5411, Eigen::Vector3d::UnitZ()));
+  const Eigen::Quaterniond q0(Eigen::AngleAxisd(0.5236, Eigen::Vector3d::UnitZ())),
+      q1(Eigen::AngleAxisd(0.5411, Eigen::Vector3d::UnitZ()));
   const Eigen::Vector3d c0(4.0, -2.0, 0.1), c1(4.043, -1.975, 0.11);
   const auto pose = [](const Eigen::Vector3d& c, const Eigen::Quaterniond& q) {
     const Eigen::Vector3f p = c.cast<float>();
@@ -188,9 +197,12 @@ double simulated_variance(const Settings& s, std::size_t beam, double range, dou
   for (int k = 0; k < trials; ++k) {
     const double r = range + static_cast<double>(s.laser.range_sd_m) * noise.normal();
     const double b = bearing_of(s, beam) + static_cast<double>(s.laser.bearing_sd_rad) * noise.normal();
-    const double t = tilt + static_cast<double>(s.tilt.angle_sd_rad) * noise.normal() + rate * static_cast<double>(s.tilt.time_sd_s) * noise.normal();
-    const double roll = static_cast<double>(s.tilt.roll_sd_rad) * noise.normal() + static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
-    const double pitch = static_cast<double>(s.tilt.pitch_sd_rad) * noise.normal() + static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
+    const double t = tilt + static_cast<double>(s.tilt.angle_sd_rad) * noise.normal() +
+                     rate * static_cast<double>(s.tilt.time_sd_s) * noise.normal();
+    const double roll = static_cast<double>(s.tilt.roll_sd_rad) * noise.normal() +
+                        static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
+    const double pitch = static_cast<double>(s.tilt.pitch_sd_rad) * noise.normal() +
+                         static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
     const Eigen::Vector3d p = transform(0, 0, 0, roll, pitch, 0) * in_base(s, r, b, t);
     const double z = p.z() + static_cast<double>(s.pose.height_sd_m) * noise.normal();
     sum += z;
@@ -229,7 +241,8 @@ TEST_CASE("line projection: the variance of a height is that of simulated errors
   REQUIRE(points.size() == 1);
   const double beam_s = 1e-9 * static_cast<double>(bench->projection.duration_ns(beam + 1));
   INFO("kind of error " << kind << ", beam " << beam);
-  CHECK(points[0].variance_m2 == Approx(simulated_variance(s, beam, 2.5, 0.45 + 0.8 * beam_s, 0.8)).epsilon(0.1).margin(1e-9));
+  CHECK(points[0].variance_m2 ==
+        Approx(simulated_variance(s, beam, 2.5, 0.45 + 0.8 * beam_s, 0.8)).epsilon(0.1).margin(1e-9));
 }
 
 TEST_CASE("line projection: the mount's errors turn about the robot's base, its attitude's too, in a slanting pose") {

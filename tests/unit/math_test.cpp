@@ -86,7 +86,8 @@ TEST_CASE("math: floor goes down on both sides of zero") {
 TEST_CASE("math: NaN and infinities are not finite, everything else is") {
   using Float = std::numeric_limits<float>;
   for (const float x : {0.0f, -0.0f, Float::denorm_min(), Float::max(), Float::lowest()}) CHECK(is_finite(x));
-  for (const float x : {Float::infinity(), -Float::infinity(), Float::quiet_NaN(), -Float::quiet_NaN()}) CHECK_FALSE(is_finite(x));
+  for (const float x : {Float::infinity(), -Float::infinity(), Float::quiet_NaN(), -Float::quiet_NaN()})
+    CHECK_FALSE(is_finite(x));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // The whole way from scan lines to curbs: what is refused, what is survived, and what stays the same.
 #include "curbline/pipeline.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,22 +10,19 @@
 #include <vector>
 
 #include "support/heap_count.hpp"
-#include "support/nodding_laser.hpp"
+#include "support/nodding_pipeline.hpp"
 
 namespace curbline {
 namespace {
 
+using test::add_tilts;
+using test::FullPipeline;
+using test::longest;
 using test::NoddingLaser;
+using test::started;
 using test::Street;
-using FullPipeline = Pipeline<Limits{}>;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-
-/// Tilt readings of 100 Hz up to `line` and one beyond its end.
-void add_tilts(FullPipeline& pipeline, int line) {
-  const double end = NoddingLaser::line_time_s(line) + 0.03;
-  for (double t = end - NoddingLaser::line_s + 0.005; t <= end + 1e-9; t += 0.01) pipeline.add_tilt(NoddingLaser::tilt(t));
-}
 
 /// Takes lines [first, last) of a robot that stands before a street.
 void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, int first, int last) {
@@ -35,19 +31,6 @@ void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, in
     const auto ranges = laser.ranges(street, line, [](double) { return 0.0; });
     REQUIRE(pipeline.take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
   }
-}
-
-std::unique_ptr<FullPipeline> started(const Settings& settings = NoddingLaser::settings()) {
-  auto pipeline = std::make_unique<FullPipeline>();
-  REQUIRE(pipeline->init(settings) == Status::ok);
-  return pipeline;
-}
-
-/// The longest piece of curb.
-const Curb& longest(std::span<const Curb> curbs) {
-  REQUIRE_FALSE(curbs.empty());
-  const auto length2 = [](const Curb& c) { return (c.x1_m - c.x0_m) * (c.x1_m - c.x0_m) + (c.y1_m - c.y0_m) * (c.y1_m - c.y0_m); };
-  return *std::max_element(curbs.begin(), curbs.end(), [&](const Curb& a, const Curb& b) { return length2(a) < length2(b); });
 }
 
 std::vector<char> bytes(std::span<const Curb> curbs) {
@@ -64,7 +47,9 @@ std::vector<char> bytes(std::span<const Curb> curbs) {
   return out;
 }
 
-TEST_CASE("pipeline: with the default limits it fits into 256 KiB") { CHECK(sizeof(FullPipeline) <= 256 * 1024); }
+TEST_CASE("pipeline: with the default limits it fits into 256 KiB") {
+  CHECK(sizeof(FullPipeline) <= 256 * 1024);
+}
 
 TEST_CASE("pipeline: a step ahead is found with its place, height and direction from one sweep") {
   const double step = GENERATE(0.12, -0.15);
@@ -74,7 +59,8 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   const Curb& curb = longest(pipeline->curbs());
   CHECK(curb.kind == (step > 0.0 ? CurbKind::step_up : CurbKind::step_down));
   CHECK(curb.height_m == Approx(step).margin(4 * curb.height_sd_m + 0.005));
-  // Half a cell; behind a step down the ground is hidden for |step| * 2 m / 1 m, and the border lies in the gap's middle.
+  // Half a cell; behind a step down the ground is hidden for |step| * 2 m / 1 m, and the border lies in the gap's
+  // middle.
   const double hidden = step < 0.0 ? -step * 2.0 : 0.0;
   CHECK(curb.x0_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
   CHECK(curb.x1_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
@@ -174,8 +160,9 @@ TEST_CASE("pipeline: bad data leave no trace: the curbs are the same to the bit"
   plagued->take({now - 1'000'000'000, ranges});
   plagued->take({now + 12'000'000, long_line});
   plagued->take({now + 10'000'000'000, ranges});
-  const std::vector<Point> points{{nan, 0.0f, 0.0f, 1e-4f}, {1.0f, infinity, 0.0f, 1e-4f}, {1.0f, 0.0f, -infinity, 1e-4f}, {1.0f, 0.0f, 0.0f, nan},
-                                  {1e30f, 0.0f, 0.0f, 1e-4f}, {-5.0f, 0.0f, 0.0f, 1e-4f}};
+  const std::vector<Point> points{{nan, 0.0f, 0.0f, 1e-4f},       {1.0f, infinity, 0.0f, 1e-4f},
+                                  {1.0f, 0.0f, -infinity, 1e-4f}, {1.0f, 0.0f, 0.0f, nan},
+                                  {1e30f, 0.0f, 0.0f, 1e-4f},     {-5.0f, 0.0f, 0.0f, 1e-4f}};
   plagued->observe(points);
   CHECK(plagued->counters().tilt_dropped <= 3);
   stand(*plagued, same, {}, 100, 220);
@@ -277,92 +264,6 @@ TEST_CASE("pipeline: cells tell their plane and how sure it is") {
   CHECK(pipeline->plane(far).height_m(3.05f, 2.05f) == Approx(0.12).margin(0.005));
 }
 
-/// A drive at 0.25 m/s over a step: how far the curb strayed from it where its whole width was told as a step.
-struct Drive {
-  std::unique_ptr<FullPipeline> pipeline;
-  double worst_place_m = 0.0, worst_height_m = 0.0;
-  int sightings = 0;
-};
-
-Drive drive(const Street& street, int lines, const Settings& settings, int first_without_pose = 0, int last_without_pose = 0) {
-  Drive out{started(settings)};
-  NoddingLaser laser;
-  const auto x = [](double time_s) { return 0.25 * time_s; };
-  for (int line = 0; line < lines; ++line) {
-    const double t = NoddingLaser::line_time_s(line);
-    add_tilts(*out.pipeline, line);
-    if (line < first_without_pose || line >= last_without_pose) {
-      out.pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
-      out.pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
-    }
-    const auto ranges = laser.ranges(street, line, x);
-    out.pipeline->take({NoddingLaser::ns(t), ranges});
-    for (const Curb& curb : out.pipeline->curbs()) {
-      if (curb.kind == CurbKind::crease || std::abs(curb.y1_m - curb.y0_m) < 2.0f) continue;
-      out.worst_place_m = std::max({out.worst_place_m, std::abs(curb.x0_m - street.step_x_m), std::abs(curb.x1_m - street.step_x_m)});
-      out.worst_height_m = std::max(out.worst_height_m, std::abs(std::abs(static_cast<double>(curb.height_m)) - street.step_m));
-      ++out.sightings;
-    }
-  }
-  return out;
-}
-
-Settings driving_settings() {
-  Settings settings = NoddingLaser::settings();
-  settings.pose.still = false;
-  return settings;
-}
-
-TEST_CASE("pipeline: while the robot drives the window follows and the curb stays where it is") {
-  const Drive d = drive({3.5, 0.12}, 640, driving_settings());  // to x = 4 m: past the step
-  CHECK(d.sightings > 100);
-  CHECK(d.worst_place_m < 0.1);
-  CHECK(d.worst_height_m < 0.02);
-  // The window begins at the robot, to half a block.
-  CHECK(d.pipeline->dem().origin_x_m() == Approx(4.0).margin(0.21));
-  CHECK(d.pipeline->dem().origin_y_m() == Approx(-2.0).margin(1e-4));
-}
-
-TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
-  const Drive d = drive({3.5, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without
-  CHECK(d.pipeline->counters().lines_dropped == 46);  // the first ones are extrapolated, for 0.1 s
-  CHECK(d.sightings > 100);
-  CHECK(d.worst_place_m < 0.1);
-}
-
-TEST_CASE("pipeline: with both tasks apart the window may move before labels follow") {
-  // Lines are taken in at their rate, inference comes every twentieth time.
-  const auto pipeline = started(driving_settings());
-  NoddingLaser laser;
-  const auto x = [](double time_s) { return 0.25 * time_s; };
-  for (int line = 0; line < 400; ++line) {
-    const double t = NoddingLaser::line_time_s(line);
-    add_tilts(*pipeline, line);
-    pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
-    pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
-    REQUIRE(pipeline->observe({NoddingLaser::ns(t), laser.ranges({4.0, 0.12}, line, x)}) == Status::ok);
-    if (line % 20 == 19) pipeline->infer();
-  }
-  const Curb& curb = longest(pipeline->curbs());
-  CHECK(curb.height_m == Approx(0.12).margin(0.02));
-  CHECK(curb.x0_m == Approx(4.0).margin(0.1));
-}
-
-TEST_CASE("pipeline: a pose far off moves the window there and back, and the map starts afresh") {
-  const auto pipeline = started(driving_settings());
-  NoddingLaser laser;
-  const float jump = GENERATE(1000.0f, 1e6f);
-  for (int line = 0; line < 420; ++line) {
-    const double t = NoddingLaser::line_time_s(line);
-    add_tilts(*pipeline, line);
-    pipeline->add_pose({NoddingLaser::ns(t), line == 20 ? jump : 0.0f});
-    pipeline->add_pose({NoddingLaser::ns(t + 0.02), line == 20 ? jump : 0.0f});
-    REQUIRE(pipeline->take({NoddingLaser::ns(t), laser.ranges({}, line, [](double) { return 0.0; })}) == Status::ok);
-  }
-  CHECK(pipeline->dem().origin_x_m() == Approx(0.0).margin(1e-3));
-  CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
-}
-
 TEST_CASE("heap count: it sees an allocation") {
   const long before = test::heap_count();
   void* p = ::operator new(16);
@@ -377,7 +278,8 @@ TEST_CASE("pipeline: nothing is taken from the heap, in any call") {
   NoddingLaser laser;
   std::vector<std::vector<float>> lines;
   for (int line = 0; line < 100; ++line) lines.push_back(laser.ranges({}, line, [](double) { return 0.0; }));
-  Settings settings = driving_settings();
+  Settings settings = NoddingLaser::settings();
+  settings.pose.still = false;
   const std::vector<Point> points{{1.0f, 0.0f, 0.0f, 1e-4f}};
   int good = 0;
 

@@ -197,7 +197,8 @@ TEST_CASE("plane mixture: a plane that hardly a cell answers for keeps its param
   fill(stages->dem, [](double, double) { return 0.3; });
   stages->infer(true);
   const int label = stages->label_at(0, 0);
-  stages->mixture.maximise(stages->dem, [&](int i, int j, auto&& visit) { visit(label, i == 0 && j == 0 ? 1.0f : 0.0f); });
+  stages->mixture.maximise(stages->dem,
+                           [&](int i, int j, auto&& visit) { visit(label, i == 0 && j == 0 ? 1.0f : 0.0f); });
   CHECK(stages->mixture.plane(label).z_m == Approx(0.3).margin(1e-4));
 }
 

@@ -38,8 +38,8 @@ PlanePrior no_floor() {
   return prior;
 }
 
-/// ln p(z | points on one plane), normal-inverse-gamma: noise ~ IG(a0, a0 V0), level and slopes ~ N((mean z, 0, 0), noise / V0)
-/// about the centroid; plus (n / 2) ln(2 pi V0), the part that log_evidence() leaves out.
+/// ln p(z | points on one plane), normal-inverse-gamma: noise ~ IG(a0, a0 V0), level and slopes ~ N((mean z, 0, 0),
+/// noise / V0) about the centroid; plus (n / 2) ln(2 pi V0), the part that log_evidence() leaves out.
 double evidence_by_definition(const std::vector<Point>& points, const PlanePrior& prior) {
   const double V0 = prior.noise_m2, a0 = prior.degrees, b0 = a0 * V0, n = static_cast<double>(points.size());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -57,8 +57,8 @@ double evidence_by_definition(const std::vector<Point>& points, const PlanePrior
   }
   q -= r.dot(L.ldlt().solve(r));
   const double a = a0 + 0.5 * n, b = b0 + 0.5 * q;
-  return 0.5 * (std::log(L0.determinant()) - std::log(L.determinant())) + a0 * std::log(b0) - a * std::log(b) + std::lgamma(a) -
-         std::lgamma(a0) + 0.5 * n * std::log(V0);
+  return 0.5 * (std::log(L0.determinant()) - std::log(L.determinant())) + a0 * std::log(b0) - a * std::log(b) +
+         std::lgamma(a) - std::lgamma(a0) + 0.5 * n * std::log(V0);
 }
 
 TEST_CASE("plane moments: merged, they are those of the union") {
@@ -112,16 +112,18 @@ TEST_CASE("plane evidence: agrees with its definition, from one point to as many
   const double spacing = GENERATE(2.0, 0.9, 0.5, 0.1, 0.04);
   const double sd = GENERATE(0.002, 0.01, 0.1);
   Noise noise;
-  const auto points = test::sample({1, 3, -1, 1}, spacing, sd, noise, [](double x, double y) { return -0.9 + 0.07 * x - 0.03 * y; });
+  const auto points =
+      test::sample({1, 3, -1, 1}, spacing, sd, noise, [](double x, double y) { return -0.9 + 0.07 * x - 0.03 * y; });
   const PlanePrior prior;
   const double truth = evidence_by_definition(points, prior);
   const PlaneMoments m = of_points(points);
-  // Stirling's series to 1 / x leaves 1 / (360 x^3) at x = 2.5. Float leaves 1e-6 of the scatter of z in the residual, which
-  // enters as shape * ln(rate).
+  // Stirling's series to 1 / x leaves 1 / (360 x^3) at x = 2.5. Float leaves 1e-6 of the scatter of z in the residual,
+  // which enters as shape * ln(rate).
   const double n = static_cast<double>(points.size()), V0 = prior.noise_m2;
   const double shape = 2.0 + 0.5 * n, rate = 2.0 + 0.5 * n * sd * sd / V0;
   INFO(points.size() << " points, noise " << sd);
-  CHECK(log_evidence(m, prior) == Approx(truth).margin(1e-3 + shape / rate * 0.5e-6 * static_cast<double>(m.zz) / V0 + 1e-6 * std::abs(truth)));
+  CHECK(log_evidence(m, prior) ==
+        Approx(truth).margin(1e-3 + shape / rate * 0.5e-6 * static_cast<double>(m.zz) / V0 + 1e-6 * std::abs(truth)));
 }
 
 TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a step lose") {
@@ -142,7 +144,8 @@ TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a
 TEST_CASE("plane fit: recovers level, slopes and noise within their standard deviations") {
   Noise noise;
   const double sd = 0.008;
-  const auto points = test::sample({0, 4, -2, 2}, 0.1, sd, noise, [](double x, double y) { return -0.88 + 0.07 * x - 0.02 * y; });
+  const auto points =
+      test::sample({0, 4, -2, 2}, 0.1, sd, noise, [](double x, double y) { return -0.88 + 0.07 * x - 0.02 * y; });
   const auto n = static_cast<float>(points.size());
   const Plane plane = fit_plane(of_points(points), n, no_floor());
   const double level_sd = sd / std::sqrt(n), slope_sd = level_sd / std::sqrt(16.0 / 12.0);
@@ -191,7 +194,8 @@ TEST_CASE("plane fit: the stated variance of a height is the one that repeated f
 
 TEST_CASE("plane fit: far from the origin it keeps its digits") {
   Noise noise;
-  const auto points = test::sample({0, 2, 0, 2}, 0.1, 0.005, noise, [](double x, double y) { return 0.05 * x + 0.02 * y; });
+  const auto points =
+      test::sample({0, 2, 0, 2}, 0.1, 0.005, noise, [](double x, double y) { return 0.05 * x + 0.02 * y; });
   // Shifts that float can add exactly to rounded coordinates, so that both sets are the same points.
   std::vector<Point> near_by = points, far_away;
   for (Point& p : near_by) {

@@ -17,7 +17,14 @@ constexpr std::int64_t t0 = 1'290'682'980'000'000'000;
 /// A robot that drives 1 m/s along x and turns left by 0.5 rad/s.
 Pose driving(std::int64_t time_ns) {
   const double s = static_cast<double>(time_ns - t0) * 1e-9;
-  return {time_ns, static_cast<float>(s), 2.0f, 0.1f, 0.0f, 0.0f, static_cast<float>(std::sin(0.25 * s)), static_cast<float>(std::cos(0.25 * s))};
+  return {time_ns,
+          static_cast<float>(s),
+          2.0f,
+          0.1f,
+          0.0f,
+          0.0f,
+          static_cast<float>(std::sin(0.25 * s)),
+          static_cast<float>(std::cos(0.25 * s))};
 }
 
 Track track_of(int poses, PoseSettings settings = {}) {
@@ -119,10 +126,12 @@ TEST_CASE("pose track: the newest poses are kept, the oldest give way") {
 }
 
 TEST_CASE("pose track: a pose turns and moves points as its quaternion says") {
-  const Eigen::Quaterniond q = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
+  const Eigen::Quaterniond q = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
                                Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
   const Eigen::Quaternionf f = q.cast<float>();
-  const Pose pose{t0, 1.0f, -2.0f, 0.3f, 1.005f * f.x(), 1.005f * f.y(), 1.005f * f.z(), 1.005f * f.w()};  // normalised here
+  const Pose pose{
+      t0, 1.0f, -2.0f, 0.3f, 1.005f * f.x(), 1.005f * f.y(), 1.005f * f.z(), 1.005f * f.w()};  // normalised here
   const Eigen::Vector3d truth = q * Eigen::Vector3d(0.5, 1.5, -0.8) + Eigen::Vector3d(1.0, -2.0, 0.3);
   const Eigen::Vector3f p = make_transform(pose) * Eigen::Vector3f(0.5f, 1.5f, -0.8f);
   CHECK((p.cast<double>() - truth).norm() < 1e-6);

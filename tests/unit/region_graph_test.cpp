@@ -20,7 +20,8 @@ using Graph = RegionGraph<limits>;
 /// A square of ground of 0.4 m with 16 points, as a leaf is.
 PlaneMoments leaf(double x0, double y0, double height_m, test::Noise& noise, double slope = 0.0) {
   PlaneMoments all;
-  for (const Point& p : test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise, [&](double x, double) { return height_m + slope * x; })) {
+  for (const Point& p : test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise,
+                                     [&](double x, double) { return height_m + slope * x; })) {
     PlaneMoments m;
     m.points = m.cells = m.weight = 1.0f;
     m.x = p.x_m;
@@ -98,7 +99,8 @@ TEST_CASE("region graph: a full store refuses nodes") {
   CHECK(graph->add_node() == 0);
 }
 
-/// A chequered street: an 8 x 8 grid of leaves on three planes with noise, linked to their neighbours in the order given.
+/// A chequered street: an 8 x 8 grid of leaves on three planes with noise, linked to their neighbours in the order
+/// given.
 std::vector<int> partition_of_street(std::uint32_t link_order) {
   static const auto graph = std::make_unique<Graph>();
   graph->clear();
@@ -107,7 +109,9 @@ std::vector<int> partition_of_street(std::uint32_t link_order) {
   for (int i = 0; i < 8; ++i) {
     for (int j = 0; j < 8; ++j) {
       const double x = 0.4 * i, y = 0.4 * j;
-      nodes.push_back(add(*graph, j < 3 ? leaf(x, y, 0.0, noise) : j < 6 ? leaf(x, y, 0.06, noise) : leaf(x, y, 0.0, noise, 0.15)));
+      nodes.push_back(add(*graph, j < 3   ? leaf(x, y, 0.0, noise)
+                                  : j < 6 ? leaf(x, y, 0.06, noise)
+                                          : leaf(x, y, 0.0, noise, 0.15)));
     }
   }
   std::vector<std::pair<int, int>> links;
@@ -120,7 +124,8 @@ std::vector<int> partition_of_street(std::uint32_t link_order) {
     std::swap(links[k - 1], links[engine() % k]);
     if (engine() % 2 == 0) std::swap(links[k - 1].first, links[k - 1].second);
   }
-  for (const auto& [a, b] : links) REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]));
+  for (const auto& [a, b] : links)
+    REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]));
   graph->merge(PlanePrior{});
   std::vector<int> first_of_root(64, -1), partition;
   for (int k = 0; k < 64; ++k) {
@@ -157,7 +162,8 @@ double score(const std::vector<PlaneMoments>& leaves, const std::vector<int>& bl
 TEST_CASE("region graph: on a short chain greedy merging finds the best partition of all") {
   test::Noise noise(11);
   std::vector<PlaneMoments> leaves;
-  for (const double height : {0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.2}) leaves.push_back(leaf(0.4 * static_cast<double>(leaves.size()), 0.0, height, noise));
+  for (const double height : {0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.2})
+    leaves.push_back(leaf(0.4 * static_cast<double>(leaves.size()), 0.0, height, noise));
   // A partition of a chain into runs: bit k set says that a run ends after leaf k.
   double best = -1e30;
   unsigned best_cuts = 0;

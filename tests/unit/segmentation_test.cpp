@@ -81,11 +81,14 @@ TEST_CASE("segmentation: a region splits again when new cells show a step") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   // Far apart and few, the first cells look like one slope.
   test::Noise noise;
-  for (const Point& p : test::sample({0.0, 0.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.0; })) stages->dem.add(p);
-  for (const Point& p : test::sample({1.0, 1.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.12; })) stages->dem.add(p);
+  for (const Point& p : test::sample({0.0, 0.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.0; }))
+    stages->dem.add(p);
+  for (const Point& p : test::sample({1.0, 1.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.12; }))
+    stages->dem.add(p);
   stages->infer();
   CHECK(stages->region_at(0, 5) == stages->region_at(10, 5));
-  for (const Point& p : test::sample({0.1, 2.4, 0.0, 2.4}, 0.05, 0.002, noise, [](double x, double) { return x < 1.0 ? 0.0 : 0.12; })) {
+  for (const Point& p :
+       test::sample({0.1, 2.4, 0.0, 2.4}, 0.05, 0.002, noise, [](double x, double) { return x < 1.0 ? 0.0 : 0.12; })) {
     stages->dem.add(p);
   }
   stages->infer();

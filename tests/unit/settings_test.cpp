@@ -25,7 +25,9 @@ void refuses(Status expected, Reach&& reach, std::initializer_list<Value> values
   }
 }
 
-TEST_CASE("settings: the defaults are good") { CHECK(check(Settings{}) == Status::ok); }
+TEST_CASE("settings: the defaults are good") {
+  CHECK(check(Settings{}) == Status::ok);
+}
 
 TEST_CASE("settings: a bad window is named") {
   constexpr Status bad = Status::bad_window;
@@ -64,7 +66,8 @@ TEST_CASE("settings: a bad tilt is named") {
   refuses(bad, [](Settings& s) -> float& { return s.tilt.latency_s; }, {10.1f, -10.1f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.tilt.max_extrapolation_s; }, {-0.1f, 10.1f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.tilt.max_gap_s; }, {0.0f, 10.1f, nan});
-  for (float TiltSettings::*sd : {&TiltSettings::angle_sd_rad, &TiltSettings::time_sd_s, &TiltSettings::roll_sd_rad, &TiltSettings::pitch_sd_rad}) {
+  for (float TiltSettings::*sd : {&TiltSettings::angle_sd_rad, &TiltSettings::time_sd_s, &TiltSettings::roll_sd_rad,
+                                  &TiltSettings::pitch_sd_rad}) {
     refuses(bad, [&](Settings& s) -> float& { return s.tilt.*sd; }, {-0.001f, nan, infinity});
   }
 }

@@ -66,7 +66,8 @@ TEST_CASE("tilt track: a reading that comes late by the latency is put back to i
   settings.latency_s = GENERATE(0.0075f, -0.010f);
   const auto track = turning(10, settings);
   Snapshot angles = snapshot(*track);
-  CHECK(angles.at(t0 + 100 * ms).angle_rad == Approx(-0.2 + 0.3 * (0.1 + static_cast<double>(settings.latency_s))).margin(2e-6));
+  CHECK(angles.at(t0 + 100 * ms).angle_rad ==
+        Approx(-0.2 + 0.3 * (0.1 + static_cast<double>(settings.latency_s))).margin(2e-6));
 }
 
 TEST_CASE("tilt track: readings too far apart say nothing of the time between") {
@@ -149,7 +150,8 @@ TEST_CASE("tilt track: a snapshot beside a hammering writer is never torn") {
       const TiltAngle a = angles.at(t0 + static_cast<std::int64_t>(k - back) * ms + ms / 2);
       if (a.source != Source::interpolated) continue;  // replaced meanwhile
       ++asked;
-      torn += std::abs(a.angle_rad - (static_cast<float>(k - back) + 0.5f)) > 0.1f || std::abs(a.rate_rad_s - 1000.0f) > 1.0f;
+      torn += std::abs(a.angle_rad - (static_cast<float>(k - back) + 0.5f)) > 0.1f ||
+              std::abs(a.rate_rad_s - 1000.0f) > 1.0f;
     }
     stale += k > 16 && angles.at(t0 + static_cast<std::int64_t>(k + readings) * ms).source != Source::none;
   }

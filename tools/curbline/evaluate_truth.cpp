@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "curbline/evaluate.hpp"
@@ -47,32 +48,60 @@ Result load_or_replay(const std::string& dir) {
   return result;
 }
 
+/// Of a point, on a grid of the usual cells.
+std::pair<int, int> cell_at(double x_m, double y_m) {
+  return {static_cast<int>(std::floor(x_m / 0.1)), static_cast<int>(std::floor(y_m / 0.1))};
+}
+
 /// Where the robot saw the ground: within a cell of a valid one.
 class Seen {
  public:
   explicit Seen(const std::vector<LabelledCell>& cells) {
     for (const LabelledCell& cell : cells) {
       for (int di = -1; di <= 1; ++di) {
-        for (int dj = -1; dj <= 1; ++dj) cells_.insert({at(cell.x_m) + di, at(cell.y_m) + dj});
+        for (int dj = -1; dj <= 1; ++dj) cells_.insert(cell_at(cell.x_m + 0.1 * di, cell.y_m + 0.1 * dj));
       }
     }
   }
-  bool operator()(double x_m, double y_m) const { return cells_.contains({at(x_m), at(y_m)}); }
+  bool operator()(double x_m, double y_m) const { return cells_.contains(cell_at(x_m, y_m)); }
 
  private:
-  static int at(double v) { return static_cast<int>(std::floor(v / 0.1)); }
   std::set<std::pair<int, int>> cells_;
 };
 
+/// V-measure of the labels against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height
+/// on either side of a road are two.
 double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
-  std::vector<int> plane, label;
+  struct Part {
+    int plane, label, number;
+  };
+  std::map<std::pair<int, int>, Part> parts;
   for (const LabelledCell& cell : cells) {
-    const int p = truth.plane_at(cell.x_m, cell.y_m);
-    if (p < 0 || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
-    plane.push_back(p);
-    label.push_back(cell.cell.label);
+    const int plane = truth.plane_at(cell.x_m, cell.y_m);
+    if (plane >= 0 && !truth.obstacle_at(cell.x_m, cell.y_m)) parts[cell_at(cell.x_m, cell.y_m)] = {plane, cell.cell.label, -1};
   }
-  return v_measure(plane, label);
+  int numbers = 0;
+  for (auto& [start, part] : parts) {
+    if (part.number >= 0) continue;
+    part.number = numbers++;
+    std::vector<std::pair<int, int>> open{start};
+    while (!open.empty()) {
+      const auto [i, j] = open.back();
+      open.pop_back();
+      for (const auto& next : {std::pair{i + 1, j}, std::pair{i - 1, j}, std::pair{i, j + 1}, std::pair{i, j - 1}}) {
+        const auto found = parts.find(next);
+        if (found == parts.end() || found->second.number >= 0 || found->second.plane != part.plane) continue;
+        found->second.number = part.number;
+        open.push_back(next);
+      }
+    }
+  }
+  std::vector<int> of_truth, label;
+  for (const auto& [at, part] : parts) {
+    of_truth.push_back(part.number);
+    label.push_back(part.label);
+  }
+  return v_measure(of_truth, label);
 }
 
 /// Root mean square of cell heights about the true ground.

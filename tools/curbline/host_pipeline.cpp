@@ -19,6 +19,11 @@ class PipelineOf final : public HostPipeline {
   bool add_tilt(const TiltReading& reading) override { return pipeline_.add_tilt(reading); }
   bool add_pose(const Pose& pose) override { return pipeline_.add_pose(pose); }
   Status take(const ScanLine& line) override { return pipeline_.take(line); }
+  Status project(const ScanLine& line, std::vector<Point3>& out) override {
+    return pipeline_.project(line, [&](const Point& p) {
+      out.push_back({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
+    });
+  }
   void observe(std::span<const Point> points) override { pipeline_.observe(points); }
   int settle() override { return pipeline_.settle(); }
   std::span<const Curb> curbs() const override { return pipeline_.curbs(); }

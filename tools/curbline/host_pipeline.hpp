@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "curbline/curb_tracer.hpp"
 #include "curbline/pipeline.hpp"
@@ -25,6 +26,8 @@ class HostPipeline {
   virtual bool add_tilt(const TiltReading& reading) = 0;
   virtual bool add_pose(const Pose& pose) = 0;
   virtual Status take(const ScanLine& line) = 0;
+  /// The points of a line instead, added to `out`.
+  virtual Status project(const ScanLine& line, std::vector<Point3>& out) = 0;
   virtual void observe(std::span<const Point> points) = 0;
   virtual int settle() = 0;
   virtual std::span<const Curb> curbs() const = 0;

@@ -8,11 +8,7 @@ Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
   Settings settings;
   apply_window(options, settings.window);
   const Grid grid = asked_grid(options, settings.window);
-  if (options.method != MapMethod::curbline) {
-    reference::Options reference = reference_options(options);
-    reference.max_height_m = static_cast<double>(settings.window.max_height_m);
-    return reference::map_cloud(cloud, grid, reference);
-  }
+  if (options.method != MapMethod::curbline) return map_batch(cloud, grid, static_cast<double>(settings.window.max_height_m), options);
   // Nothing is known of the sensor: every point has the variance that the prior expects.
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;
@@ -25,6 +21,17 @@ Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
   pipeline->observe(points);
   pipeline->settle();
   return crop(pipeline->map(), grid);
+}
+
+Map map_batch(std::span<const Point3> cloud, const Grid& grid, double max_height_m, const MapOptions& options) {
+  reference::Options out;
+  out.method = options.method == MapMethod::segment ? reference::Method::segment
+               : options.method == MapMethod::em    ? reference::Method::em
+                                                    : reference::Method::crf_em;
+  out.edge = options.edge;
+  out.segment_scale = options.segment_scale;
+  out.max_height_m = max_height_m;
+  return reference::map_cloud(cloud, grid, out);
 }
 
 }  // namespace curbline::tools

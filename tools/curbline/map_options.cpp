@@ -101,16 +101,6 @@ Map crop(const Map& map, const Grid& asked) {
   return out;
 }
 
-reference::Options reference_options(const MapOptions& options) {
-  reference::Options out;
-  out.method = options.method == MapMethod::segment ? reference::Method::segment
-               : options.method == MapMethod::em    ? reference::Method::em
-                                                    : reference::Method::crf_em;
-  out.edge = options.edge;
-  out.segment_scale = options.segment_scale;
-  return out;
-}
-
 void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary) {
   // Everything is written beside its target first and takes its place only when all of it could be written.
   std::unique_ptr<AtomicFile> labels, curbs;

@@ -43,8 +43,6 @@ Grid asked_grid(const MapOptions& options, const WindowSettings& window);
 /// The part of a map that lies in the grid asked for.
 Map crop(const Map& map, const Grid& asked);
 
-reference::Options reference_options(const MapOptions& options);
-
 /// Writes the files that were asked for, all or none, and the summary with --json. `summary` may hold more to say.
 void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary);
 

@@ -31,7 +31,7 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs)
   grid_before_ = pipeline_->grid();
 }
 
-bool Replay::step() {
+bool Replay::step(std::vector<Point3>* cloud) {
   auto next = scans_.next();
   if (!next) return false;
   check_geometry(*next, robot_.laser, scans_.path(), scans_.line());
@@ -42,7 +42,8 @@ bool Replay::step() {
   feed_poses(last_beam_ns);
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
-  status_ = pipeline_->take({line_.time_ns, line_.ranges_m});
+  const ScanLine line{line_.time_ns, line_.ranges_m};
+  status_ = cloud == nullptr ? pipeline_->take(line) : pipeline_->project(line, *cloud);
   lines_taken_ += status_ == Status::ok;
   keep_leaving_curbs();
   return true;

@@ -28,8 +28,9 @@ class Replay {
   /// Opens the logs. Throws BadInput if the robot needs one that is not given.
   Replay(const Robot& robot, const ReplayLogs& logs);
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log.
-  bool step();
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. With `cloud` its points are added there
+  /// and the pipeline maps nothing: for the methods that take a whole cloud.
+  bool step(std::vector<Point3>* cloud = nullptr);
 
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "curbline/commands.hpp"
+#include "curbline/map_cloud.hpp"
 #include "curbline/map_options.hpp"
 #include "curbline/replay.hpp"
 #include "formats/csv.hpp"
@@ -94,20 +95,28 @@ void run(const Options& o) {
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
   apply_window(o.map, robot.window);
-  if (o.map.method != MapMethod::curbline) {
-    throw BadInput("replay streams and only curbline does; expected --method curbline, or `curbline map` on a cloud");
-  }
   Replay replay(robot, o.logs);
   Pace pace(parse_speed(o.speed));
   CurbStream stream;
-  while (replay.step()) {
+  const bool batch = o.map.method != MapMethod::curbline;
+  std::vector<Point3> cloud;
+  while (replay.step(batch ? &cloud : nullptr)) {
     pace.wait_for(replay.line().time_ns);
     if (o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();
-  Map map = replay.pipeline().map();
-  if (o.map.fixed()) map = crop(map, asked_grid(o.map, robot.window));
-  if (!o.map.fixed()) map.curbs = replay.all_curbs();
+  const Grid grid = o.map.fixed() ? asked_grid(o.map, robot.window) : replay.pipeline().grid();
+  Map map;
+  if (batch) {
+    map = map_batch(cloud, grid, static_cast<double>(robot.window.max_height_m), o.map);
+  } else {
+    map = replay.pipeline().map();
+    if (o.map.fixed()) {
+      map = crop(map, grid);
+    } else {
+      map.curbs = replay.all_curbs();
+    }
+  }
   give_out(o.map, map, o.logs.scans, summary_of(replay));
 }
 

@@ -1,0 +1,38 @@
+// The pipeline of a robot with a nodding laser, for tests of the whole way.
+#pragma once
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <span>
+
+#include "support/nodding_laser.hpp"
+
+namespace curbline::test {
+
+using FullPipeline = Pipeline<Limits{}>;
+
+inline std::unique_ptr<FullPipeline> started(const Settings& settings = NoddingLaser::settings()) {
+  auto pipeline = std::make_unique<FullPipeline>();
+  REQUIRE(pipeline->init(settings) == Status::ok);
+  return pipeline;
+}
+
+/// Tilt readings of 100 Hz up to `line` and one beyond its end.
+inline void add_tilts(FullPipeline& pipeline, int line) {
+  const double end = NoddingLaser::line_time_s(line) + 0.03;
+  for (double t = end - NoddingLaser::line_s + 0.005; t <= end + 1e-9; t += 0.01)
+    pipeline.add_tilt(NoddingLaser::tilt(t));
+}
+
+/// The longest piece of curb.
+inline const Curb& longest(std::span<const Curb> curbs) {
+  REQUIRE_FALSE(curbs.empty());
+  const auto length2 = [](const Curb& c) {
+    return (c.x1_m - c.x0_m) * (c.x1_m - c.x0_m) + (c.y1_m - c.y0_m) * (c.y1_m - c.y0_m);
+  };
+  return *std::max_element(curbs.begin(), curbs.end(),
+                           [&](const Curb& a, const Curb& b) { return length2(a) < length2(b); });
+}
+
+}  // namespace curbline::test

@@ -1,0 +1,110 @@
+// The pipeline of a robot that drives, or that jumps: the window follows, and curbs stay where they are in the map.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+
+#include "curbline/pipeline.hpp"
+#include "support/nodding_pipeline.hpp"
+
+namespace curbline {
+namespace {
+
+using test::add_tilts;
+using test::FullPipeline;
+using test::longest;
+using test::NoddingLaser;
+using test::started;
+using test::Street;
+
+/// A drive at 0.25 m/s over a step: how far the curb strayed from it where its whole width was told as a step.
+struct Drive {
+  std::unique_ptr<FullPipeline> pipeline;
+  double worst_place_m = 0.0, worst_height_m = 0.0;
+  int sightings = 0;
+};
+
+Drive drive(const Street& street, int lines, const Settings& settings, int first_without_pose = 0,
+            int last_without_pose = 0) {
+  Drive out{started(settings)};
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.25 * time_s; };
+  for (int line = 0; line < lines; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*out.pipeline, line);
+    if (line < first_without_pose || line >= last_without_pose) {
+      out.pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+      out.pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    }
+    const auto ranges = laser.ranges(street, line, x);
+    out.pipeline->take({NoddingLaser::ns(t), ranges});
+    for (const Curb& curb : out.pipeline->curbs()) {
+      if (curb.kind == CurbKind::crease || std::abs(curb.y1_m - curb.y0_m) < 2.0f) continue;
+      out.worst_place_m =
+          std::max({out.worst_place_m, std::abs(curb.x0_m - street.step_x_m), std::abs(curb.x1_m - street.step_x_m)});
+      out.worst_height_m =
+          std::max(out.worst_height_m, std::abs(std::abs(static_cast<double>(curb.height_m)) - street.step_m));
+      ++out.sightings;
+    }
+  }
+  return out;
+}
+
+Settings driving_settings() {
+  Settings settings = NoddingLaser::settings();
+  settings.pose.still = false;
+  return settings;
+}
+
+TEST_CASE("pipeline: while the robot drives the window follows and the curb stays where it is") {
+  const Drive d = drive({3.5, 0.12}, 640, driving_settings());  // to x = 4 m: past the step
+  CHECK(d.sightings > 100);
+  CHECK(d.worst_place_m < 0.1);
+  CHECK(d.worst_height_m < 0.02);
+  // The window begins at the robot, to half a block.
+  CHECK(d.pipeline->dem().origin_x_m() == Approx(4.0).margin(0.21));
+  CHECK(d.pipeline->dem().origin_y_m() == Approx(-2.0).margin(1e-4));
+}
+
+TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
+  const Drive d = drive({3.5, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without
+  CHECK(d.pipeline->counters().lines_dropped == 46);                      // the first ones are extrapolated, for 0.1 s
+  CHECK(d.sightings > 100);
+  CHECK(d.worst_place_m < 0.1);
+}
+
+TEST_CASE("pipeline: with both tasks apart the window may move before labels follow") {
+  // Lines are taken in at their rate, inference comes every twentieth time.
+  const auto pipeline = started(driving_settings());
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.25 * time_s; };
+  for (int line = 0; line < 400; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    REQUIRE(pipeline->observe({NoddingLaser::ns(t), laser.ranges({4.0, 0.12}, line, x)}) == Status::ok);
+    if (line % 20 == 19) pipeline->infer();
+  }
+  const Curb& curb = longest(pipeline->curbs());
+  CHECK(curb.height_m == Approx(0.12).margin(0.02));
+  CHECK(curb.x0_m == Approx(4.0).margin(0.1));
+}
+
+TEST_CASE("pipeline: a pose far off moves the window there and back, and the map starts afresh") {
+  const auto pipeline = started(driving_settings());
+  NoddingLaser laser;
+  const float jump = GENERATE(1000.0f, 1e6f);
+  for (int line = 0; line < 420; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), line == 20 ? jump : 0.0f});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), line == 20 ? jump : 0.0f});
+    REQUIRE(pipeline->take({NoddingLaser::ns(t), laser.ranges({}, line, [](double) { return 0.0; })}) == Status::ok);
+  }
+  CHECK(pipeline->dem().origin_x_m() == Approx(0.0).margin(1e-3));
+  CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
+}
+
+}  // namespace
+}  // namespace curbline
