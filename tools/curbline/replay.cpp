@@ -11,9 +11,35 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-bool holds(const Grid& grid, const MapCurb& curb) {
-  const double x = 0.5 * (curb.x0_m + curb.x1_m), y = 0.5 * (curb.y0_m + curb.y1_m);
-  return x >= grid.x0_m && y >= grid.y0_m && x < grid.x0_m + grid.rows * grid.dx_m && y < grid.y0_m + grid.cols * grid.dy_m;
+/// The share of a segment, from its start to its end, that lies in a grid's rectangle (Liang and Barsky 1984).
+struct Inside {
+  double from = 0, to = 1;
+  bool any() const { return from < to; }
+};
+
+Inside inside_of(const Grid& grid, const MapCurb& c) {
+  Inside in;
+  const auto clip = [&](double at, double along, double low, double high) {
+    if (along == 0) {
+      if (at < low || at >= high) in.to = in.from;
+      return;
+    }
+    const double a = (low - at) / along, b = (high - at) / along;
+    in.from = std::max(in.from, std::min(a, b));
+    in.to = std::min(in.to, std::max(a, b));
+  };
+  clip(c.x0_m, c.x1_m - c.x0_m, grid.x0_m, grid.x0_m + grid.rows * grid.dx_m);
+  clip(c.y0_m, c.y1_m - c.y0_m, grid.y0_m, grid.y0_m + grid.cols * grid.dy_m);
+  return in;
+}
+
+MapCurb part_of(const MapCurb& c, double from, double to) {
+  MapCurb part = c;
+  part.x0_m = c.x0_m + from * (c.x1_m - c.x0_m);
+  part.y0_m = c.y0_m + from * (c.y1_m - c.y0_m);
+  part.x1_m = c.x0_m + to * (c.x1_m - c.x0_m);
+  part.y1_m = c.y0_m + to * (c.y1_m - c.y0_m);
+  return part;
 }
 
 }  // namespace
@@ -79,11 +105,19 @@ void Replay::feed_poses(std::int64_t until_ns) {
   }
 }
 
+/// Of each curb the part that the window has just left.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;
-  std::copy_if(curbs_before_.begin(), curbs_before_.end(), std::back_inserter(left_behind_),
-               [&](const MapCurb& curb) { return !holds(grid, curb); });
+  for (const MapCurb& curb : curbs_before_) {
+    const Inside in = inside_of(grid, curb);
+    if (!in.any()) {
+      left_behind_.push_back(curb);
+      continue;
+    }
+    if (in.from > 0) left_behind_.push_back(part_of(curb, 0, in.from));
+    if (in.to < 1) left_behind_.push_back(part_of(curb, in.to, 1));
+  }
   grid_before_ = grid;
 }
 
