@@ -30,8 +30,9 @@ Result load_or_replay(const std::string& dir) {
   if (std::filesystem::exists(dir + "/labels.csv") && std::filesystem::exists(dir + "/curbs.csv")) {
     return {read_labels(dir + "/labels.csv"), read_curbs(dir + "/curbs.csv")};
   }
-  const Robot robot = read_robot(dir + "/robot.toml");
-  ReplayLogs logs{dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
+  Robot robot = read_robot(dir + "/robot.toml");
+  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever its description says
+  const ReplayLogs logs{dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
   Replay replay(robot, logs);
   while (replay.step()) {
   }

@@ -25,5 +25,9 @@ int main(int argc, char** argv) {
     std::cerr << "curbline: " << error.what() << '\n';
     return 1;
   }
+  if (!std::cout.flush()) {
+    std::cerr << "standard output: cannot be written\n";
+    return 1;
+  }
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 
@@ -21,12 +22,14 @@ int whole_blocks(int cells) { return (cells + block_side - 1) / block_side * blo
 }  // namespace
 
 void add_map_options(CLI::App& command, MapOptions& options) {
-  auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")->expected(2);
+  const CLI::Validator finite(
+      [](const std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; expected a finite number"; }, "");
+  auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")->expected(2)->check(finite);
   auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
   origin->needs(size);
   size->needs(origin);
   command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
-  command.add_option("--max-height", options.max_height_m, "points above are ignored, metres");
+  command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(finite);
   const std::map<std::string, MapMethod> methods{
       {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em}, {"segment", MapMethod::segment}};
   command.add_option("--method", options.method, "curbline, or the paper's steps: crf-em, em, segment")
@@ -39,6 +42,7 @@ void add_map_options(CLI::App& command, MapOptions& options) {
       ->option_text("EDGE");
   command.add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
       ->check(CLI::PositiveNumber)
+      ->check(finite)
       ->capture_default_str();
   command.add_option("--labels", options.labels, "CSV of the valid cells");
   command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout");
@@ -52,15 +56,17 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
     window.cell_y_m = static_cast<float>(options.cell.back());
   }
   for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
-    if (!(cell_m > 0.0f && cell_m <= 10.0f)) throw BadInput("--cell " + std::to_string(cell_m) + "; expected metres in (0, 10]");
+    if (!(cell_m > 0.0f && cell_m <= 10.0f)) throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in (0, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
   for (const double length_m : options.size) {
-    if (!(length_m > 0)) throw BadInput("--size " + std::to_string(length_m) + "; expected metres above 0");
+    if (!(length_m > 0)) throw CLI::ValidationError("--size", std::to_string(length_m) + "; expected metres above 0");
   }
   const double rows = options.size[0] / static_cast<double>(window.cell_x_m), cols = options.size[1] / static_cast<double>(window.cell_y_m);
-  if (!(std::max(rows, cols) < most_cells + 0.5)) throw BadInput("--size: more than 512 cells along one side; expected larger cells or a smaller window");
+  if (!(std::max(rows, cols) < most_cells + 0.5)) {
+    throw CLI::ValidationError("--size", "more than 512 cells along one side; expected larger cells or a smaller window");
+  }
   window.fixed = true;
   window.origin_x_m = static_cast<float>(options.origin[0]);
   window.origin_y_m = static_cast<float>(options.origin[1]);
@@ -115,6 +121,9 @@ void give_out(const MapOptions& options, const Map& map, const std::string& titl
   if (!options.picture.empty()) draw_picture(map, options.picture, {.title = title});
   if (labels) labels->commit();
   if (curbs) curbs->commit();
+  if (options.curbs == "-") {
+    for (const MapCurb& curb : map.curbs) write_curb_json(std::cout, curb);
+  }
   if (options.json) {
     summary["cells"] = std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
     summary["planes"] = map.planes.size();

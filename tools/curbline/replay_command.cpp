@@ -47,7 +47,7 @@ double parse_speed(const std::string& text) {
   } catch (const std::exception&) {
     used = 0;
   }
-  if (used != text.size() || !(speed > 0)) throw BadInput("--speed " + text + "; expected max or a number above 0");
+  if (used != text.size() || !(speed > 0)) throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
   return speed;
 }
 
@@ -117,7 +117,9 @@ void run(const Options& o) {
       map.curbs = replay.all_curbs();
     }
   }
-  give_out(o.map, map, o.logs.scans, summary_of(replay));
+  MapOptions out = o.map;
+  if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
+  give_out(out, map, o.logs.scans, summary_of(replay));
 }
 
 }  // namespace
