@@ -37,7 +37,8 @@ class Dem {
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
-  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite. Its weight is the expected
+  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite, or no variance at
+  /// all. Its weight is the expected
   /// noise over its variance plus the ground's texture. O(1).
   bool add(const Point& point);
 
@@ -155,14 +156,16 @@ void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
 
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
-  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !(point.variance_m2 >= 0.0f)) return false;
+  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !is_finite(point.variance_m2)) return false;
+  const float variance_m2 = point.variance_m2 + prior_.texture_m2;
+  if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
   const float u = (point.x_m - origin_x_m()) / settings_.cell_x_m;
   const float v = (point.y_m - origin_y_m()) / settings_.cell_y_m;
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return false;
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const auto s = static_cast<std::size_t>(slot(i, j));
   cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m, (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m,
-                prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2));
+                prior_.noise_m2 / variance_m2);
   touched_[s] = 1;
   return true;
 }

@@ -97,22 +97,31 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
   const int band = band_ < rows ? band_ : 0;
   band_ = band + settings_.refresh_rows;
   int visits_left = all ? capacity : settings_.max_messages / directions;
+  // What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of rows.
   for (int a = 0; a < rows; ++a) {
-    const int i = band + a < rows ? band + a : band + a - rows;  // the band first, so that a full budget starves no row
+    const int i = band + a < rows ? band + a : band + a - rows;
     for (int j = 0; j < cols; ++j) {
       const int s = dem.slot(i, j);
       const auto n = static_cast<std::size_t>(s);
-      const bool wanted = dem.cell(s).valid() && (all || a < settings_.refresh_rows || flag_[n] == deferred || must_visit(dem, mixture, s));
-      flag_[n] = quiet;
-      if (!wanted) continue;
-      if (visits_left == 0) {
-        flag_[n] = deferred;
-        ++counters.cells_deferred;
-        continue;
-      }
-      --visits_left;
+      const bool wanted = dem.cell(s).valid() && (all || flag_[n] == deferred || must_visit(dem, mixture, s));
+      flag_[n] = !wanted ? quiet : visits_left > 0 ? visited : deferred;
+      if (flag_[n] == visited) --visits_left;
+      counters.cells_deferred += flag_[n] == deferred;
+    }
+  }
+  for (int i = band; i < band_ && i < rows; ++i) {
+    for (int j = 0; j < cols && visits_left > 0; ++j) {
+      const int s = dem.slot(i, j);
+      const auto n = static_cast<std::size_t>(s);
+      if (flag_[n] != quiet || !dem.cell(s).valid()) continue;
       flag_[n] = visited;
-      choose_candidates(dem, mixture, i, j, sites_[n]);
+      --visits_left;
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < cols; ++j) {
+      const auto n = static_cast<std::size_t>(dem.slot(i, j));
+      if (flag_[n] == visited) choose_candidates(dem, mixture, i, j, sites_[n]);
     }
   }
   // Each direction's messages follow its own order, so that one pass carries them across the window.

@@ -38,7 +38,7 @@ class PlaneMixture {
   }
 
   /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
-  /// label_of(slot) is the cell's label up to now.
+  /// label_of(slot) is the cell's label up to now, none if it has none yet.
   template <typename LabelOf>
   void update(const Dem<limits>& dem, const Segmentation<limits>& segmentation, LabelOf&& label_of, Counters& counters);
 
@@ -111,7 +111,8 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const Segmentation<lim
     if (rank < 0) return;
     const auto r = static_cast<std::size_t>(rank);
     moments_[r].add(dem.moments(i, j, dem.cell(s)));
-    const LabelType old = label_of(s);
+    // A cell that still waits for its label counts for the plane that its region had.
+    const LabelType old = label_of(s) != none ? label_of(s) : region_label_[static_cast<std::size_t>(s)];
     if (old != none) ++overlap_[r][old];
   });
 

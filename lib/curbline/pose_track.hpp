@@ -79,6 +79,7 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
                     : nearest;
     return true;
   }
+  if (time_ns - back(age).time_ns > bound && back(age - 1).time_ns - time_ns > bound) return false;
   out = detail::interpolate(back(age), back(age - 1), time_ns);
   return true;
 }

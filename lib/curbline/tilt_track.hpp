@@ -4,10 +4,12 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include "curbline/limits.hpp"
+#include "curbline/math.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {

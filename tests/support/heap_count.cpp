@@ -8,41 +8,40 @@ namespace {
 
 std::atomic<long> count{0};
 
-void* counted(std::size_t size) {
+void* take(std::size_t size) noexcept {
   count.fetch_add(1, std::memory_order_relaxed);
-  if (void* p = std::malloc(size > 0 ? size : 1)) return p;
-  throw std::bad_alloc();
+  return std::malloc(size > 0 ? size : 1);
 }
 
-void* counted(std::size_t size, std::align_val_t alignment) {
+void* take(std::size_t size, std::align_val_t alignment) noexcept {
   count.fetch_add(1, std::memory_order_relaxed);
   const auto a = static_cast<std::size_t>(alignment);
-  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
-  throw std::bad_alloc();
+  return std::aligned_alloc(a, (size + a - 1) / a * a);
+}
+
+void* or_throw(void* p) {
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
 }
 
 }  // namespace
 
-long curbline::test::heap_count() {
-  return count.load(std::memory_order_relaxed);
-}
+long curbline::test::heap_count() { return count.load(std::memory_order_relaxed); }
 
-// The array and nothrow forms call these.
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, alignment);
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::align_val_t) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
-}
+// Every form is replaced, not only the one that the others call by default: a sanitizer brings its own of each.
+void* operator new(std::size_t n) { return or_throw(take(n)); }
+void* operator new[](std::size_t n) { return or_throw(take(n)); }
+void* operator new(std::size_t n, std::align_val_t a) { return or_throw(take(n, a)); }
+void* operator new[](std::size_t n, std::align_val_t a) { return or_throw(take(n, a)); }
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept { return take(n); }
+void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return take(n); }
+void* operator new(std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept { return take(n, a); }
+void* operator new[](std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept { return take(n, a); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }

@@ -44,8 +44,8 @@ TEST_CASE("labels: one row a valid cell, at its centre, and back") {
   Map map;
   map.grid = {-1.0, 2.0, 0.1, 0.2, 2, 2};
   map.cells.resize(4);
-  map.cells[map.grid.at(0, 1)] = {-0.123456, 4.9e-5, 17, 3, 0.875};
-  map.cells[map.grid.at(1, 0)] = {0.5, 1e-6, 1, -1, 0.0};
+  map.cells[map.grid.at(0, 1)] = {0, 0, -0.123456, 4.9e-5, 17, 3, 0.875};
+  map.cells[map.grid.at(1, 0)] = {0, 0, 0.5, 1e-6, 1, -1, 0.0};
   std::ostringstream text;
   write_labels(text, map);
   CHECK(text.str() ==

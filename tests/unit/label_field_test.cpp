@@ -274,7 +274,7 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   CHECK(bounded->counters.cells_deferred == deferred);
 }
 
-TEST_CASE("label field: even the smallest budget reaches every cell in the end", "[!shouldfail]") {
+TEST_CASE("label field: even the smallest budget reaches every cell in the end") {
   Settings settings = small_settings();
   settings.labels.max_messages = 4;
   REQUIRE(check(settings) == Status::ok);

@@ -19,6 +19,11 @@ constexpr int most_cells = 512;
 int cells_along(double length_m, double cell_m) { return static_cast<int>(std::ceil(length_m / cell_m - 1e-6)); }
 int whole_blocks(int cells) { return (cells + block_side - 1) / block_side * block_side; }
 
+/// Throws BadInput unless the file has all that was written: asked of each before any takes its place.
+void check_written(AtomicFile* file, const std::string& path) {
+  if (file != nullptr && !file->stream().flush()) throw BadInput(path + ": cannot be written; expected room for the file");
+}
+
 }  // namespace
 
 void add_map_options(CLI::App& command, MapOptions& options) {
@@ -118,6 +123,8 @@ void give_out(const MapOptions& options, const Map& map, const std::string& titl
     curbs = std::make_unique<AtomicFile>(options.curbs);
     write_curbs(curbs->stream(), map.curbs);
   }
+  check_written(labels.get(), options.labels);
+  check_written(curbs.get(), options.curbs);
   if (!options.picture.empty()) draw_picture(map, options.picture, {.title = title});
   if (labels) labels->commit();
   if (curbs) curbs->commit();

@@ -1,6 +1,9 @@
 #include "curbline/replay.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "can/signal.hpp"
@@ -42,10 +45,18 @@ MapCurb part_of(const MapCurb& c, double from, double to) {
   return part;
 }
 
+std::string hexadecimal(std::uint32_t id) {
+  std::array<char, 8> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
+}
+
 }  // namespace
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs)
     : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))), scans_(logs.scans) {
+  if (logs.can.starts_with("can:")) {
+    throw BadInput(logs.can + ": live CAN interfaces are not read yet; expected a candump log");
+  }
   if (!robot.tilt.fixed && logs.can.empty()) {
     throw BadInput("no tilt log for a laser that nods; expected --can LOG, or tilt.fixed = true in the robot's description");
   }
@@ -105,26 +116,26 @@ void Replay::feed_poses(std::int64_t until_ns) {
   }
 }
 
-/// Of each curb the part that the window has just left.
+/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept already.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;
+  const auto keep = [&](const MapCurb& curb, double from, double to) {
+    const bool worth_a_row = (to - from) * std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m) > 0.25 * grid.dx_m;
+    if (worth_a_row) left_behind_.push_back(part_of(curb, from, to));
+  };
   for (const MapCurb& curb : curbs_before_) {
-    const Inside in = inside_of(grid, curb);
-    if (!in.any()) {
-      left_behind_.push_back(curb);
-      continue;
-    }
-    if (in.from > 0) left_behind_.push_back(part_of(curb, 0, in.from));
-    if (in.to < 1) left_behind_.push_back(part_of(curb, in.to, 1));
+    const Inside before = inside_of(grid_before_, curb), now = inside_of(grid, curb);
+    keep(curb, before.from, now.any() ? std::min(before.to, now.from) : before.to);
+    if (now.any()) keep(curb, std::max(before.from, now.to), before.to);
   }
   grid_before_ = grid;
 }
 
 void Replay::check_complete() const {
   if (can_ && tilt_readings_ == 0) {
-    throw BadInput(logs_.can + ": none of " + std::to_string(frames_) + " frames is the tilt signal; expected id " +
-                   std::to_string(robot_.tilt_signal.id) + " as the robot's description has it");
+    throw BadInput(logs_.can + ": none of " + std::to_string(frames_) + " frames is the tilt signal; expected id 0x" +
+                   hexadecimal(robot_.tilt_signal.id) + " as the robot's description has it");
   }
   if (lines_taken_ == 0) {
     throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +

@@ -1,0 +1,227 @@
+// Bad input: exit status 1, one line that says where and why, and no file that was not there before.
+#include "program.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+/// Runs replay with one log replaced; all else in the directory must stay as it was.
+Outcome replay_with(const Recording& logs, const std::string& replaced, const std::string& by) {
+  const std::string curbs = logs.directory().write("curbs-before.csv", "as it was\n");
+  const Words before = names_in(logs.folder());
+  const Outcome outcome =
+      curbline(logs.replay(replaced, by) + Words{"--labels", logs.path("new-labels.csv"), "--curbs", curbs, "--picture",
+                                                 logs.path("new.svg"), "--json"});
+  CHECK(names_in(logs.folder()) == before);
+  CHECK(read_file(curbs) == "as it was\n");
+  return outcome;
+}
+
+Outcome map_of(const std::string& cloud, const TemporaryDirectory& dir) {
+  const Words before = names_in(dir.path(""));
+  const Outcome outcome =
+      curbline({"map", cloud, "--labels", dir.path("l.csv"), "--curbs", dir.path("c.csv"), "--json"});
+  CHECK(names_in(dir.path("")) == before);
+  return outcome;
+}
+
+Recording standing() {
+  return Recording("street", "utm30lx", {"--duration", "0.5"});
+}
+
+Recording driving() {
+  return Recording("city", "utm30lx", {"--duration", "0.5"});
+}
+
+TEST_CASE("program: an empty log or cloud is refused") {
+  const Recording logs = driving();
+  for (const std::string log : {"scans", "can", "poses"}) {
+    const std::string empty = logs.directory().write("empty", "");
+    check_refused(replay_with(logs, log, empty), empty + ": ", "empty");
+  }
+  const TemporaryDirectory dir;
+  for (const std::string name : {"a.xyz", "a.csv", "a.pcd", "a.bin"}) {
+    const std::string empty = dir.write(name, "");
+    check_refused(map_of(empty, dir), empty + ": ", name == "a.bin" ? "no points" : "empty");
+  }
+}
+
+TEST_CASE("program: an empty robot description is the default robot") {
+  const Recording logs = standing();
+  CHECK(curbline(logs.replay("robot", logs.directory().write("empty.toml", ""))).status == 0);
+}
+
+TEST_CASE("program: a file that is not there is named") {
+  const Recording logs = driving();
+  for (const std::string log : {"scans", "can", "poses", "robot"}) {
+    const std::string none = logs.path("none");
+    check_refused(replay_with(logs, log, none), none + ": ", "cannot be");
+  }
+  const TemporaryDirectory dir;
+  check_refused(map_of(dir.path("none.xyz"), dir), dir.path("none.xyz") + ": ", "No such file");
+  check_refused(curbline({"evaluate", dir.path("none")}), dir.path("none"), "expected");
+  check_refused(curbline({"evaluate", "--paper", dir.path("none")}), dir.path("none"), "expected");
+}
+
+TEST_CASE("program: a cut scan line is refused with its line number") {
+  const Recording logs = standing();
+  const std::string scans = read_file(logs.path("scans.carmen"));
+  const std::string second = lines_of(scans)[1];
+  const std::string in_ranges = logs.directory().write("cut", with_line(scans, 2, second.substr(0, 400)));
+  check_refused(replay_with(logs, "scans", in_ranges), in_ranges + ":2: ", "a range");
+  const std::string at_end =
+      logs.directory().write("cut", with_line(scans, 2, second.substr(0, second.rfind(" curbline"))));
+  check_refused(replay_with(logs, "scans", at_end), at_end + ":2: ", "host");
+  const std::string of_file = logs.directory().write("cut", scans.substr(0, scans.size() - 3000));
+  check_refused(replay_with(logs, "scans", of_file), of_file + ":20: ", "the file ends within this line");
+}
+
+TEST_CASE("program: NaN and infinity are refused with line and field") {
+  const TemporaryDirectory dir;
+  for (const std::string bad : {"nan", "inf", "-inf"}) {
+    const std::string cloud = dir.write("a.xyz", "1 2 0\n1.1 " + bad + " 0\n");
+    check_refused(map_of(cloud, dir), cloud + ":2: y is ", "expected a finite number");
+  }
+  const Recording logs = standing();
+  const std::string scans = read_file(logs.path("scans.carmen"));
+  for (const std::string bad : {"nan", "inf"}) {
+    std::string line = lines_of(scans)[2];
+    const std::size_t first_range = line.find(" 1081 ") + 6;
+    line.replace(first_range, line.find(' ', first_range) - first_range, bad);
+    const std::string path = logs.directory().write("bad", with_line(scans, 3, line));
+    check_refused(replay_with(logs, "scans", path), path + ":3: a range is ", "expected a finite number");
+  }
+  const Recording drive = driving();
+  std::string pose = lines_of(read_file(drive.path("poses.tum")))[3];
+  pose.replace(pose.find(' ') + 1, 8, "nan");
+  const std::string poses = drive.directory().write("bad", with_line(read_file(drive.path("poses.tum")), 4, pose));
+  check_refused(replay_with(drive, "poses", poses), poses + ":4: tx is ", "expected a finite number");
+}
+
+TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames and poses") {
+  const Recording logs = driving();
+  const auto swapped = [&](const std::string& name) {
+    const std::string text = read_file(logs.path(name));
+    const Words lines = lines_of(text);
+    return logs.directory().write("back", with_line(with_line(text, 4, lines[4]), 5, lines[3]));
+  };
+  check_refused(replay_with(logs, "scans", swapped("scans.carmen")), logs.path("back") + ":5: ", "goes back; expected");
+  check_refused(replay_with(logs, "can", swapped("can.log")), logs.path("back") + ":5: ", "goes back; expected");
+  check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
+}
+
+TEST_CASE("program: a laser that nods wants its tilt log, a robot that drives its poses") {
+  const Recording logs = standing();
+  check_refused(replay_with(logs, "can", ""), "", "expected --can");
+  const Recording drive("city", "fixed_tilt", {"--duration", "0.5"});
+  check_refused(replay_with(drive, "poses", ""), "", "expected --poses");
+}
+
+TEST_CASE("program: a CAN log without a frame of the servo is refused, with the id that was expected") {
+  const Recording logs = standing();
+  std::string log = read_file(logs.path("can.log"));
+  for (std::size_t at = log.find("181#"); at != std::string::npos; at = log.find("181#", at))
+    log.replace(at, 4, "182#");
+  const std::string wrong = logs.directory().write("wrong.log", log);
+  check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
+}
+
+TEST_CASE("program: an unknown key and a wrong type in a robot's description are named with their line") {
+  const Recording logs = standing();
+  const std::string unknown = logs.directory().write("r.toml", "name = \"r\"\n[laser]\nbeems = 1081\n");
+  check_refused(replay_with(logs, "robot", unknown), unknown + ":3: ", "laser.beems; expected");
+  const std::string type = logs.directory().write("r.toml", "name = \"r\"\n[laser]\n\nbeams = \"many\"\n");
+  check_refused(replay_with(logs, "robot", type), type + ":4: laser.beams ", "expected a whole number");
+  const std::string syntax = logs.directory().write("r.toml", "name = \"r\"\n[laser\n");
+  check_refused(replay_with(logs, "robot", syntax), syntax + ":2: ", "expected");
+}
+
+TEST_CASE("program: a line of 100 MB is refused and not kept") {
+  constexpr long buffers_kib = 20'000;
+  const Recording logs = driving();
+  const auto check_bounded = [&](const Outcome& outcome, const Outcome& of_short_line, const std::string& start) {
+    check_refused(outcome, start, "expected");
+    CHECK(outcome.peak_kib < of_short_line.peak_kib + buffers_kib);
+  };
+  for (const auto& [log, start] :
+       {std::pair{"scans", "RAWLASER1 "}, {"can", "("}, {"poses", "1.0 "}, {"robot", "name = "}}) {
+    const std::string path = logs.directory().write("long", start);
+    const Outcome of_short_line = replay_with(logs, log, path);
+    long_line(logs.directory(), "long", start);
+    check_bounded(replay_with(logs, log, path), of_short_line, path + ":");
+  }
+  const TemporaryDirectory dir;
+  for (const std::string name : {"a.xyz", "a.csv", "a.pcd"}) {
+    const std::string path = dir.write(name, "1 2 ");
+    const Outcome of_short_line = map_of(path, dir);
+    long_line(dir, name, "1 2 ");
+    check_bounded(map_of(path, dir), of_short_line, path + ":1: ");
+  }
+}
+
+TEST_CASE("program: scan lines of another laser are refused") {
+  const Recording logs = standing();
+  check_refused(replay_with(logs, "robot", shipped_robot("lms151")),
+                logs.path("scans.carmen") + ":1: ", "1081 ranges; expected 541");
+  const std::string turned = logs.directory().write("r.toml", "[laser]\nfirst_bearing_rad = -2.0\n");
+  check_refused(replay_with(logs, "robot", turned), logs.path("scans.carmen") + ":1: start_angle ", "expected -2.0");
+}
+
+TEST_CASE("program: a file that cannot be written is named and none is left") {
+  const TemporaryDirectory dir;
+  const std::string cloud = cloud_with_a_step(dir);
+  const std::string before = dir.write("before.csv", "as it was\n");
+  std::filesystem::create_directory(dir.path("folder"));
+  const Words names = names_in(dir.path(""));
+  for (const std::string option : {"--labels", "--curbs", "--picture"}) {
+    const std::string other = option == "--labels" ? "--curbs" : "--labels";
+    const std::string nowhere = dir.path("none/out.svg");
+    check_refused(curbline({"map", cloud, other, before, option, nowhere}), nowhere + ": ", "cannot be written");
+    const std::string folder = dir.path("folder");
+    if (option != "--picture")
+      check_refused(curbline({"map", cloud, other, before, option, folder}), folder + ": ", "directory");
+  }
+  if (std::filesystem::exists("/dev/full")) {
+    check_refused(curbline({"map", cloud, "--labels", before, "--curbs", "/dev/full"}),
+                  "/dev/full: ", "cannot be written");
+  }
+  const std::string bitmap = dir.path("map.bmp");
+  check_refused(curbline({"map", cloud, "--labels", before, "--picture", bitmap}), bitmap + ": ",
+                "expected a name that ends in");
+  CHECK(names_in(dir.path("")) == names);
+  CHECK(read_file(before) == "as it was\n");
+}
+
+TEST_CASE("program: standard output that cannot be written is an error") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryDirectory dir;
+  const std::string cloud = cloud_with_a_step(dir);
+  for (const Words& option : {Words{"--json"}, {"--curbs", "-"}}) {
+    const Outcome outcome = curbline(Words{"map", cloud} + option, "/dev/full");
+    check_refused(outcome, "standard output: ", "cannot be written");
+  }
+}
+
+TEST_CASE("program: a cloud of an unknown kind is refused") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.ply", "1 2 3\n");
+  check_refused(map_of(cloud, dir), cloud + ": ", "expected a name that ends in .xyz");
+}
+
+TEST_CASE("program: an unknown scene is refused with those that ship, and no directory is made") {
+  const TemporaryDirectory dir;
+  check_refused(curbline({"simulate", "--scene", "moon", "--robot", shipped_robot("utm30lx"), "--out", dir.path("o")}),
+                "", "street");
+  check_refused(curbline({"simulate", "--scene", "street", "--robot", dir.path("none"), "--out", dir.path("o")}),
+                dir.path("none"), "expected");
+  CHECK(names_in(dir.path("")).empty());
+}
+
+TEST_CASE("program: truth that is cut is refused") {
+  const Recording logs = standing();
+  const std::string truth = read_file(logs.path("truth.json"));
+  logs.directory().write("truth.json", truth.substr(0, truth.size() / 2));
+  check_refused(curbline({"evaluate", logs.folder(), "--json"}), logs.path("truth.json"), "");
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

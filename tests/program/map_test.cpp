@@ -1,0 +1,190 @@
+// map: one cloud to labels, curbs, a picture and a summary.
+#include <algorithm>
+#include <cmath>
+
+#include "formats/csv.hpp"
+#include "program.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+const Words window{"--origin", "0", "-2", "--size", "4", "4"};
+
+struct Files {
+  explicit Files(const TemporaryDirectory& dir) : labels(dir.path("labels.csv")), curbs(dir.path("curbs.csv")) {}
+  Words options() const { return {"--labels", labels, "--curbs", curbs}; }
+  std::string labels, curbs;
+};
+
+void check_done(const Outcome& outcome) {
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+}
+
+//                 _______________ 0.12
+//                |
+//  ______________|
+//  0             2                4 m
+TEST_CASE("program: map finds a step of 12 cm within 5 mm at its place") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  const Outcome outcome = curbline(Words{"map", cloud, "--json"} + window + files.options());
+  check_done(outcome);
+  CHECK(outcome.err.empty());
+
+  CHECK(lines_of(read_file(files.curbs))[0] == "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind");
+  const std::vector<MapCurb> curbs = read_curbs(files.curbs);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].height_m == Approx(0.12).margin(0.005));
+  CHECK(curbs[0].kind == "step_up");
+  for (const double x_m : {curbs[0].x0_m, curbs[0].x1_m}) CHECK(x_m == Approx(2.0).margin(0.05));
+  CHECK(std::abs(curbs[0].y1_m - curbs[0].y0_m) > 3.8);
+}
+
+TEST_CASE("program: map writes a row of labels for each valid cell") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const Outcome outcome = curbline(Words{"map", cloud_with_a_step(dir), "--json"} + window + files.options());
+  check_done(outcome);
+
+  CHECK(lines_of(read_file(files.labels))[0] == "x_m,y_m,height_m,variance_m2,points,label,probability");
+  const std::vector<LabelledCell> cells = read_labels(files.labels);
+  REQUIRE(cells.size() == 1600);  // 40 x 40 cells, 16 points in each
+  int near = -1, far = -1;
+  for (const LabelledCell& cell : cells) {
+    CHECK(cell.cell.points == 16);
+    CHECK(cell.cell.height_m == Approx(cell.x_m < 2.0 ? 0.0 : 0.12).margin(0.006));
+    (cell.x_m < 2.0 ? near : far) = cell.cell.label;
+  }
+  CHECK(cells.front().x_m == Approx(0.05));
+  CHECK(cells.front().y_m == Approx(-1.95));
+  CHECK(near != far);
+
+  const nlohmann::json summary = nlohmann::json::parse(outcome.out);  // throws unless it is one object and nothing else
+  CHECK(summary.at("cells") == 1600);
+  CHECK(summary.at("points") == 25600);
+  CHECK(summary.at("curbs") == 1);
+  CHECK(summary.at("planes") == 2);
+  CHECK(lines_of(outcome.out).size() == 1);
+}
+
+TEST_CASE("program: map without a window takes the robot's, with a valid cell for what lies in it") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  check_done(curbline(Words{"map", cloud_with_a_step(dir)} + files.options()));
+  CHECK(read_labels(files.labels).size() == 1600);
+  CHECK(read_curbs(files.curbs).size() == 1);
+}
+
+TEST_CASE("program: map gives curbs as JSON lines on standard output") {
+  const TemporaryDirectory dir;
+  const std::string cloud = cloud_with_a_step(dir);
+  for (const std::string method : {"curbline", "crf-em"}) {
+    const Outcome outcome = curbline(Words{"map", cloud, "--curbs", "-", "--method", method} + window);
+    check_done(outcome);
+    const Words lines = lines_of(outcome.out);
+    REQUIRE_FALSE(lines.empty());
+    for (const std::string& line : lines)
+      CHECK(nlohmann::json::parse(line).at("height_m").get<double>() == Approx(0.12).margin(0.005));
+  }
+}
+
+TEST_CASE("program: each of the paper's steps finds the two planes") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  for (const std::string method : {"segment", "em", "crf-em"}) {
+    INFO(method);
+    const Outcome outcome = curbline(Words{"map", cloud, "--json", "--method", method} + window + files.options());
+    check_done(outcome);
+    CHECK(nlohmann::json::parse(outcome.out).at("cells") == 1600);
+    double length = 0;
+    for (const MapCurb& c : read_curbs(files.curbs)) {
+      if (std::abs(c.height_m - 0.12) < 0.005 && std::abs(c.x0_m - 2.0) < 0.05) length += std::abs(c.y1_m - c.y0_m);
+    }
+    CHECK(length > 3.8);
+  }
+}
+
+TEST_CASE("program: map takes --edge and --segment-scale, and a larger scale gives no more planes") {
+  const TemporaryDirectory dir;
+  const std::string cloud = cloud_with_a_step(dir);
+  check_done(curbline(Words{"map", cloud, "--method", "crf-em", "--edge", "eq10"} + window));
+  check_done(curbline(Words{"map", cloud, "--method", "crf-em", "--edge", "potts"} + window));
+  const auto planes = [&](const std::string& scale) {
+    const Outcome outcome =
+        curbline(Words{"map", cloud, "--json", "--method", "segment", "--segment-scale", scale} + window);
+    check_done(outcome);
+    return nlohmann::json::parse(outcome.out).at("planes").get<int>();
+  };
+  CHECK(planes("100") <= planes("0.01"));
+  CHECK(planes("0.01") > 2);
+}
+
+TEST_CASE("program: a cell may have two sides") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  check_done(curbline(Words{"map", cloud_with_a_step(dir), "--cell", "0.2", "0.1"} + window + files.options()));
+  const std::vector<LabelledCell> cells = read_labels(files.labels);
+  REQUIRE(cells.size() == 800);
+  CHECK(cells.front().x_m == Approx(0.1));
+  CHECK(cells.front().y_m == Approx(-1.95));
+  CHECK(cells.front().cell.points == 32);
+}
+
+TEST_CASE("program: points above --max-height are ignored") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  check_done(curbline(Words{"map", cloud_with_a_step(dir), "--max-height", "0.06"} + window + files.options()));
+  CHECK(read_labels(files.labels).size() == 800);
+  CHECK(read_curbs(files.curbs).empty());
+}
+
+TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exactly as asked") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  check_done(curbline(Words{"map", cloud, "--origin", "-13", "-15", "--size", "30", "30"} + files.options()));
+  CHECK(read_labels(files.labels).size() == 1600);
+  REQUIRE(read_curbs(files.curbs).size() == 1);
+  CHECK(read_curbs(files.curbs)[0].height_m == Approx(0.12).margin(0.005));
+  check_done(curbline(Words{"map", cloud, "--origin", "1.5", "-0.5", "--size", "1.3", "0.7"} + files.options()));
+  CHECK(read_labels(files.labels).size() == 13 * 7);
+}
+
+TEST_CASE("program: pictures are SVG or PNG by their ending") {
+  const TemporaryDirectory dir;
+  const std::string cloud = cloud_with_a_step(dir);
+  check_done(curbline({"map", cloud, "--picture", dir.path("map.svg")}));
+  const std::string svg = read_file(dir.path("map.svg"));
+  CHECK(svg.find("<svg") != std::string::npos);
+  CHECK(svg.find("</svg>") != std::string::npos);
+  check_done(curbline({"map", cloud, "--picture", dir.path("map.png")}));
+  CHECK(read_file(dir.path("map.png")).starts_with("\x89PNG\r\n\x1a\n"));
+}
+
+TEST_CASE("program: the kinds of clouds give the same map") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  check_done(curbline(Words{"map", cloud} + window + files.options()));
+  const std::string labels = read_file(files.labels), curbs = read_file(files.curbs);
+  const Words points = lines_of(read_file(cloud));
+  std::string csv = "x,y,z\n", pcd = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH " +
+                                     std::to_string(points.size()) + "\nHEIGHT 1\nPOINTS " +
+                                     std::to_string(points.size()) + "\nDATA ascii\n";
+  for (std::string point : points) {
+    pcd += point + "\n";
+    std::replace(point.begin(), point.end(), ' ', ',');
+    csv += point + "\n";
+  }
+  for (const std::string& other : {dir.write("step.csv", csv), dir.write("step.pcd", pcd)}) {
+    check_done(curbline(Words{"map", other} + window + files.options()));
+    CHECK(read_file(files.labels) == labels);
+    CHECK(read_file(files.curbs) == curbs);
+  }
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

@@ -1,0 +1,73 @@
+// Starts the program and looks at what it leaves: exit status, output, files.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "map/map.hpp"
+#include "tools/formats_support.hpp"
+
+namespace curbline::tools::testing {
+
+using Words = std::vector<std::string>;
+
+/// Arguments, and more of them.
+Words operator+(Words arguments, const Words& more);
+
+/// What a run of the program gave. Status is that of exit, or less the signal's number.
+struct Outcome {
+  int status = 0;
+  std::string out, err;
+  double seconds = 0;
+  long peak_kib = 0;  ///< of memory
+};
+
+/// Runs the program to its end; its standard output goes to a file if one is given.
+Outcome curbline(const Words& arguments, const std::string& out_file = {});
+
+Words lines_of(const std::string& text);
+
+/// The description of a robot that ships.
+std::string shipped_robot(const std::string& name);
+
+/// Names of all that lies in a directory, sorted.
+Words names_in(const std::string& directory);
+
+/// CHECKs exit status 1, nothing on standard output, and one line on standard error that begins with `start` and holds
+/// `part`.
+void check_refused(const Outcome& outcome, const std::string& start, const std::string& part);
+
+/// CHECKs exit status 2, nothing on standard output, and `part` on standard error.
+void check_wrong_usage(const Outcome& outcome, const std::string& part);
+
+/// Logs of a simulated scene, in a directory that is removed at the end.
+class Recording {
+ public:
+  Recording(const std::string& scene, const std::string& robot, const Words& more = {});
+
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  std::string folder() const { return std::filesystem::path(path("")).parent_path(); }
+  const TemporaryDirectory& directory() const { return directory_; }
+
+  /// Arguments of replay with these logs; the log named `replaced`, "scans", "can", "poses" or "robot", is another
+  /// file.
+  Words replay(const std::string& replaced = {}, const std::string& by = {}) const;
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+/// Text with line `number`, from 1, replaced.
+std::string with_line(const std::string& text, std::size_t number, const std::string& line);
+
+/// 100 MB without a line end behind `start`, of which the disk holds little.
+std::string long_line(const TemporaryDirectory& directory, const std::string& name, const std::string& start);
+
+/// Two level planes that meet at x = 2.0 with a step of 0.12 m, x in [0, 4], y in [-2, 2]: a cloud, and its file.
+std::string cloud_with_a_step(const TemporaryDirectory& directory);
+
+}  // namespace curbline::tools::testing

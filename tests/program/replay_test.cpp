@@ -1,0 +1,240 @@
+// simulate, replay and evaluate: logs through the program, and what it finds against the truth.
+//
+// Tolerances: a curb's place is known to half a cell of 0.1 m, its height to the planes beside it; the medians allowed
+// are those and 1 cm.
+#include <cmath>
+#include <random>
+
+#include "evaluation/curbs.hpp"
+#include "formats/csv.hpp"
+#include "program.hpp"
+#include "simulator/truth.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+constexpr double place_m = 0.05, height_m = 0.01;
+constexpr double cell_m = 0.1;  ///< found within: a match
+constexpr double least_step_m = 0.04;
+
+Words results(const Recording& logs) {
+  return {"--labels", logs.path("labels.csv"), "--curbs", logs.path("curbs.csv")};
+}
+
+void replay(const Recording& logs, const Words& more = {}) {
+  const Outcome outcome = curbline(logs.replay() + results(logs) + more);
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.err.empty());
+}
+
+nlohmann::json evaluate(const Recording& logs) {
+  const Outcome outcome = curbline({"evaluate", logs.folder(), "--json"});
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  return nlohmann::json::parse(outcome.out);
+}
+
+void check_curbs(const nlohmann::json& figures) {
+  INFO(figures.dump(1));
+  int high = 0;
+  for (const nlohmann::json& curb : figures.value("curbs", nlohmann::json::array())) {
+    if (curb.at("step_m") < least_step_m) continue;
+    ++high;
+    CHECK(curb.at("found") == true);
+  }
+  CHECK(high > 0);
+  CHECK(figures.at("position_error_median_m").get<double>() <= place_m);
+  CHECK(figures.at("height_error_median_m").get<double>() <= height_m);
+}
+
+TEST_CASE("program: curbs of 4 cm and more of the scenes are found, within half a cell and 1 cm") {
+  for (const std::string scene : {"street", "straight_curb"}) {
+    INFO(scene);
+    const Recording logs(scene, "utm30lx");
+    replay(logs);
+    check_curbs(evaluate(logs));
+  }
+}
+
+TEST_CASE("program: a curb of 3 cm is found too") {
+  const Recording logs("low_curb", "utm30lx");
+  replay(logs);
+  const nlohmann::json figures = evaluate(logs);
+  CHECK(figures.at("curbs_found") == figures.at("curbs_visible"));
+  CHECK(figures.at("height_error_median_m").get<double>() <= height_m);
+}
+
+//                              __|
+//                     ________|    treads of 34 cm: seven cells of 5 cm or three of 10 cm, the risers in one of them
+//            ________|
+//   ________|
+//   0       1.2     1.54     1.88
+void check_steps(const std::string& cell) {
+  const Recording logs("steps", "utm30lx");
+  replay(logs, {"--origin", "0.6", "-1.2", "--size", "1.5", "2.4", "--cell", cell});
+  check_curbs(evaluate(logs));
+}
+
+TEST_CASE("program: each step of a flight is found with cells of 5 cm") {
+  check_steps("0.05");
+}
+
+// Not so yet: the cells that hold a riser lie on one slope all along the flight and become a plane of their own.
+TEST_CASE("program: each step of a flight is found with cells of 10 cm", "[!shouldfail]") {
+  check_steps("0.1");
+}
+
+TEST_CASE("program: a ramp has creases and no step") {
+  const Recording logs("ramp", "utm30lx");
+  replay(logs);
+  for (const MapCurb& curb : read_curbs(logs.path("curbs.csv"))) {
+    CHECK(curb.kind == "crease");
+    CHECK(std::abs(curb.height_m) < height_m);
+  }
+  CHECK(evaluate(logs).at("height_rmse_m").get<double>() < height_m);
+}
+
+TEST_CASE("program: a laser at a fixed tilt maps as the robot drives, without a CAN log") {
+  const Recording logs("city", "fixed_tilt", {"--duration", "8"});
+  CHECK_FALSE(std::filesystem::exists(logs.path("can.log")));
+  replay(logs);
+  check_curbs(evaluate(logs));
+}
+
+/// The curb that the drive of `city` passes in its first 20 s: the near rim of a bed, 8 cm high, at the window's side.
+TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind the window") {
+  const Recording logs("city", "utm30lx", {"--duration", "20"});
+  replay(logs);
+  const std::vector<MapCurb> found = read_curbs(logs.path("curbs.csv"));
+  std::vector<TrueCurb> truth;
+  for (const TruthCurb& c : read_truth(logs.folder()).curbs) {
+    if (c.kind == "step")
+      truth.push_back({{c.from.x, c.from.y, c.to.x, c.to.y}, std::abs(c.from_step_m), std::abs(c.to_step_m)});
+  }
+  const auto anywhere = [](double, double) { return true; };
+  const ErrorSummary errors = curb_errors(found, truth, cell_m, anywhere);
+  CHECK(errors.position_median_m <= place_m);
+  CHECK(errors.height_median_m <= height_m);
+
+  std::vector<Segment> lines;
+  for (const TrueCurb& curb : truth) lines.push_back(curb.line);
+  CHECK(curb_rates(found, lines, cell_m, anywhere).precision > 0.95);
+
+  for (const MapCurb& c : found) CHECK(std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m) > 0.02);
+
+  const auto on_rim = [](double x, double y) { return x > 10.0 && x < 13.0 && std::abs(y - 25.0) < 1e-3; };
+  CHECK(curb_rates(found, lines, cell_m, on_rim).recall > 0.9);
+}
+
+TEST_CASE("program: evaluate replays the logs itself, with the poses of a drive, and finds what replay does") {
+  for (const auto& [robot, scene, duration] : {std::tuple{"utm30lx", "street", "4"}, {"utm30lx", "city", "8"}}) {
+    INFO(scene);
+    const Recording logs(scene, robot, {"--duration", duration});
+    const nlohmann::json from_logs = evaluate(logs);
+    replay(logs);
+    const nlohmann::json from_results = evaluate(logs);
+    CHECK(from_logs.at("height_rmse_m").get<double>() ==
+          Approx(from_results.at("height_rmse_m").get<double>()).margin(1e-4));
+    CHECK(from_logs.at("curbs_found") == from_results.at("curbs_found"));
+  }
+}
+
+TEST_CASE("program: --curbs - streams one JSON object a line, the last as in the file") {
+  const Recording logs("straight_curb", "utm30lx");
+  const Outcome outcome = curbline(logs.replay() + Words{"--curbs", "-"});
+  REQUIRE(outcome.status == 0);
+  const Words lines = lines_of(outcome.out);
+  REQUIRE(lines.size() > 1);
+  for (const std::string& line : lines) {
+    const nlohmann::json curb = nlohmann::json::parse(line);
+    for (const char* key : {"x0_m", "y0_m", "x1_m", "y1_m", "height_m", "height_sd_m", "probability"})
+      CHECK(curb.at(key).is_number());
+    CHECK(curb.at("kind").is_string());
+    CHECK(curb.size() == 8);
+  }
+  replay(logs);
+  const std::vector<MapCurb> curbs = read_curbs(logs.path("curbs.csv"));
+  REQUIRE(curbs.size() == 1);
+  CHECK(nlohmann::json::parse(lines.back()).at("height_m").get<double>() == Approx(curbs[0].height_m).margin(1e-6));
+}
+
+TEST_CASE("program: replay sums up in one JSON object") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  const Outcome outcome = curbline(logs.replay() + Words{"--json"});
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json summary = nlohmann::json::parse(outcome.out);
+  CHECK(summary.at("lines") == 40);
+  CHECK(summary.at("lines_dropped") == 0);
+  CHECK(summary.at("tilt_dropped") == 0);
+  CHECK(summary.at("beams_without_tilt") == 0);
+  CHECK(summary.at("points").get<int>() > 0);
+}
+
+TEST_CASE("program: --speed 1 takes as long as the log, max does not wait") {
+  const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
+  const Outcome slow = curbline(logs.replay() + Words{"--speed", "1"});
+  CHECK(slow.status == 0);
+  CHECK(slow.seconds >= 0.9);
+  const Outcome twice = curbline(logs.replay() + Words{"--speed", "2"});
+  CHECK(twice.seconds >= 0.45);
+  CHECK(twice.seconds < slow.seconds);
+  CHECK(curbline(logs.replay() + Words{"--speed", "max"}).seconds < 0.9);
+}
+
+TEST_CASE("program: the same logs give the same files, and the same seed the same logs") {
+  const Recording first("street", "utm30lx", {"--duration", "2"}), second("street", "utm30lx", {"--duration", "2"});
+  for (const Recording* logs : {&first, &second}) replay(*logs, {"--picture", logs->path("map.svg")});
+  const std::string labels = read_file(first.path("labels.csv")), curbs = read_file(first.path("curbs.csv"));
+  for (const std::string name : {"scans.carmen", "can.log", "truth.json", "labels.csv", "curbs.csv"}) {
+    INFO(name);
+    CHECK(read_file(first.path(name)) == read_file(second.path(name)));
+  }
+  replay(first);
+  CHECK(read_file(first.path("labels.csv")) == labels);
+  CHECK(read_file(first.path("curbs.csv")) == curbs);
+}
+
+TEST_CASE("program: with every tenth tilt frame lost the curbs are found") {
+  const Recording logs("straight_curb", "utm30lx");
+  std::mt19937 random(5);
+  std::string left;
+  int lost = 0;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) {
+    if (random() % 10 == 0) {
+      ++lost;
+    } else {
+      left += line + "\n";
+    }
+  }
+  REQUIRE(lost > 20);
+  logs.directory().write("can.log", left);
+  replay(logs);
+  check_curbs(evaluate(logs));
+}
+
+TEST_CASE("program: frames of other devices on the bus change nothing") {
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  replay(logs);
+  const std::string labels = read_file(logs.path("labels.csv"));
+  std::string busy;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) {
+    busy += line + "\n" + line.substr(0, line.find(' ')) + " can0 080#\n" + line.substr(0, line.find(' ')) +
+            " can0 00000181#0011223344556677\n";
+  }
+  logs.directory().write("can.log", busy);
+  replay(logs);
+  CHECK(read_file(logs.path("labels.csv")) == labels);
+}
+
+TEST_CASE("program: replay takes the paper's methods") {
+  const Recording logs("straight_curb", "utm30lx");
+  for (const std::string method : {"segment", "em", "crf-em"}) {
+    INFO(method);
+    replay(logs, {"--method", method});
+    CHECK(read_labels(logs.path("labels.csv")).size() > 1000);
+  }
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

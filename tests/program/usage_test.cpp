@@ -1,0 +1,89 @@
+// Wrong usage: exit status 2.
+#include "program.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+TEST_CASE("program: --help and the help of each command exit with 0") {
+  const Outcome help = curbline({"--help"});
+  CHECK(help.status == 0);
+  CHECK(help.err.empty());
+  for (const std::string command : {"simulate", "replay", "map", "evaluate"}) {
+    CHECK(help.out.find(command) != std::string::npos);
+    const Outcome of_command = curbline({command, "--help"});
+    CHECK(of_command.status == 0);
+    CHECK(of_command.out.find("--") != std::string::npos);
+  }
+}
+
+TEST_CASE("program: no command, an unknown command and an unknown option are wrong usage") {
+  check_wrong_usage(curbline({}), "required");
+  check_wrong_usage(curbline({"mop"}), "required");
+  check_wrong_usage(curbline({"--foo"}), "required");
+  check_wrong_usage(curbline({"map", "a.xyz", "--foo"}), "--foo");
+}
+
+TEST_CASE("program: what a command needs and a value that is missing are named") {
+  check_wrong_usage(curbline({"map"}), "cloud");
+  check_wrong_usage(curbline({"evaluate"}), "DIR");
+  check_wrong_usage(curbline({"replay", "--scans", "s"}), "--robot");
+  check_wrong_usage(curbline({"replay", "--robot", "r"}), "--scans");
+  check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", "r"}), "--out");
+  check_wrong_usage(curbline({"map", "a.xyz", "--labels"}), "--labels");
+  check_wrong_usage(curbline({"evaluate", "dir", "--paper", "data"}), "--paper");
+}
+
+TEST_CASE("program: a window has an origin and a size") {
+  check_wrong_usage(curbline({"map", "a.xyz", "--origin", "0", "0"}), "--size");
+  check_wrong_usage(curbline({"map", "a.xyz", "--size", "4", "4"}), "--origin");
+  check_wrong_usage(curbline({"map", "a.xyz", "--origin", "0", "--size", "4", "4"}), "--origin");
+}
+
+TEST_CASE("program: an unknown method or edge and the values that there are") {
+  check_wrong_usage(curbline({"map", "a.xyz", "--method", "foo"}), "crf-em");
+  check_wrong_usage(curbline({"map", "a.xyz", "--edge", "foo"}), "eq10");
+}
+
+TEST_CASE("program: a number that makes no sense is wrong usage and named") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  const auto map = [&](const Words& more) { return curbline(Words{"map", cloud} + more); };
+  for (const std::string bad : {"0", "-1", "nan", "inf", "1e9", "x"}) {
+    INFO(bad);
+    check_wrong_usage(map({"--cell", bad}), "--cell");
+  }
+  for (const std::string bad : {"0", "-4", "nan", "x"})
+    check_wrong_usage(map({"--segment-scale", bad}), "--segment-scale");
+  for (const std::string bad : {"nan", "inf", "x"}) {
+    check_wrong_usage(map({"--max-height", bad}), "--max-height");
+    check_wrong_usage(map({"--origin", bad, "0", "--size", "4", "4"}), "--origin");
+  }
+  for (const std::string bad : {"0", "-4", "nan", "inf", "x"}) {
+    check_wrong_usage(map({"--origin", "0", "0", "--size", bad, "4"}), "--size");
+  }
+}
+
+TEST_CASE("program: a window of more than 512 cells is refused") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "51.4"}), "512");
+  check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "4", "--cell", "0.001"}), "512");
+  CHECK(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "51.2"}).status == 0);
+}
+
+TEST_CASE("program: a speed and a duration that make no sense are wrong usage") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.1"});
+  for (const std::string bad : {"fast", "0", "-1", "nan", "1x"}) {
+    check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}), "--speed");
+  }
+  for (const std::string bad : {"0", "-1", "nan", "inf", "x"}) {
+    const TemporaryDirectory out;
+    check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
+                                out.path("o"), "--duration", bad}),
+                      "--duration");
+    CHECK(names_in(out.path("")).empty());
+  }
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing
