@@ -251,8 +251,8 @@ TEST_CASE("truth: it is read as it was written") {
   for (double y = -3; y < 3; y += 0.13) {
     CHECK(read.terrain_height(1, y) == truth.terrain_height(1, y));
   }
-  CHECK(read.obstacle_at(9.5, 0.2));     // the parked car
-  CHECK_FALSE(read.obstacle_at(9, -2));  // the person walks away
+  CHECK(read.obstacle_at(9.40, -1.36));     // the parked car
+  CHECK_FALSE(read.obstacle_at(8.57, -3.45));  // the person walks away
   std::ofstream(dir / "truth.json") << "{\"start_time_s\": 1}";
   CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
   std::filesystem::remove_all(dir);
