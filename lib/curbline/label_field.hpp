@@ -1,6 +1,6 @@
 // Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
 // (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions, from the cells
-// that changed. A Potts message has two values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely
+// that changed, and a message that is new makes its receiver one of those. A Potts message has two values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely
 // labels out of the planes near by (those of regions in its block or the eight around it), all others count as impossible for it.
 // So two pavements of one height on either side of a road keep their labels apart.
 #pragma once
@@ -17,6 +17,13 @@
 #include "curbline/settings.hpp"
 
 namespace curbline {
+
+/// Which cells send messages.
+enum class FieldScope : std::uint8_t {
+  line,     ///< what changed, within max_messages: after each scan line
+  changed,  ///< what changed, all of it
+  window,   ///< every cell
+};
 
 template <Limits limits>
 class LabelField {
@@ -36,9 +43,10 @@ class LabelField {
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = Site{}; }
 
-  /// E-step over the cells that a line touched, whose region changed its plane, or that bore a label that is no more, and
-  /// over a band of rows that moves on with each call, so that the field settles where nothing changes; `all`: over every cell. Returns how many labels changed. Cost: at most 4 messages a valid cell.
-  int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, bool all, Counters& counters);
+  /// E-step. Changed are cells that a line touched, whose region changed its plane, that bore a label that is no more or heard a
+  /// message that was new, and a band of rows that moves on with each call, since planes move as they grow. Returns how many
+  /// labels changed. Cells that are left over by max_messages are counted and wait for the next call.
+  int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
 
   LabelType label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
   /// Posterior of a valid cell. O(candidates^2).
@@ -56,7 +64,7 @@ class LabelField {
     std::array<std::int16_t, candidates> node{};                                ///< log potential of each candidate
     std::array<std::array<std::uint8_t, candidates>, directions> message{};     ///< to the neighbour there, of each candidate
   };
-  enum Flag : std::uint8_t { quiet, heard, visited, deferred };
+  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4 };  ///< bits
   using Logs = std::array<float, candidates>;
   using Planes = std::bitset<limits.planes>;
 
@@ -91,19 +99,19 @@ void LabelField<limits>::init(const LabelSettings& settings, const PlanePrior& p
 }
 
 template <Limits limits>
-int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, bool all, Counters& counters) {
+int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters) {
   const int rows = dem.rows(), cols = dem.cols();
   find_planes_near_by(dem, mixture);
   const int band = band_ < rows ? band_ : 0;
   band_ = band + settings_.refresh_rows;
-  int visits_left = all ? capacity : settings_.max_messages / directions;
+  int visits_left = scope == FieldScope::line ? settings_.max_messages / directions : capacity;
   // What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of rows.
   for (int a = 0; a < rows; ++a) {
     const int i = band + a < rows ? band + a : band + a - rows;
     for (int j = 0; j < cols; ++j) {
       const int s = dem.slot(i, j);
       const auto n = static_cast<std::size_t>(s);
-      const bool wanted = dem.cell(s).valid() && (all || flag_[n] == deferred || must_visit(dem, mixture, s));
+      const bool wanted = dem.cell(s).valid() && (scope == FieldScope::window || (flag_[n] & (heard | deferred)) != 0 || must_visit(dem, mixture, s));
       flag_[n] = !wanted ? quiet : visits_left > 0 ? visited : deferred;
       if (flag_[n] == visited) --visits_left;
       counters.cells_deferred += flag_[n] == deferred;
@@ -130,7 +138,7 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
     for (int a = 0; a < rows; ++a) {
       for (int b = 0; b < cols; ++b) {
         const int i = forward ? a : rows - 1 - a, j = forward ? b : cols - 1 - b;
-        if (flag_[static_cast<std::size_t>(dem.slot(i, j))] != visited) continue;
+        if ((flag_[static_cast<std::size_t>(dem.slot(i, j))] & visited) == 0) continue;
         send(dem, i, j, direction);
         ++counters.messages;
       }
@@ -269,12 +277,14 @@ void LabelField<limits>::send(const Dem<limits>& dem, int i, int j, int directio
   if (g == 0) return;
   Site& site = sites_[static_cast<std::size_t>(dem.slot(i, j))];
   const Logs p = normalised(site, log_belief(dem, i, j, direction));
+  bool changed = false;
   for (std::size_t c = 0; c < candidates; ++c) {
     const float message = log(1.0f + boost_[static_cast<std::size_t>(g)] * p[c]);
-    site.message[d][c] = static_cast<std::uint8_t>(round_to_int(message * message_scale));
+    const auto rounded = static_cast<std::uint8_t>(round_to_int(message * message_scale));
+    changed = changed || site.message[d][c] != rounded;
+    site.message[d][c] = rounded;
   }
-  std::uint8_t& flag = flag_[static_cast<std::size_t>(dem.slot(i + g * step_i[d], j + g * step_j[d]))];
-  if (flag == quiet) flag = heard;
+  if (changed) flag_[static_cast<std::size_t>(dem.slot(i + g * step_i[d], j + g * step_j[d]))] |= heard;
 }
 
 template <Limits limits>

@@ -60,7 +60,7 @@ class Pipeline {
   /// Second half: regions, planes, labels and curbs follow what was observed since. As often as time allows.
   void infer();
 
-  /// infer() with passes over the whole label field, until no label changes or `passes` is reached: what a finished map
+  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes` is reached: what a finished map
   /// wants. Returns the passes made.
   int settle(int passes = 10);
 
@@ -82,7 +82,7 @@ class Pipeline {
   void move_window(float x_m, float y_m);
   void take_point(const Point& point);
   void follow_regions();
-  int follow_labels(bool whole_field);
+  int follow_labels(FieldScope scope);
   void follow_curbs();
 
   Settings settings_{};
@@ -218,7 +218,7 @@ template <Limits limits>
 void Pipeline<limits>::infer() {
   if (!ready_) return;
   follow_regions();
-  follow_labels(false);
+  follow_labels(FieldScope::line);
   follow_curbs();
 }
 
@@ -226,8 +226,11 @@ template <Limits limits>
 int Pipeline<limits>::settle(int passes) {
   if (!ready_) return 0;
   follow_regions();
+  const bool planes_move = plane_mixture_.mode() == PlaneUpdate::responsibilities;
   int pass = 1;
-  while (follow_labels(true) > 0 && pass < passes) ++pass;
+  for (int changed = follow_labels(FieldScope::window); changed > 0 && pass < passes; ++pass) {
+    changed = follow_labels(planes_move ? FieldScope::window : FieldScope::changed);
+  }
   follow_curbs();
   return pass;
 }
@@ -240,8 +243,8 @@ void Pipeline<limits>::follow_regions() {
 
 /// E-step, and the M-step if planes come from responsibilities. Returns how many labels changed.
 template <Limits limits>
-int Pipeline<limits>::follow_labels(bool whole_field) {
-  const int changed = label_field_.update(dem_, plane_mixture_, whole_field, counters_);
+int Pipeline<limits>::follow_labels(FieldScope scope) {
+  const int changed = label_field_.update(dem_, plane_mixture_, scope, counters_);
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
       const auto belief = label_field_.belief(dem_, i, j);

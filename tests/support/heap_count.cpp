@@ -26,22 +26,56 @@ void* or_throw(void* p) {
 
 }  // namespace
 
-long curbline::test::heap_count() { return count.load(std::memory_order_relaxed); }
+long curbline::test::heap_count() {
+  return count.load(std::memory_order_relaxed);
+}
 
 // Every form is replaced, not only the one that the others call by default: a sanitizer brings its own of each.
-void* operator new(std::size_t n) { return or_throw(take(n)); }
-void* operator new[](std::size_t n) { return or_throw(take(n)); }
-void* operator new(std::size_t n, std::align_val_t a) { return or_throw(take(n, a)); }
-void* operator new[](std::size_t n, std::align_val_t a) { return or_throw(take(n, a)); }
-void* operator new(std::size_t n, const std::nothrow_t&) noexcept { return take(n); }
-void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return take(n); }
-void* operator new(std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept { return take(n, a); }
-void* operator new[](std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept { return take(n, a); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void* operator new(std::size_t n) {
+  return or_throw(take(n));
+}
+void* operator new[](std::size_t n) {
+  return or_throw(take(n));
+}
+void* operator new(std::size_t n, std::align_val_t a) {
+  return or_throw(take(n, a));
+}
+void* operator new[](std::size_t n, std::align_val_t a) {
+  return or_throw(take(n, a));
+}
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept {
+  return take(n);
+}
+void* operator new[](std::size_t n, const std::nothrow_t&) noexcept {
+  return take(n);
+}
+void* operator new(std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return take(n, a);
+}
+void* operator new[](std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return take(n, a);
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}

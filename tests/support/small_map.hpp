@@ -54,7 +54,7 @@ struct Stages {
         dem, segmentation, [this](int slot) { return field.label(slot); }, counters);
   }
   int label(bool all = true) {
-    const int changed = field.update(dem, mixture, all, counters);
+    const int changed = field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, counters);
     dem.clear_touched();
     return changed;
   }

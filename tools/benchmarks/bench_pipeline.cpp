@@ -155,7 +155,7 @@ void belief_messages(benchmark::State& state) {
   segmentation.update(dem, counters);
   mixture.init(street().settings.planes);
   mixture.update(dem, segmentation, [&](int slot) { return field.label(slot); }, counters);
-  for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, true, counters));
+  for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, counters));
   state.counters["messages_per_second"] = benchmark::Counter(counters.messages, benchmark::Counter::kIsRate);
 }
 BENCHMARK(belief_messages)->Unit(benchmark::kMicrosecond);
