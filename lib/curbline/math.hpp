@@ -9,7 +9,7 @@ namespace curbline {
 
 inline constexpr float pi = 3.14159265f;
 
-/// Nearest integer, halves away from zero. |x| < 2^31.
+/// Nearest integer, halves away from zero; the float just below a half counts as one. |x| < 2^22.
 constexpr std::int32_t round_to_int(float x) { return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f); }
 
 /// Largest integer not above x. |x| < 2^31.

@@ -159,7 +159,7 @@ TEST_CASE("curb rates: nothing found or nothing to find scores 0") {
 TEST_CASE("curb matching: a curb bears the errors of the pieces nearest to it") {
   const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.12, 0.12}, {{0, 0.3, 2, 0.3}, 0.05, 0.05}};
   const std::vector<MapCurb> found{piece(0, 0.02, 2, 0.02, 0.11), piece(0, 0.26, 1, 0.26, -0.08)};
-  const auto matches = match_curbs(found, truth, 0.2, everywhere);
+  const auto matches = match_curbs(found, truth, 0.29, everywhere);
   REQUIRE(matches.size() == 2);
   CHECK(matches[0].covered == Approx(1));
   CHECK(matches[0].position_error_m == Approx(0.02));
@@ -190,7 +190,7 @@ TEST_CASE("curb matching: what the robot did not see is neither visible nor miss
 
 TEST_CASE("curb matching: a lowered curb's step is taken where the piece lies") {
   const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.12, 0.02}};
-  const std::vector<MapCurb> found{piece(0.5, 0, 0.55, 0, 0.12 - 0.05 * 0.525)};  // one sample, at x = 0.525
+  const std::vector<MapCurb> found{piece(0.5, 0, 0.54, 0, 0.12 - 0.05 * 0.52)};  // one sample, at x = 0.52
   CHECK(match_curbs(found, truth, 0.1, everywhere)[0].height_error_m == Approx(0).margin(1e-12));
 }
 

@@ -64,6 +64,34 @@ TEST_CASE("pipeline: while the robot drives the window follows and the curb stay
   // The window begins at the robot, to half a block.
   CHECK(d.pipeline->dem().origin_x_m() == Approx(4.0).margin(0.21));
   CHECK(d.pipeline->dem().origin_y_m() == Approx(-2.0).margin(1e-4));
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const bool valid = d.pipeline->dem().cell(d.pipeline->dem().slot(i, j)).valid();
+      CHECK((d.pipeline->label(i, j) != no_label<Limits{}>) ==
+            valid);  // nothing is left of cells that were here before
+    }
+  }
+}
+
+TEST_CASE("pipeline: when the window moves a plane stays where it is in the map") {
+  const auto pipeline = started(driving_settings());
+  test::Noise noise;
+  const auto slope =
+      test::sample({0, 4, -2, 2}, 0.05, 0.005, noise, [](double x, double y) { return 0.1 * x - 0.05 * y; });
+  pipeline->observe(slope);
+  pipeline->settle();
+  const int label = pipeline->label(20, 20);
+  const auto height = [&](double x_m, double y_m) {
+    return pipeline->plane(label).height_m(static_cast<float>(x_m) - pipeline->dem().origin_x_m(),
+                                           static_cast<float>(y_m) - pipeline->dem().origin_y_m());
+  };
+  REQUIRE(height(2.0, 0.0) == Approx(0.2).margin(0.002));
+  pipeline->add_pose({NoddingLaser::ns(0.0), 0.8f, -0.4f});
+  add_tilts(*pipeline, 0);
+  REQUIRE(pipeline->observe({NoddingLaser::ns(0.0), {}}) == Status::ok);
+  REQUIRE(pipeline->dem().origin_x_m() == Approx(0.8));
+  REQUIRE(pipeline->dem().origin_y_m() == Approx(-2.4));
+  CHECK(height(2.0, 0.0) == Approx(0.2).margin(0.002));
 }
 
 TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "support/heap_count.hpp"
@@ -237,6 +238,30 @@ TEST_CASE("pipeline: project gives out the points that observe would take, and t
   }) == Status::ok);
   CHECK(points > 300);
   CHECK(pipeline->counters().points == 0);
+}
+
+TEST_CASE("pipeline: a line that begins in a gap of the tilt readings loses only the beams in it") {
+  Settings settings = NoddingLaser::settings();
+  settings.laser.beam_interval_s = 50e-6f;
+  const auto pipeline = started(settings);
+  const std::int64_t t0 = NoddingLaser::epoch_ns, ms = 1'000'000;
+  // Unknown until beam 100, turning to 0.4 rad until beam 200, at rest from there.
+  for (const auto& [time, angle] : {std::pair{-300, 0.3f}, {5, 0.3f}, {10, 0.4f}, {30, 0.4f}}) {
+    REQUIRE(pipeline->add_tilt({t0 + time * ms, angle}));
+  }
+  const std::vector<float> ranges(NoddingLaser::beams, 2.0f);
+  std::vector<Point> points;
+  REQUIRE(pipeline->project({t0, ranges}, [&](const Point& p) { points.push_back(p); }) == Status::ok);
+  REQUIRE(points.size() == NoddingLaser::beams - 100);
+  CHECK(pipeline->counters().beams_without_tilt == 100);
+  const auto tilt_of = [&](std::size_t beam) {
+    const double bearing = -1.5707963267948966 + 3.141592653589793 / 360.0 * static_cast<double>(beam);
+    const double down = NoddingLaser::height_m - static_cast<double>(points[beam - 100].z_m);
+    return std::asin(down / (2.0 * std::cos(bearing)));
+  };
+  CHECK(tilt_of(110) == Approx(0.31).margin(1e-5));
+  CHECK(tilt_of(150) == Approx(0.35).margin(1e-5));
+  CHECK(tilt_of(300) == Approx(0.4).margin(1e-5));
 }
 
 TEST_CASE("pipeline: a finished map settles, and then nothing changes any more") {

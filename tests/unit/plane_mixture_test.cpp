@@ -1,6 +1,7 @@
 // Labels of planes over time: who keeps its label, who is born, who dies, and who wins when there are too many.
 #include "curbline/plane_mixture.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
@@ -64,6 +65,23 @@ TEST_CASE("plane mixture: labels stay with their planes while regions grow") {
   CHECK(stages->label_at(23, 2) == a);
   CHECK(stages->label_at(23, 12) == b);
   CHECK(stages->label_at(23, 22) == c);
+}
+
+TEST_CASE("plane mixture: a region takes the label that most of its cells bore") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->segment();
+  // Of the lower region 5 rows bore label 0 and 7 rows label 3, of the upper one all label 0.
+  std::array<int, decltype(stages->dem)::capacity> old{};
+  for (int i = 5; i < 12; ++i) {
+    for (int j = 0; j < 24; ++j) old[static_cast<std::size_t>(stages->dem.slot(i, j))] = 3;
+  }
+  using LabelType = decltype(stages->mixture)::LabelType;
+  stages->mixture.update(
+      stages->dem, stages->segmentation,
+      [&](int slot) { return static_cast<LabelType>(old[static_cast<std::size_t>(slot)]); }, stages->counters);
+  CHECK(stages->mixture.region_label(stages->dem.slot(0, 0)) == 3);
+  CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == 0);
 }
 
 TEST_CASE("plane mixture: a plane is born with a fresh label and keeps those of others") {
@@ -174,6 +192,23 @@ TEST_CASE("plane mixture: the M-step fits planes to cells by their responsibilit
   CHECK(plane.cells == Approx(324.0f));
   CHECK(stages->mixture.plane(high).z_m == Approx(0.12).margin(1e-5));
   CHECK(stages->mixture.plane(high).cells == Approx(252.0f));
+}
+
+TEST_CASE("plane mixture: the same share of every cell leaves a plane and its noise as they are") {
+  Settings settings = small_settings();
+  settings.planes.update = PlaneUpdate::responsibilities;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(
+      stages->dem, [](double x, double) { return 0.1 * x; }, 0.03);
+  stages->infer(true);
+  const int label = stages->label_at(0, 0);
+  const auto variance = [&](float share) {
+    stages->mixture.maximise(stages->dem, [&](int, int, auto&& visit) { visit(label, share); });
+    return stages->mixture.plane(label).variance_m2;
+  };
+  const float whole = variance(1.0f);
+  CHECK(whole > 1.5f * settings.planes.prior.noise_m2);
+  CHECK(variance(0.3f) == Approx(whole).epsilon(1e-3));
 }
 
 TEST_CASE("plane mixture: parameters from responsibilities are not overwritten by the regions") {

@@ -112,6 +112,27 @@ TEST_CASE("segmentation: what no line touched keeps its region, though its neigh
   CHECK(stages->counters.evidences - before < before);  // the first strip took part as one node
 }
 
+TEST_CASE("segmentation: a touched region dissolves its neighbour before it as well as the one behind it") {
+  const auto evidences = [](float x_m) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    fill(stages->dem, [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.0; });
+    stages->infer();
+    const auto before = stages->counters.evidences;
+    stages->dem.add({x_m, 1.05f, 0.0f, 1e-4f});
+    stages->infer();
+    return stages->counters.evidences - before;
+  };
+  CHECK(evidences(0.35f) == Approx(evidences(2.05f)).epsilon(0.15));
+}
+
+TEST_CASE("segmentation: a cell that left the window has no region") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double, double) { return 0.0; });
+  stages->segment();
+  stages->segmentation.forget(stages->dem.slot(5, 5));
+  CHECK(stages->region_at(5, 5) == decltype(stages->segmentation)::none);
+}
+
 TEST_CASE("segmentation: without a touched cell nothing is cut or merged") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });

@@ -117,6 +117,13 @@ TEST_CASE("tilt track: the newest readings are kept") {
   CHECK(angles.at(t0).source == Source::none);
 }
 
+TEST_CASE("tilt track: of a full ring the reading that the writer may be replacing is left out") {
+  const auto track = turning(16);
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0).source == Source::extrapolated);
+  CHECK(angles.at(t0 + 25 * ms).source == Source::interpolated);
+}
+
 TEST_CASE("tilt track: after init it starts afresh") {
   const auto track = turning(5);
   track->push({t0, 0.0f});

@@ -26,7 +26,9 @@ std::vector<Sample> samples(const Segment& s) {
   return out;
 }
 
-Segment line_of(const MapCurb& c) { return {c.x0_m, c.y0_m, c.x1_m, c.y1_m}; }
+Segment line_of(const MapCurb& c) {
+  return {c.x0_m, c.y0_m, c.x1_m, c.y1_m};
+}
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +49,8 @@ std::optional<Hit> nearest(const Sample& p, double height_m, std::span<const Tru
     const double d = distance_m(p.x_m, p.y_m, s);
     if (d > tolerance_m || (hit && d >= hit->position_error_m)) continue;
     const double dx = s.x1_m - s.x0_m, dy = s.y1_m - s.y0_m;
-    const double t = std::clamp(((p.x_m - s.x0_m) * dx + (p.y_m - s.y0_m) * dy) / std::max(1e-12, dx * dx + dy * dy), 0.0, 1.0);
+    const double t =
+        std::clamp(((p.x_m - s.x0_m) * dx + (p.y_m - s.y0_m) * dy) / std::max(1e-12, dx * dx + dy * dy), 0.0, 1.0);
     const double step = truth[k].step0_m + t * (truth[k].step1_m - truth[k].step0_m);
     hit = Hit{k, d, std::abs(height_m), std::abs(std::abs(height_m) - step)};
   }
@@ -84,13 +87,15 @@ Rates curb_rates(std::span<const MapCurb> found, std::span<const Segment> truth,
       for (const Sample& p : samples(s)) {
         if (!counts(p.x_m, p.y_m)) continue;
         ++all;
-        near += std::any_of(to.begin(), to.end(), [&](const Segment& t) { return distance_m(p.x_m, p.y_m, t) <= tolerance_m; });
+        near += std::any_of(to.begin(), to.end(),
+                            [&](const Segment& t) { return distance_m(p.x_m, p.y_m, t) <= tolerance_m; });
       }
     }
     return all > 0 ? near / all : 0.0;
   };
   Rates rates{share_near(lines, truth), share_near(truth, lines), 0};
-  if (rates.precision + rates.recall > 0) rates.f1 = 2 * rates.precision * rates.recall / (rates.precision + rates.recall);
+  if (rates.precision + rates.recall > 0)
+    rates.f1 = 2 * rates.precision * rates.recall / (rates.precision + rates.recall);
   return rates;
 }
 
@@ -105,7 +110,8 @@ std::vector<CurbMatch> match_curbs(std::span<const MapCurb> found, std::span<con
     for (const Sample& p : line) {
       if (!counts(p.x_m, p.y_m)) continue;
       ++visible;
-      covered += std::any_of(found.begin(), found.end(), [&](const MapCurb& c) { return distance_m(p.x_m, p.y_m, line_of(c)) <= tolerance_m; });
+      covered += std::any_of(found.begin(), found.end(),
+                             [&](const MapCurb& c) { return distance_m(p.x_m, p.y_m, line_of(c)) <= tolerance_m; });
     }
     out[k].visible_m = visible / static_cast<double>(line.size()) * length;
     out[k].covered = visible > 0 ? covered / visible : 0;

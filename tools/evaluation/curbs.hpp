@@ -25,21 +25,21 @@ struct Rates {
   double precision = 0, recall = 0, f1 = 0;
 };
 
-/// Share of the found samples that lie within the tolerance of a true line, and of the true samples within it of a found one;
-/// only samples for which counts(x, y) is true.
+/// Share of the found samples that lie within the tolerance of a true line, and of the true samples within it of a
+/// found one; only samples for which counts(x, y) is true.
 Rates curb_rates(std::span<const MapCurb> found, std::span<const Segment> truth, double tolerance_m,
                  const std::function<bool(double, double)>& counts);
 
 /// One true curb: how it was found.
 struct CurbMatch {
-  double visible_m = 0;        ///< length whose samples count
-  double covered = 0;          ///< share of that with a found piece within the tolerance
-  double position_error_m = 0; ///< median distance of the found samples that are nearest to this curb
-  double height_m = 0;         ///< median of what was found there, without sign
-  double height_error_m = 0;   ///< median of |found - true|
+  double visible_m = 0;         ///< length whose samples count
+  double covered = 0;           ///< share of that with a found piece within the tolerance
+  double position_error_m = 0;  ///< median distance of the found samples that are nearest to this curb
+  double height_m = 0;          ///< median of what was found there, without sign
+  double height_error_m = 0;    ///< median of |found - true|
 };
 
-/// Matches found pieces to true curbs, the nearest within the tolerance. A curb of which nothing counts has visible_m 0.
+/// Matches found pieces to true curbs, the nearest within the tolerance. A curb that nobody saw has visible_m 0.
 std::vector<CurbMatch> match_curbs(std::span<const MapCurb> found, std::span<const TrueCurb> truth, double tolerance_m,
                                    const std::function<bool(double, double)>& counts);
 

@@ -9,8 +9,8 @@
 
 namespace curbline::tools {
 
-/// V-measure (Rosenberg and Hirschberg 2007): harmonic mean of homogeneity and completeness of two labellings of the same
-/// things, in [0, 1]. Labels are any numbers. 0 for none.
+/// V-measure (Rosenberg and Hirschberg 2007): harmonic mean of homogeneity and completeness of two labellings of the
+/// same things, in [0, 1]. Labels are any numbers. 0 for none.
 double v_measure(std::span<const int> truth, std::span<const int> label);
 
 /// True if a point lies in a closed polygon; on its border either.
@@ -22,8 +22,9 @@ std::vector<int> regions_of_cells(const Grid& grid, std::span<const Region> regi
 /// V-measure over the valid cells that lie in a region; a cell without a label counts as one label of its own.
 double v_measure(const Map& map, std::span<const int> region_of_cell);
 
-/// The paper's RMSE of prediction: another map's cell heights, at the centroids of its points, by the planes of this map's labels, over the cells that are valid
-/// in both and bear a label with a plane. NaN if there are none. Both maps on one grid.
+/// The paper's RMSE of prediction: another map's cell heights, at the centroids of its points, by the planes of this
+/// map's labels, over the cells that are valid in both and bear a label with a plane. NaN if there are none. Both maps
+/// on one grid.
 double prediction_rmse(const Map& trained, const Map& other);
 
 }  // namespace curbline::tools

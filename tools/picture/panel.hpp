@@ -1,54 +1,40 @@
-// One panel of the picture: the grid to scale with its axes, and what is drawn on it.
+// One panel of the picture: the grid to scale, its cells, axes, scale bar and the robot.
 #pragma once
 
-#include <cairo.h>
-
 #include <functional>
-#include <optional>
-#include <span>
-#include <vector>
+#include <string>
 
 #include "map/map.hpp"
-#include "picture/colours.hpp"
+#include "picture/drawing.hpp"
+#include "picture/picture.hpp"
 
-namespace curbline::tools {
+namespace curbline::tools::picture {
 
-struct Box {
-  double x = 0, y = 0, width = 0, height = 0;
+/// Where the grid lies on the page: x ahead up, y left to the left.
+struct View {
+  double x0_m = 0, x1_m = 1, y0_m = 0, y1_m = 1;              ///< the window
+  Box box{};                                                  ///< the same on the page
+  double scale() const { return box.width / (y1_m - y0_m); }  ///< pixels a metre
+  Pixel at(double x_m, double y_m) const {
+    return {box.x + (y1_m - y_m) / (y1_m - y0_m) * box.width, box.y + (x1_m - x_m) / (x1_m - x0_m) * box.height};
+  }
 };
 
-class Panel {
- public:
-  /// Puts the grid into the box, as large as it fits, with room for the axes.
-  Panel(cairo_t* cr, const Grid& grid, const Box& box);
+/// The rooms that an axis takes, pixels.
+inline constexpr double title_room = 24, bottom_room = 66;
+/// Left and right of the grid: as wide as the longest number asks for.
+double left_room(cairo_t* cr, const View& view);
+double right_room(cairo_t* cr, const View& view);
 
-  /// Fills each cell for which there is a colour; the ground beneath is light grey.
-  void cells(const std::function<std::optional<Colour>(int i, int j)>& colour);
-  void axes(const char* title);
-  void curbs(std::span<const MapCurb> curbs);
-  void truth(std::span<const MapCurb> curbs);
-  /// Heights in cm beside the curbs, the longest first; what would cover another text is left out.
-  void heights(std::span<const MapCurb> curbs);
+/// Each cell that has points in its colour: one picture of the panel's pixels in either kind of file, since half a
+/// million cells are too many lines for an SVG.
+void draw_cells(cairo_t* cr, const View& view, const Map& map, const std::function<Colour(const MapCell&)>& colour);
+/// Frame, numbers, names, title and the bar of 1 m (of a power of ten where 1 m is too long or too short to see).
+void draw_axes(cairo_t* cr, const View& view, const std::string& title);
 
-  const Box& drawn() const { return drawn_; }
+/// An arrow from where the robot is to where it heads.
+void draw_arrow(cairo_t* cr, Pixel at, double heading_rad);
+/// Whether the marker lies in the window or on its edge: else it is not drawn.
+bool shows(const View& view, const RobotMarker& robot);
 
- private:
-  double px(double y_m) const { return drawn_.x + (grid_.y0_m + grid_.cols * grid_.dy_m - y_m) * scale_; }
-  double py(double x_m) const { return drawn_.y + (grid_.x0_m + grid_.rows * grid_.dx_m - x_m) * scale_; }
-  void line(const MapCurb& curb);
-
-  cairo_t* cr_;
-  const Grid& grid_;
-  Box drawn_;
-  double scale_ = 1;  ///< pixels a metre
-};
-
-/// Line width and dash of a kind of curb; the legend uses it too.
-void set_curb_style(cairo_t* cr, const std::string& kind);
-
-void set_colour(cairo_t* cr, const Colour& colour);
-/// align: 0 left, 0.5 centred, 1 right of x; y is the base line.
-void text(cairo_t* cr, const std::string& words, double x, double y, double align = 0);
-void set_font(cairo_t* cr, double size, bool bold = false);
-
-}  // namespace curbline::tools
+}  // namespace curbline::tools::picture

@@ -3,167 +3,94 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <cstddef>
 #include <map>
-#include <memory>
-#include <ostream>
+#include <regex>
+#include <string_view>
 
 #include "formats/atomic_file.hpp"
 #include "formats/bad_input.hpp"
-#include "picture/colours.hpp"
-#include "picture/panel.hpp"
+#include "picture/page.hpp"
 
 namespace curbline::tools {
 namespace {
 
-constexpr double width = 1600, legend_room = 190, margin = 14, title_room = 34;
+using namespace picture;
 
-struct Range {
-  double low = 0, high = 1;
-  double share(double z) const { return (z - low) / (high - low); }
-};
-
-/// From the 2nd to the 98th percentile: a few cells of a wall do not take the colours from the ground.
-Range height_range(const Map& map) {
-  std::vector<double> heights;
-  for (const MapCell& cell : map.cells) {
-    if (cell.points > 0) heights.push_back(cell.height_m);
-  }
-  if (heights.empty()) return {};
-  std::sort(heights.begin(), heights.end());
-  const auto at = [&](double q) { return heights[static_cast<std::size_t>(q * static_cast<double>(heights.size() - 1))]; };
-  Range range{at(0.02), at(0.98)};
-  if (range.high - range.low < 0.02) range = {0.5 * (range.low + range.high) - 0.01, 0.5 * (range.low + range.high) + 0.01};
-  return range;
+cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
 }
 
-void colour_bar(cairo_t* cr, const Range& range, const Box& box) {
-  for (int k = 0; k < 100; ++k) {
-    set_colour(cr, height_colour(k / 99.0));
-    cairo_rectangle(cr, box.x, box.y + box.height * (1 - (k + 1) / 100.0), box.width, box.height / 100 + 0.7);
-    cairo_fill(cr);
-  }
-  set_colour(cr, {0.1, 0.1, 0.1});
-  set_font(cr, 12);
-  for (int k = 0; k <= 4; ++k) {
-    char words[32];
-    const double z = range.low + k / 4.0 * (range.high - range.low);
-    std::snprintf(words, sizeof words, "%.2f m", std::abs(z) < 0.005 ? 0.0 : z);
-    text(cr, words, box.x + box.width + 6, box.y + box.height * (1 - k / 4.0) + 4);
-  }
+void check(cairo_status_t status, const std::string& path) {
+  if (status != CAIRO_STATUS_SUCCESS) throw BadInput(path + ": cannot be drawn: " + cairo_status_to_string(status));
 }
 
-double curb_key(cairo_t* cr, const Map& map, double x, double y) {
-  static constexpr std::pair<const char*, const char*> kinds[] = {{"step_up", "step up"}, {"step_down", "step down"}, {"crease", "crease"}};
-  for (const auto& [kind, words] : kinds) {
-    const auto of_kind = [&](const MapCurb& curb) { return curb.kind == kind; };
-    if (std::none_of(map.curbs.begin(), map.curbs.end(), of_kind)) continue;
-    set_curb_style(cr, kind);
-    cairo_move_to(cr, x, y - 4);
-    cairo_line_to(cr, x + 30, y - 4);
-    cairo_stroke(cr);
-    set_colour(cr, {0.1, 0.1, 0.1});
-    text(cr, words, x + 40, y);
-    y += 20;
-  }
-  return y;
+std::string escaped(std::string_view words) {
+  std::string result;
+  for (const char c : words) result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
+  return result;
 }
 
-void plane_key(cairo_t* cr, const Map& map, double x, double y, double bottom) {
-  std::map<int, int> cells;
-  for (const MapCell& cell : map.cells) {
-    if (cell.points > 0 && cell.label >= 0) ++cells[cell.label];
+/// Cairo counts what it names through the life of the program; counted through the file, the same map gives the same
+/// bytes again.
+std::string renumbered(const std::string& svg) {
+  static const std::regex name(R"re((id="|href="#|url\(#)([a-z-]+)([0-9]+)(?=["\)]))re");
+  std::map<std::string, std::size_t> numbers;
+  std::string result;
+  std::size_t done = 0;
+  for (std::sregex_iterator match(svg.begin(), svg.end(), name); match != std::sregex_iterator(); ++match) {
+    const auto number = numbers.try_emplace(match->str(2) + match->str(3), numbers.size()).first->second;
+    result.append(svg, done, static_cast<std::size_t>(match->position(3)) - done);
+    result += std::to_string(number);
+    done = static_cast<std::size_t>(match->position() + match->length());
   }
-  std::vector<std::pair<int, int>> by_size(cells.begin(), cells.end());
-  std::stable_sort(by_size.begin(), by_size.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  for (std::size_t n = 0; n < by_size.size(); ++n, y += 18) {
-    if (y + 18 > bottom && n + 1 < by_size.size()) {
-      text(cr, "and " + std::to_string(by_size.size() - n) + " more", x, y);
-      return;
-    }
-    set_colour(cr, label_colour(by_size[n].first));
-    cairo_rectangle(cr, x, y - 11, 18, 12);
-    cairo_fill(cr);
-    set_colour(cr, {0.1, 0.1, 0.1});
-    text(cr, "plane " + std::to_string(by_size[n].first) + ": " + std::to_string(by_size[n].second) + " cells", x + 26, y);
-  }
+  return result.append(svg, done);
 }
 
-void draw(cairo_t* cr, const Map& map, const PictureExtras& extras, double height) {
-  set_colour(cr, {1, 1, 1});
-  cairo_paint(cr);
-  set_colour(cr, {0.1, 0.1, 0.1});
-  set_font(cr, 17, true);
-  text(cr, extras.title, margin, margin + 14);
-
-  const double panel_width = (width - legend_room - 110 - 3 * margin) / 2, panel_height = height - title_room - margin;
-  const Range range = height_range(map);
-  Panel heights(cr, map.grid, {margin, title_room, panel_width, panel_height});
-  Panel labels(cr, map.grid, {margin + panel_width + 110, title_room, panel_width, panel_height});
-  const auto cell = [&](int i, int j) -> const MapCell& { return map.cells[map.grid.at(i, j)]; };
-  heights.cells([&](int i, int j) -> std::optional<Colour> {
-    if (cell(i, j).points == 0) return std::nullopt;
-    return height_colour(range.share(cell(i, j).height_m));
-  });
-  labels.cells([&](int i, int j) -> std::optional<Colour> {
-    if (cell(i, j).points == 0 || cell(i, j).label < 0) return std::nullopt;
-    return label_colour(cell(i, j).label);
-  });
-  for (Panel* panel : {&heights, &labels}) {
-    panel->truth(extras.truth);
-    panel->curbs(map.curbs);
-    panel->axes(panel == &heights ? "height" : "planes and curbs");
-    panel->heights(map.curbs);
-  }
-  colour_bar(cr, range, {heights.drawn().x + heights.drawn().width + 14, labels.drawn().y, 18, heights.drawn().height});
-
-  const double x = width - legend_room, top = title_room + 40;
-  set_font(cr, 13, true);
-  text(cr, "Curbs, far less near", x, top);
-  set_font(cr, 12);
-  double y = curb_key(cr, map, x, top + 24);
-  set_font(cr, 13, true);
-  text(cr, "Planes", x, y + 14);
-  set_font(cr, 12);
-  plane_key(cr, map, x, y + 36, height - margin);
+/// Cairo's texts are outlines; this is what a reader or a search can find.
+void describe(std::string& svg, const std::string& title, const std::vector<std::string>& curb_texts) {
+  std::string words = "\n<title>" + escaped(printable(title)) + "</title>\n<desc>";
+  for (const std::string& text : curb_texts) words += (&text == &curb_texts.front() ? "curbs: " : ", ") + text;
+  svg.insert(svg.find('>', svg.find("<svg")) + 1, words + "</desc>");
 }
 
-cairo_status_t write_to(void* stream, const unsigned char* data, unsigned int length) {
-  auto* out = static_cast<std::ostream*>(stream);
-  out->write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(length));
-  return *out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+std::string png(const Map& map, const PictureExtras& extras, const std::string& path) {
+  const Page page = lay_out(map, extras);
+  const Surface surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(page.width), static_cast<int>(page.height)));
+  const Context cr(cairo_create(surface.get()));
+  draw(cr.get(), page, map, extras);
+  check(cairo_status(cr.get()), path);
+  std::string bytes;
+  check(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), path);
+  return bytes;
 }
 
-struct Destroy {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-  void operator()(cairo_t* cr) const { cairo_destroy(cr); }
-};
-
-bool ends_with(const std::string& path, const std::string& ending) { return path.size() > ending.size() && path.ends_with(ending); }
+std::string svg(const Map& map, const PictureExtras& extras, const std::string& path) {
+  const Page page = lay_out(map, extras);
+  std::string bytes;
+  const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, page.width, page.height));
+  cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
+  const Context cr(cairo_create(surface.get()));
+  const std::vector<std::string> curb_texts = draw(cr.get(), page, map, extras);
+  check(cairo_status(cr.get()), path);
+  cairo_surface_finish(surface.get());
+  check(cairo_surface_status(surface.get()), path);
+  std::string result = renumbered(bytes);
+  describe(result, extras.title, curb_texts);
+  return result;
+}
 
 }  // namespace
 
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras) {
-  const bool png = ends_with(path, ".png");
-  if (!png && !ends_with(path, ".svg")) throw BadInput(path + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
-  // As high as the grid wants at this width, within reason.
-  const double aspect = map.grid.rows * map.grid.dx_m / std::max(map.grid.cols * map.grid.dy_m, 1e-3);
-  const double height = std::clamp(title_room + 90 + aspect * (width - legend_room - 240) / 2, 420.0, 1100.0);
-
-  AtomicFile file(path);
-  std::ostream* out = &file.stream();
-  const std::unique_ptr<cairo_surface_t, Destroy> surface(
-      png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height))
-          : cairo_svg_surface_create_for_stream(write_to, out, width, height));
-  {
-    const std::unique_ptr<cairo_t, Destroy> cr(cairo_create(surface.get()));
-    draw(cr.get(), map, extras, height);
+  const bool as_png = path.ends_with(".png");
+  if (!as_png && !path.ends_with(".svg")) {
+    throw BadInput(path + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
   }
-  if (png) cairo_surface_write_to_png_stream(surface.get(), write_to, out);
-  cairo_surface_finish(surface.get());
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw BadInput(path + ": the picture could not be written; expected room for it");
+  AtomicFile file(path);
+  file.stream() << (as_png ? png(map, extras, path) : svg(map, extras, path));
   file.commit();
 }
 

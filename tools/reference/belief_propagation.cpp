@@ -6,13 +6,20 @@
 namespace curbline::tools::reference {
 namespace {
 
-Eigen::Index index(std::size_t n) { return static_cast<Eigen::Index>(n); }
+Eigen::Index index(std::size_t n) {
+  return static_cast<Eigen::Index>(n);
+}
 
 /// Messages 2 e (from a to b) and 2 e + 1 (from b to a) of edge e, each normalised to sum 1.
 class Propagation {
  public:
-  Propagation(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors, Product product, Messages messages)
-      : dem_(dem), factors_(factors), product_(product), general_(messages == Messages::general), incoming_(dem.valid.size()) {
+  Propagation(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors, Product product,
+              Messages messages)
+      : dem_(dem),
+        factors_(factors),
+        product_(product),
+        general_(messages == Messages::general),
+        incoming_(dem.valid.size()) {
     const Eigen::Index labels = log_node.cols();
     node_ = (log_node.colwise() - log_node.rowwise().maxCoeff()).array().exp().transpose();
     message_ = Eigen::MatrixXd::Constant(labels, index(2 * dem.edges.size()), 1.0 / static_cast<double>(labels));
@@ -117,8 +124,8 @@ std::vector<EdgeFactor> edge_factors(const Dem& dem, const Options& options) {
   return factors;
 }
 
-BeliefSummary propagate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors, Product product,
-                        Messages messages, Eigen::MatrixXd& belief) {
+BeliefSummary propagate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors,
+                        Product product, Messages messages, Eigen::MatrixXd& belief) {
   Propagation propagation(dem, log_node, factors, product, messages);
   BeliefSummary summary;
   while (summary.sweeps < most_sweeps && !summary.converged) {

@@ -1,4 +1,5 @@
-// Loopy belief propagation on the grid (paper, III-D): sum-product for responsibilities, max-product for the final labels.
+// Loopy belief propagation on the grid (paper, III-D): sum-product for responsibilities, max-product for the final
+// labels.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +33,7 @@ enum class Product { sum, max };
 
 /// Beliefs (rows: cells, normalised) from log node potentials. Messages start uniform and are updated one after the
 /// other, forward and backward in turn (its code: in random order; measured to make no difference).
-BeliefSummary propagate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors, Product product,
-                        Messages messages, Eigen::MatrixXd& belief);
+BeliefSummary propagate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors,
+                        Product product, Messages messages, Eigen::MatrixXd& belief);
 
 }  // namespace curbline::tools::reference

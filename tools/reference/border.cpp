@@ -12,7 +12,12 @@ const MapPlane* plane_of(const Map& map, int label) {
   return nullptr;
 }
 
-double height(const MapPlane& plane, double x, double y) { return plane.z0_m + plane.sx * x + plane.sy * y; }
+double height(const MapPlane& plane, double x, double y) {
+  return plane.z0_m + plane.sx * x + plane.sy * y;
+}
+double step(const MapPlane& low, const MapPlane& high, double x, double y) {
+  return height(high, x, y) - height(low, x, y);
+}
 
 /// Labels on the low and the high side of a border along `axis`, -1 where there is none.
 struct Sides {
@@ -34,10 +39,13 @@ MapCurb make_curb(const Map& map, const Sides& sides, int axis, double x0, doubl
   const MapPlane* high = plane_of(map, sides.high);
   if (low == nullptr || high == nullptr) return curb;
   const double x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
-  const double step = height(*high, x, y) - height(*low, x, y);
-  curb.height_m = (axis == 0 ? x : y) >= 0 ? step : -step;  // the side nearer to the origin is near
+  const double step_m = step(*low, *high, x, y);
+  curb.height_m = (axis == 0 ? x : y) >= 0 ? step_m : -step_m;  // the side nearer to the origin is near
   curb.height_sd_m = std::hypot(low->sd_m, high->sd_m);
-  if (std::abs(step) > 2 * curb.height_sd_m) curb.kind = curb.height_m > 0 ? "step_up" : "step_down";
+  // Planes that meet between the centres of the cells make a fold, wherever in the cells it lies.
+  const double dx = axis == 0 ? 0.5 * map.grid.dx_m : 0, dy = axis == 0 ? 0 : 0.5 * map.grid.dy_m;
+  const bool meet = step(*low, *high, x - dx, y - dy) * step(*low, *high, x + dx, y + dy) <= 0;
+  if (!meet && std::abs(step_m) > 2 * curb.height_sd_m) curb.kind = curb.height_m > 0 ? "step_up" : "step_down";
   return curb;
 }
 
@@ -49,7 +57,9 @@ std::vector<MapCurb> borders(const Map& map) {
   for (int axis = 0; axis < 2; ++axis) {
     const int lines = (axis == 0 ? g.rows : g.cols) - 1, length = axis == 0 ? g.cols : g.rows;
     for (int line = 0; line < lines; ++line) {
-      const auto at = [&](int k) { return k >= length ? Sides{} : axis == 0 ? sides(map, line, k, 0) : sides(map, k, line, 1); };
+      const auto at = [&](int k) {
+        return k >= length ? Sides{} : axis == 0 ? sides(map, line, k, 0) : sides(map, k, line, 1);
+      };
       for (int first = 0; first < length;) {
         const Sides here = at(first);
         int end = first + 1;
@@ -58,7 +68,8 @@ std::vector<MapCurb> borders(const Map& map) {
           const double across = axis == 0 ? g.x0_m + (line + 1) * g.dx_m : g.y0_m + (line + 1) * g.dy_m;
           const double from = axis == 0 ? g.y0_m + first * g.dy_m : g.x0_m + first * g.dx_m;
           const double to = axis == 0 ? g.y0_m + end * g.dy_m : g.x0_m + end * g.dx_m;
-          out.push_back(axis == 0 ? make_curb(map, here, 0, across, from, across, to) : make_curb(map, here, 1, from, across, to, across));
+          out.push_back(axis == 0 ? make_curb(map, here, 0, across, from, across, to)
+                                  : make_curb(map, here, 1, from, across, to, across));
         }
         first = end;
       }

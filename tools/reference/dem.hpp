@@ -33,6 +33,7 @@ struct Dem {
   std::array<double, 3> phi(std::size_t v) const;
 };
 
+/// Points above the greatest height, outside the grid or not finite are left out. O(points + cells).
 Dem make_dem(std::span<const Point3> cloud, const Grid& grid, double max_height_m);
 
 }  // namespace curbline::tools::reference

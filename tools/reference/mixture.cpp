@@ -16,7 +16,9 @@ Eigen::Vector3d phi_of(const Dem& dem, std::size_t v) {
   return {phi[0], phi[1], phi[2]};
 }
 
-Eigen::Index index(std::size_t n) { return static_cast<Eigen::Index>(n); }
+Eigen::Index index(std::size_t n) {
+  return static_cast<Eigen::Index>(n);
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ Eigen::MatrixXd log_likelihoods(const Dem& dem, const std::vector<MixturePlane>&
       const MixturePlane& plane = planes[k];
       const double residual = dem.cell(v).height_m - plane.w.dot(phi_of(dem, v));
       out(index(v), index(k)) = std::log(std::max(plane.weight, 1e-300)) -
-                                0.5 * std::log(2 * std::numbers::pi * plane.variance_m2) - 0.5 * residual * residual / plane.variance_m2;
+                                0.5 * std::log(2 * std::numbers::pi * plane.variance_m2) -
+                                0.5 * residual * residual / plane.variance_m2;
     }
   }
   return out;

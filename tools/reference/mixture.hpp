@@ -17,8 +17,8 @@ struct MixturePlane {
 /// Rows: valid cells; columns: planes.
 using Responsibilities = Eigen::MatrixXd;
 
-/// Least squares for each component of three cells or more, which are the first; smaller ones get no plane, but their cells
-/// stay in the mixture. No cell is weighed, as in the code (the text weighs by variance).
+/// Least squares for each component of three cells or more, which are the first; smaller ones get no plane, but their
+/// cells stay in the mixture. No cell is weighed, as in the code (the text weighs by variance).
 std::vector<MixturePlane> planes_of_components(const Dem& dem, const std::vector<int>& component);
 
 /// ln(pi_k N(h_i | w_k' phi_i, v_k)).
@@ -27,7 +27,7 @@ Eigen::MatrixXd log_likelihoods(const Dem& dem, const std::vector<MixturePlane>&
 /// E-step for independent cells; returns the log likelihood of all.
 double independent_responsibilities(const Eigen::MatrixXd& log_likelihood, Responsibilities& out);
 
-/// M-step. A plane that nearly no cell answers for keeps its parameters.
+/// M-step: least squares weighed by responsibility. A plane that nearly no cell answers for keeps its parameters.
 void maximise(const Dem& dem, const Responsibilities& responsibility, std::vector<MixturePlane>& planes);
 
 }  // namespace curbline::tools::reference

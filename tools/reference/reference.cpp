@@ -49,7 +49,8 @@ Labelling expectation_maximisation(const Dem& dem, const Options& options, std::
   Eigen::MatrixXd best;
   propagate(dem, log_likelihood, factors, Product::max, options.messages, best);
   Labelling out = best_of(best);
-  for (std::size_t v = 0; v < out.label.size(); ++v) out.probability[v] = responsibility(static_cast<Eigen::Index>(v), out.label[v]);
+  for (std::size_t v = 0; v < out.label.size(); ++v)
+    out.probability[v] = responsibility(static_cast<Eigen::Index>(v), out.label[v]);
   return out;
 }
 
@@ -60,11 +61,14 @@ Map to_map(const Dem& dem, const Labelling& labelling, const std::vector<Mixture
   for (std::size_t v = 0; v < dem.valid.size(); ++v) {
     const DemCell& cell = dem.cell(v);
     const auto phi = dem.phi(v);
-    map.cells[dem.valid[v]] = {dem.grid.x0_m + phi[1], dem.grid.y0_m + phi[2], cell.height_m, cell.variance_m2(), cell.points, labelling.label[v], labelling.probability[v]};
+    map.cells[dem.valid[v]] = {
+        dem.grid.x0_m + phi[1], dem.grid.y0_m + phi[2],  cell.height_m, cell.variance_m2(), cell.points,
+        labelling.label[v],     labelling.probability[v]};
   }
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const Eigen::Vector3d& w = planes[k].w;
-    map.planes.push_back({w[0] - w[1] * dem.grid.x0_m - w[2] * dem.grid.y0_m, w[1], w[2], std::sqrt(planes[k].variance_m2), static_cast<int>(k)});
+    map.planes.push_back({w[0] - w[1] * dem.grid.x0_m - w[2] * dem.grid.y0_m, w[1], w[2],
+                          std::sqrt(planes[k].variance_m2), static_cast<int>(k)});
   }
   map.curbs = borders(map);
   return map;

@@ -1,6 +1,14 @@
-// The published method (Maye, Kaestner and Siegwart, ICRA 2012) as a batch in double precision: what the streaming pipeline is
-// compared with. Cells, graph segmentation, least squares, EM with beliefs from loopy belief propagation. Where the
-// paper's text and its code differ, the code is followed (each file says where); eq. (10) can be asked for.
+// The published method (Maye, Kaestner and Siegwart, ICRA 2012) as a batch in double precision: what the streaming
+// pipeline is compared with. Cells, graph segmentation, least squares, EM with beliefs from loopy belief propagation.
+// Where the paper's text and its code differ, the code is followed (each file says where); eq. (10) can be asked for.
+//
+// Departures from the code; V-measure moves by less than 0.01 with any of the first two, on the recorded streets:
+// - The M-step weighs cells by their responsibility, as the paper's formula does; the code by its square.
+// - A component of three cells gets a plane, one whose cells lie on one line a level plane; the code wants four cells
+//   that tell both slopes.
+// - EM stops when the likelihood of independent cells stands; the code takes belief propagation's own estimate.
+// - Planes have a least variance, node potentials are scaled by their largest: the code can run out of range.
+// - The code drops cells some 38 standard deviations from the mean height; here the greatest height does that.
 #pragma once
 
 #include <span>

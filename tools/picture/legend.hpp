@@ -1,0 +1,28 @@
+// What the picture's colours and lines mean: the bar of heights and the list at the right.
+#pragma once
+
+#include "picture/panel.hpp"
+
+namespace curbline::tools::picture {
+
+/// The heights that the colours span.
+struct HeightRange {
+  double low_m = 0, high_m = 0;  ///< the same: no cell is valid
+  double share(double height_m) const { return (height_m - low_m) / (high_m - low_m); }
+};
+
+/// From the 2nd to the 98th percentile, at least 2 cm: a few cells of a wall do not take the colours from the ground.
+HeightRange height_range(const Map& map);
+
+inline constexpr double colour_bar_width = 16;
+/// The box is that of the colours; the numbers stand right of it.
+void draw_colour_bar(cairo_t* cr, const HeightRange& range, const Box& box);
+/// Of the numbers.
+double colour_bar_room(cairo_t* cr, const HeightRange& range);
+
+inline constexpr double legend_width = 190;
+/// All of it; what does not fit into the box it is drawn in is summed up in its last line.
+double legend_height(const Map& map, const PictureExtras& extras);
+void draw_legend(cairo_t* cr, const Map& map, const PictureExtras& extras, bool robot_shown, const Box& box);
+
+}  // namespace curbline::tools::picture
