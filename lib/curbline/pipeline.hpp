@@ -209,6 +209,7 @@ void Pipeline<limits>::move_window(float x_m, float y_m) {
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
   dem_.follow(x_m, y_m, [this](int slot) {
     segmentation_.forget(slot);
+    plane_mixture_.forget(slot);
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);

@@ -47,6 +47,9 @@ class PlaneMixture {
   template <typename ForEachBelief>
   void maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief);
 
+  /// Forgets a cell that leaves the window.
+  void forget(int slot) { region_label_[static_cast<std::size_t>(slot)] = none; }
+
   /// The window's lowest corner moved by (dx, dy): planes are kept in its frame.
   void shift(float dx_m, float dy_m) {
     for (Plane& plane : planes_) {

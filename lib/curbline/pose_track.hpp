@@ -32,7 +32,7 @@ class PoseTrack {
     size_ = next_ = 0;
   }
 
-  /// Takes a pose; false if it is not finite, its quaternion not of unit length within 1 %, or not later than the one
+  /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not later than the one
   /// before. O(1).
   bool push(const Pose& pose);
 

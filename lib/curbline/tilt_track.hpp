@@ -58,7 +58,10 @@ class TiltTrack {
     last_ns_ = INT64_MIN;
   }
 
-  /// Takes a reading; false (and counted) if it is not finite or not later than the one before. O(1), wait-free: may be
+  /// No servo winds further: a greater angle is a damaged frame.
+  static constexpr float max_angle_rad = 100.0f;
+
+  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before. O(1), wait-free: may be
   /// called from an interrupt while another context takes snapshots. One writer only.
   bool push(const TiltReading& reading);
 
@@ -81,12 +84,13 @@ class TiltTrack {
 
 template <Limits limits>
 bool TiltTrack<limits>::push(const TiltReading& reading) {
-  if (!is_finite(reading.angle_rad) || reading.time_ns <= last_ns_) {
+  if (!(reading.angle_rad >= -max_angle_rad && reading.angle_rad <= max_angle_rad) || reading.time_ns <= last_ns_) {
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return false;
   }
   last_ns_ = reading.time_ns;
   const std::uint32_t n = written_.load(std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);  // no store below is seen before the count above
   Entry& entry = entries_[n % limits.tilt_samples];
   const auto time = static_cast<std::uint64_t>(reading.time_ns);
   entry.time_low.store(static_cast<std::uint32_t>(time), std::memory_order_relaxed);

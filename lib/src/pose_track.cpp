@@ -16,6 +16,9 @@ bool acceptable(const Pose& pose) {
   for (const float value : {pose.x_m, pose.y_m, pose.z_m, pose.qx, pose.qy, pose.qz, pose.qw}) {
     if (!is_finite(value)) return false;
   }
+  for (const float metres : {pose.x_m, pose.y_m, pose.z_m}) {
+    if (metres > 1e6f || metres < -1e6f) return false;  // float would not tell one cell from the next
+  }
   const float square = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
   return square > 0.98f && square < 1.02f;
 }

@@ -42,7 +42,9 @@ struct Tiny {
                static_cast<float>(site.height_m), 1e-4f});
     }
   }
-  int update(bool all = true) { return field.update(dem, training.mixture, all ? FieldScope::window : FieldScope::line, counters); }
+  int update(bool all = true) {
+    return field.update(dem, training.mixture, all ? FieldScope::window : FieldScope::line, counters);
+  }
   const Plane& plane(int label) const { return training.mixture.plane(label); }
 
   std::vector<Site> sites;

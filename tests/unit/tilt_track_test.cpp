@@ -103,7 +103,8 @@ TEST_CASE("tilt track: repeated, older and not finite readings are dropped and c
   CHECK_FALSE(track->push({at - 1, 0.0f}));
   CHECK_FALSE(track->push({at + 25 * ms, std::numeric_limits<float>::quiet_NaN()}));
   CHECK_FALSE(track->push({at + 25 * ms, -std::numeric_limits<float>::infinity()}));
-  CHECK(track->dropped() == 4);
+  CHECK_FALSE(track->push({at + 25 * ms, 1e30f}));  // a damaged float frame
+  CHECK(track->dropped() == 5);
   CHECK(track->push({at + 25 * ms, 0.0f}));  // a dropped reading does not take its time along
   CHECK(snapshot(*track).at(t0 + 25 * ms).angle_rad == Approx(-0.1925));
 }

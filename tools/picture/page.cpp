@@ -128,8 +128,8 @@ std::vector<std::string> draw(cairo_t* cr, const Page& page, const Map& map, con
   for (const PlacedText& text : texts) taken.push_back(text.box);
   write(cr, place_labels(map, page.planes, taken, width));
 
-  std::vector<std::string> written;
-  for (const PlacedText& text : texts) written.push_back(text.words);
+  std::vector<std::string> written(texts.size());
+  std::transform(texts.begin(), texts.end(), written.begin(), [](const PlacedText& text) { return text.words; });
   return written;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -94,7 +95,7 @@ void draw_cells(cairo_t* cr, const View& view, const Map& map, const std::functi
   const int width = static_cast<int>(view.box.width), height = static_cast<int>(view.box.height);
   const Surface image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
   unsigned char* const pixels = cairo_image_surface_get_data(image.get());
-  const int stride = cairo_image_surface_get_stride(image.get());
+  const std::ptrdiff_t stride = cairo_image_surface_get_stride(image.get());
   std::vector<std::uint32_t> row(static_cast<std::size_t>(width));
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
