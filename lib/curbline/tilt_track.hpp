@@ -58,8 +58,8 @@ class TiltTrack {
     last_ns_ = INT64_MIN;
   }
 
-  /// No servo winds further: a greater angle is a damaged frame.
-  static constexpr float max_angle_rad = 100.0f;
+  /// No servo winds further, and what follows can reduce it: a greater angle is a damaged frame.
+  static constexpr float max_angle_rad = 1e6f;
 
   /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before. O(1), wait-free: may be
   /// called from an interrupt while another context takes snapshots. One writer only.
