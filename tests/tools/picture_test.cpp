@@ -145,6 +145,20 @@ TEST_CASE("picture: all parts lie on the page and none on another") {
   }
 }
 
+TEST_CASE("picture: beside a panel there is room for its numbers and the axis's name, in windows of any size") {
+  const Surface scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const Context cr(cairo_create(scratch.get()));
+  set_font(cr.get(), text_height);
+  for (const double metres : {0.02, 0.4, 1.0, 4.0, 51.2}) {
+    const View window{0, metres, -metres / 2, metres / 2, {0, 0, 500, 500}};
+    const double room_px = left_room(cr.get(), window) - 1.5 * text_height;  // the name, upright
+    CAPTURE(metres);
+    for (const Tick& tick : ticks(0, metres, 500 / metres, [](const std::string&) { return 1.6 * text_height; })) {
+      CHECK(text_width(cr.get(), tick.words) + 5 < room_px);
+    }
+  }
+}
+
 TEST_CASE("picture: x ahead points up and y left points left") {
   Map map = window(40, 40);
   map.cells[map.grid.at(39, 39)] = {3.95, 1.95, 0.5, 1e-4, 5, 3, 1};  // ahead, to the left

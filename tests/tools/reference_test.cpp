@@ -112,6 +112,32 @@ TEST_CASE("reference: cells too few for a plane keep the labels of their compone
   CHECK(map.curbs[0].height_sd_m == 1);  // no planes: nothing is known of the step
 }
 
+TEST_CASE("reference: one point is a cell without a plane, with every method") {
+  for (const Method method : {Method::segment, Method::em, Method::crf_em}) {
+    Options options;
+    options.method = method;
+    const Map map = map_cloud(std::vector<Point3>{{2.05, 0.05, -0.9}}, ahead, options);
+    CHECK(map.planes.empty());
+    CHECK(map.curbs.empty());
+    CHECK(map.cells[ahead.at(0, 10)].height_m == -0.9);
+    CHECK(map.cells[ahead.at(0, 10)].label == 0);
+  }
+}
+
+TEST_CASE("reference: three points on one line are one level plane, with every method") {
+  const std::vector<Point3> cloud{{2.05, 0.05, -0.90}, {2.15, 0.05, -0.89}, {2.25, 0.05, -0.88}};
+  for (const Method method : {Method::segment, Method::em, Method::crf_em}) {
+    Options options;
+    options.method = method;
+    const Map map = map_cloud(cloud, ahead, options);
+    REQUIRE(map.planes.size() == 1);
+    CHECK(map.planes[0].z0_m == Approx(-0.89));
+    CHECK(map.planes[0].sx == 0);
+    CHECK(map.planes[0].sy == 0);
+    CHECK(map.curbs.empty());
+  }
+}
+
 TEST_CASE("reference: messages from the total give the labels and planes of messages from the K x K matrix") {
   Options options;
   options.segment_scale = 10;  // many planes

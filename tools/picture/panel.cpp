@@ -65,10 +65,12 @@ void draw_scale_bar(cairo_t* cr, const View& view) {
   text(cr, words, {x + length + gap, y + 0.36 * text_height});
 }
 
+/// Of the numbers at the ends, with the decimals of the closest that ticks() may stand: a tenth of the window apart.
 double wider_end(cairo_t* cr, double low, double high) {
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10((high - low) / 10))));
   const auto width = [&](double value) {
     char words[64];
-    std::snprintf(words, sizeof words, "%.1f", value);
+    std::snprintf(words, sizeof words, "%.*f", decimals, value);
     return text_width(cr, words);
   };
   return std::max(width(low), width(high));
