@@ -11,7 +11,8 @@ namespace curbline::tools {
 nlohmann::json evaluate_truth(const std::string& dir, bool print);
 
 /// The paper's own tables on a folder of clouds with hand-drawn regions (scan-NN.xyz, scan-NN.gt): V by cloud in x, y in
-/// [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference.
+/// [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference; for curbline also
+/// from the raw streams (scan-NN.carmen, scan-NN.candump) where all are there, with the robot that ships as clausius.toml.
 nlohmann::json evaluate_paper(const std::string& data, bool print);
 
 }  // namespace curbline::tools

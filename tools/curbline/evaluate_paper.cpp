@@ -2,12 +2,16 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "curbline/evaluate.hpp"
 #include "curbline/map_cloud.hpp"
+#include "curbline/replay.hpp"
 #include "evaluation/labels.hpp"
 #include "formats/cloud.hpp"
+#include "formats/shipped.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -16,6 +20,7 @@ namespace {
 struct PaperCloud {
   std::string name;
   Map curbline, reference;
+  std::optional<Map> streamed;  ///< from its raw stream
   double v_curbline = 0, v_reference = 0;
   bool same_place = false;  ///< scan-03 to scan-12 were taken from one place
 };
@@ -42,6 +47,19 @@ std::vector<std::string> cloud_names(const std::string& data) {
   return names;
 }
 
+/// The sweep line by line with the angle of each beam's time; the clouds have one angle a line.
+std::optional<Map> map_stream(const std::string& sweep) {
+  const ReplayLogs logs{sweep + ".carmen", sweep + ".candump", {}};
+  const std::string robot_file = shipped_file("robots", "clausius");
+  if (robot_file.empty() || !std::filesystem::exists(logs.scans) || !std::filesystem::exists(logs.can)) return std::nullopt;
+  Robot robot = read_robot(robot_file);
+  apply_window(paper_window(MapMethod::curbline), robot.window);
+  Replay replay(robot, logs);
+  while (replay.step()) continue;
+  replay.check_complete();
+  return replay.pipeline().map();
+}
+
 PaperCloud load(const std::string& data, const std::string& name) {
   const std::vector<Point3> points = read_cloud(data + "/" + name + ".xyz");
   const std::vector<Region> regions = read_regions(data + "/" + name + ".gt");
@@ -50,6 +68,7 @@ PaperCloud load(const std::string& data, const std::string& name) {
   cloud.same_place = name >= "scan-03" && name <= "scan-12";
   cloud.curbline = map_cloud(points, paper_window(MapMethod::curbline));
   cloud.reference = map_cloud(points, paper_window(MapMethod::crf_em));
+  if (cloud.same_place) cloud.streamed = map_stream(data + "/" + name);
   const std::vector<int> region = regions_of_cells(cloud.curbline.grid, regions);
   cloud.v_curbline = v_measure(cloud.curbline, region);
   cloud.v_reference = v_measure(cloud.reference, region);
@@ -69,17 +88,33 @@ MeanSd mean_sd(const std::vector<double>& values) {
   return out;
 }
 
-/// Mean over training clouds of the mean over the others.
-double prediction(const std::vector<PaperCloud>& clouds, Map PaperCloud::*map) {
+/// Mean over training clouds of the mean over the others; NaN if there are no two.
+double prediction(std::span<const Map> maps) {
   std::vector<double> of_training;
-  for (const PaperCloud& trained : clouds) {
+  for (const Map& trained : maps) {
     std::vector<double> of_other;
-    for (const PaperCloud& other : clouds) {
-      if (trained.same_place && other.same_place && trained.name != other.name) of_other.push_back(prediction_rmse(trained.*map, other.*map));
+    for (const Map& other : maps) {
+      if (&trained != &other) of_other.push_back(prediction_rmse(trained, other));
     }
     if (!of_other.empty()) of_training.push_back(mean_sd(of_other).mean);
   }
-  return mean_sd(of_training).mean;
+  return of_training.empty() ? std::nan("") : mean_sd(of_training).mean;
+}
+
+struct Predictions {
+  double curbline = 0, streamed = 0, reference = 0;  ///< NaN where there is nothing to compare
+};
+
+Predictions predictions(const std::vector<PaperCloud>& clouds) {
+  std::vector<Map> curbline, streamed, reference;
+  for (const PaperCloud& cloud : clouds) {
+    if (!cloud.same_place) continue;
+    curbline.push_back(cloud.curbline);
+    reference.push_back(cloud.reference);
+    if (cloud.streamed) streamed.push_back(*cloud.streamed);
+  }
+  if (streamed.size() < curbline.size()) streamed.clear();
+  return {prediction(curbline), prediction(streamed), prediction(reference)};
 }
 
 }  // namespace
@@ -101,15 +136,16 @@ nlohmann::json evaluate_paper(const std::string& data, bool print) {
     here_reference.push_back(cloud.v_reference);
   }
   const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline), v_all_reference = mean_sd(all_reference);
-  const double rmse = prediction(clouds, &PaperCloud::curbline), rmse_reference = prediction(clouds, &PaperCloud::reference);
+  const Predictions rmse = predictions(clouds);
   out["v_same_place"] = {{"curbline", v.mean}, {"crf-em", v_reference.mean}};
   out["v_all"] = {{"curbline", v_all.mean}, {"crf-em", v_all_reference.mean}};
-  out["rmse_m"] = {{"curbline", rmse}, {"crf-em", rmse_reference}, {"paper", 0.016}};
+  out["rmse_m"] = {{"curbline", rmse.curbline}, {"curbline, streams", rmse.streamed}, {"crf-em", rmse.reference}, {"paper", 0.016}};
   if (print) {
     std::printf("\n%-32s %-16s %-16s %s\n", "", "curbline", "crf-em", "paper");
     std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd, v_reference.mean, v_reference.sd);
     std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean, v_all_reference.sd);
-    std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, m", rmse, rmse_reference);
+    std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, clouds, m", rmse.curbline, rmse.reference);
+    if (!std::isnan(rmse.streamed)) std::printf("%-32s %-16.4f\n", "RMSE of prediction, streams, m", rmse.streamed);
   }
   return out;
 }
