@@ -49,8 +49,8 @@ class LineProjection {
   PoseSettings pose_{};
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
-  Eigen::Vector3f laser_up_ = Eigen::Vector3f::UnitZ();  ///< the laser's z axis, in the tilt frame
-  std::array<Eigen::Vector3f, limits.beams> direction_;  ///< of each beam, in the tilt frame
+  Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(), laser_y_ = Eigen::Vector3f::UnitY();  ///< the laser's axes, in the tilt frame
+  std::array<SinCos, limits.beams> bearing_;  ///< of each beam
 };
 
 template <Limits limits>
@@ -61,10 +61,10 @@ void LineProjection<limits>::init(const Settings& settings) {
   beam_interval_ns_ = static_cast<std::int64_t>(laser_.beam_interval_s * 1e9f + 0.5f);
   T_base_tilt_ = make_transform(tilt_.T_base_tilt);
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
-  laser_up_ = T_tilt_laser_.rotation.col(2);
+  laser_x_ = T_tilt_laser_.rotation.col(0);
+  laser_y_ = T_tilt_laser_.rotation.col(1);
   for (int i = 0; i < laser_.beams; ++i) {
-    const SinCos b = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
-    direction_[static_cast<std::size_t>(i)] = T_tilt_laser_.rotation * Eigen::Vector3f(b.cos, b.sin, 0.0f);
+    bearing_[static_cast<std::size_t>(i)] = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
   }
 }
 
@@ -74,6 +74,10 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
                                      Take&& take) const {
   const std::size_t beams = line.ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
+  // Gradient of the map's z in the tilt axis' frame.
+  Eigen::Vector3f up_axis = T_base_tilt_.rotation.row(2);
+  if (!motion.still) up_axis = T_base_tilt_.rotation.transpose() * motion.T_map_base_first.rotation.row(2).transpose();
+  NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
     const float range = line.ranges_m[i];
     if (!returned(range)) {
@@ -87,18 +91,18 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     counters.beams_extrapolated += angle.source == TiltAngle::Source::extrapolated;
 
-    const SinCos s = sin_cos(angle.angle_rad);
-    const Eigen::Vector3f p_axis = tilted(s, direction_[i] * range + T_tilt_laser_.translation);
+    const SinCos s = near.at(angle.angle_rad);
+    const Eigen::Vector3f x = tilted(s, laser_x_), y = tilted(s, laser_y_);  // the laser's axes
+    const SinCos& bearing = bearing_[i];
+    const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;
+    const Eigen::Vector3f p_axis = along * range + tilted(s, T_tilt_laser_.translation);
     const Eigen::Vector3f p_base = T_base_tilt_ * p_axis;
     Eigen::Vector3f p_map = p_base;
-    Eigen::Vector3f up_axis = T_base_tilt_.rotation.row(2);  // gradient of the map's z in the tilt axis' frame
     if (!motion.still) {
       const Eigen::Vector3f first = motion.T_map_base_first * p_base, last = motion.T_map_base_last * p_base;
       p_map = first + (static_cast<float>(i) * step) * (last - first);
-      up_axis = T_base_tilt_.rotation.transpose() * motion.T_map_base_first.rotation.row(2).transpose();
     }
-    const Eigen::Vector3f along = tilted(s, direction_[i]);
-    const Eigen::Vector3f across = tilted(s, laser_up_.cross(direction_[i]));
+    const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
     take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, along, across, p_axis, p_base, up_axis, angle.rate_rad_s)});
   }
 }

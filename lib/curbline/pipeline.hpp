@@ -24,6 +24,7 @@
 #include "curbline/settings.hpp"
 #include "curbline/status.hpp"
 #include "curbline/tilt_track.hpp"
+#include "curbline/workspace.hpp"
 
 namespace curbline {
 
@@ -100,6 +101,7 @@ class Pipeline {
   PlaneMixture<limits> plane_mixture_{};
   LabelField<limits> label_field_{};
   CurbTracer<limits> curb_tracer_{};
+  Workspace<limits> workspace_{};
 };
 
 template <Limits limits>
@@ -238,14 +240,15 @@ int Pipeline<limits>::settle(int passes) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_regions() {
-  segmentation_.update(dem_, counters_);
-  plane_mixture_.update(dem_, segmentation_, [this](int slot) { return label_field_.label(slot); }, counters_);
+  auto& work = workspace_.segmentation();
+  segmentation_.update(dem_, work, counters_);
+  plane_mixture_.update(dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
 }
 
 /// E-step, and the M-step if planes come from responsibilities. Returns how many labels changed.
 template <Limits limits>
 int Pipeline<limits>::follow_labels(FieldScope scope) {
-  const int changed = label_field_.update(dem_, plane_mixture_, scope, counters_);
+  const int changed = label_field_.update(dem_, plane_mixture_, scope, workspace_.visits(), counters_);
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
       const auto belief = label_field_.belief(dem_, i, j);
@@ -260,7 +263,8 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(),
+                     workspace_.borders(), counters_);
 }
 
 template <Limits limits>

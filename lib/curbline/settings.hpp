@@ -66,7 +66,7 @@ struct PoseSettings {
 struct SegmentationSettings {
   CellPrior cell{};
   float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; > 0
-  int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to 64
+  int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to max_link_reach
 };
 
 /// Where a plane's parameters come from.

@@ -1,5 +1,7 @@
 #include "robot/parts.hpp"
 
+#include "curbline/dem.hpp"
+
 namespace curbline::tools {
 namespace {
 
@@ -7,7 +9,7 @@ void read_segmentation(RobotTable table, SegmentationSettings& segmentation) {
   table.read("cell_degrees", segmentation.cell.degrees, {0.1, 1000.0});
   table.read("cell_variance_m2", segmentation.cell.variance_m2, {1e-8, 1.0});
   table.read("leaf_scale", segmentation.leaf_scale, {1e-3, 1e6});
-  table.read_whole("link_reach", segmentation.link_reach, 1, 64);
+  table.read_whole("link_reach", segmentation.link_reach, 1, max_link_reach);
   table.done();
 }
 
@@ -28,14 +30,14 @@ void read_planes(RobotTable table, PlaneSettings& planes) {
 
 void read_labels(RobotTable table, LabelSettings& labels) {
   table.read("coupling", labels.coupling, {0.01, 7.9});
-  table.read_whole("link_reach", labels.link_reach, 1, 64);
+  table.read_whole("link_reach", labels.link_reach, 1, max_link_reach);
   table.read_whole("refresh_rows", labels.refresh_rows, 0, 512);
   table.read_whole("max_messages", labels.max_messages, 4, 100'000'000);
   table.done();
 }
 
 void read_curbs(RobotTable table, CurbSettings& curbs) {
-  table.read_whole("link_reach", curbs.link_reach, 1, 64);
+  table.read_whole("link_reach", curbs.link_reach, 1, max_link_reach);
   table.read("max_roughness_m", curbs.max_roughness_m, {1e-3, 1.0});
   table.done();
 }
