@@ -28,12 +28,24 @@ const char* to_string(CurbKind kind);
 /// A straight piece of curb line, in the map frame. Near is the side of the robot.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
-  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up
+  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease
   float height_sd_m = 0.0f;  ///< from both planes' posteriors
   float probability = 0.0f;  ///< that the cells on both sides lie on different planes, mean along the piece
   CurbKind kind = CurbKind::crease;
   std::uint16_t near_label = 0, far_label = 0;
 };
+
+/// A border as it was drawn between two planes.
+struct DrawnBorder {
+  float height_m, height_sd_m;  ///< second plane less first there
+  float half_gap_m;             ///< between the cells of the one and the other
+  float reach_m;                ///< how far the planes' meeting may lie away
+};
+
+/// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of it and differ in
+/// height there by no more than their slopes make up across half the gap, and what is not known (95 %) of the planes and of the cells
+/// by which the border was drawn.
+bool is_crease(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 template <Limits limits>
 class CurbTracer {
@@ -70,6 +82,7 @@ class CurbTracer {
 
   CurbSettings settings_{};
   float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;
+  float reach_m_ = 0.0f;  ///< as far as gaps are bridged
   std::array<bool, limits.planes> ground_{};
   std::array<Curb, limits.curbs> curb_{};
   int curbs_ = 0;
@@ -81,6 +94,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   robot_x_m_ = robot_x_m;
   robot_y_m_ = robot_y_m;
   curbs_ = 0;
+  reach_m_ = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
   if (find_ground(dem, mixture, field) < 2) return;
   borders.clear();
   find_borders(dem, field, borders, counters);
@@ -249,12 +263,12 @@ void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<lim
   curb.probability = probability * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
-  // Planes of different slope that meet within the gap between them are a crease: their heights in its middle differ by no
-  // more than the slopes make up across half of it, and what is not known of them (95 %).
-  const float slope_x = high.slope_x - low.slope_x, slope_y = high.slope_y - low.slope_y;
-  const float across = segment.normal_x * slope_x + segment.normal_y * slope_y;
-  const float meet = (across < 0.0f ? -across : across) * half_gap * n + 2.0f * curb.height_sd_m;
-  curb.kind = curb.height_m > meet ? CurbKind::step_up : curb.height_m < -meet ? CurbKind::step_down : CurbKind::crease;
+  if (is_crease(low, high, segment, {height * n, curb.height_sd_m, half_gap * n, reach_m_})) {
+    curb.kind = CurbKind::crease;
+    curb.height_m = 0.0f;
+  } else {
+    curb.kind = curb.height_m > 0.0f ? CurbKind::step_up : CurbKind::step_down;
+  }
   curb_[static_cast<std::size_t>(curbs_++)] = curb;
 }
 

@@ -84,9 +84,11 @@ class Dem {
   float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m; }
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
-  bool touched(int slot) const { return touched_[static_cast<std::size_t>(slot)] != 0; }
+  bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & 1) != 0; }
   void clear_touched() {
-    if (any_touched_) touched_.fill(0);
+    if (any_touched_) {
+      for (std::uint8_t& touched : touched_) touched &= 0xFE;
+    }
     any_touched_ = false;
   }
 
@@ -107,6 +109,11 @@ class Dem {
       if (++s == row_end) s -= settings_.cols;
     }
   }
+
+  /// The laser sweeps over the ground anew.
+  void begin_sweep() { sweep_ = static_cast<std::uint8_t>(sweep_ + 2); }
+  /// The cell under a point, if an earlier sweep has seen it and this one not yet; -1 if not.
+  int mapped_before(float x_m, float y_m) const;
 
   /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells, at most
   /// max_link_reach. O(1).
@@ -134,7 +141,8 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  std::array<std::uint8_t, capacity> touched_{};
+  std::array<std::uint8_t, capacity> touched_{};  ///< bit 0; above it the number of the sweep that touched the cell last
+  std::uint8_t sweep_ = 0;
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;
 };
@@ -217,8 +225,16 @@ void Dem<limits>::leave(int i, int j) {
   }
   cells_[static_cast<std::size_t>(s)] = Cell{};
   distances_[static_cast<std::size_t>(s)] = 0;
-  touched_[static_cast<std::size_t>(s)] = 1;
+  touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;
+}
+
+template <Limits limits>
+int Dem<limits>::mapped_before(float x_m, float y_m) const {
+  const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
+  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return -1;
+  const int s = slot(static_cast<int>(u), static_cast<int>(v));
+  return cell(s).valid() && (touched_[static_cast<std::size_t>(s)] ^ sweep_) > 1 ? s : -1;
 }
 
 template <Limits limits>
@@ -234,7 +250,7 @@ bool Dem<limits>::add(const Point& point) {
   if (!cells_[s].valid()) meet_neighbours(i, j);
   cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m, (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m,
                 prior_.noise_m2 / variance_m2);
-  touched_[s] = 1;
+  touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;
   return true;
 }

@@ -33,7 +33,8 @@ class LineProjection {
   /// Time from the first beam to the last, and the time of beam i after the first.
   std::int64_t duration_ns(std::size_t beams) const { return beams == 0 ? 0 : beam_ns(beams - 1); }
 
-  /// Calls take(const Point&) for each beam that returned, in the order of the beams. `tilt` is not read with a fixed tilt.
+  /// Calls take(const Point&, float growth_m_s) for each beam that returned, in the order of the beams; growth: of its height by a
+  /// second of tilt latency. `tilt` is not read with a fixed tilt.
   template <typename Take>
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters, Take&& take) const;
 
@@ -41,8 +42,7 @@ class LineProjection {
   std::int64_t beam_ns(std::size_t beam) const { return static_cast<std::int64_t>(beam) * beam_interval_ns_; }
   bool returned(float range_m) const { return range_m >= laser_.min_range_m && range_m < laser_.max_range_m; }  // false for NaN
   TiltAngle tilt_at(std::int64_t time_ns, TiltSnapshot<limits>& tilt) const;
-  float height_variance_m2(float range_m, const Eigen::Vector3f& direction, const Eigen::Vector3f& across, const Eigen::Vector3f& p_axis,
-                           const Eigen::Vector3f& p_base, const Eigen::Vector3f& up_axis, float tilt_rate) const;
+  float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base, float tilt_rate) const;
 
   LaserSettings laser_{};
   TiltSettings tilt_{};
@@ -103,7 +103,9 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
       p_map = first + (static_cast<float>(i) * step) * (last - first);
     }
     const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
-    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, along, across, p_axis, p_base, up_axis, angle.rate_rad_s)});
+    const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
+    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, up_axis.dot(along), up_axis.dot(across), by_tilt, p_base, angle.rate_rad_s)},
+         by_tilt * angle.rate_rad_s);
   }
 }
 
@@ -115,16 +117,14 @@ TiltAngle LineProjection<limits>::tilt_at(std::int64_t time_ns, TiltSnapshot<lim
 
 /// First-order propagation: the derivative of the height by each error, times its standard deviation, squared and summed.
 template <Limits limits>
-float LineProjection<limits>::height_variance_m2(float range_m, const Eigen::Vector3f& along, const Eigen::Vector3f& across,
-                                                 const Eigen::Vector3f& p_axis, const Eigen::Vector3f& p_base,
-                                                 const Eigen::Vector3f& up_axis, float tilt_rate) const {
+float LineProjection<limits>::height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base,
+                                                 float tilt_rate) const {
   const auto square = [](float x) { return x * x; };
-  const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
   const float tilt_variance = square(tilt_.angle_sd_rad) + square(tilt_rate * tilt_.time_sd_s);
   const float attitude = square(pose_.attitude_sd_rad);
-  return square(up_axis.dot(along) * laser_.range_sd_m) + square(range_m * up_axis.dot(across) * laser_.bearing_sd_rad) +
-         square(by_tilt) * tilt_variance + square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) +
-         square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) + square(pose_.height_sd_m);
+  return square(by_range * laser_.range_sd_m) + square(range_m * by_bearing * laser_.bearing_sd_rad) + square(by_tilt) * tilt_variance +
+         square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) + square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) +
+         square(pose_.height_sd_m);
 }
 
 }  // namespace curbline

@@ -71,7 +71,8 @@ class TiltTrack {
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
-  void snapshot(TiltSnapshot<limits>& out) const;
+  /// `offset_s` is added to TiltSettings::latency_s.
+  void snapshot(TiltSnapshot<limits>& out, float offset_s = 0.0f) const;
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
@@ -106,11 +107,11 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
 }
 
 template <Limits limits>
-void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out) const {
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) const {
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
-  const auto latency_ns = static_cast<std::int64_t>(settings_.latency_s * 1e9f);
+  const auto latency_ns = static_cast<std::int64_t>((settings_.latency_s + offset_s) * 1e9f);
   for (std::uint32_t k = 0; k < count; ++k) {
     const Entry& entry = entries_[(before - count + k) % capacity];
     const std::uint64_t low = entry.time_low.load(std::memory_order_relaxed);

@@ -35,7 +35,7 @@ bool good(const LaserSettings& l) {
 }
 
 bool good(const TiltSettings& t) {
-  return good(t.T_base_tilt) && good(t.T_tilt_laser) && within(t.fixed_tilt_rad, -pi, pi) && within(t.latency_s, -10.0f, 10.0f) &&
+  return good(t.T_base_tilt) && good(t.T_tilt_laser) && within(t.fixed_tilt_rad, -pi, pi) && within(t.latency_s, -10.0f, 10.0f) && within(t.latency_sd_s, 0.0f, 1.0f) &&
          not_negative(t.angle_sd_rad) && not_negative(t.time_sd_s) && within(t.max_extrapolation_s, 0.0f, 10.0f) &&
          positive(t.max_gap_s) && t.max_gap_s <= 10.0f && not_negative(t.roll_sd_rad) && not_negative(t.pitch_sd_rad);
 }

@@ -28,6 +28,7 @@ class PipelineOf final : public HostPipeline {
   int settle() override { return pipeline_.settle(); }
   std::span<const Curb> curbs() const override { return pipeline_.curbs(); }
   const Counters& counters() const override { return pipeline_.counters(); }
+  const TiltLatency& tilt_latency() const override { return pipeline_.tilt_latency(); }
 
   Grid grid() const override {
     const Dem<limits>& dem = pipeline_.dem();

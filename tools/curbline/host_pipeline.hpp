@@ -32,6 +32,7 @@ class HostPipeline {
   virtual int settle() = 0;
   virtual std::span<const Curb> curbs() const = 0;
   virtual const Counters& counters() const = 0;
+  virtual const TiltLatency& tilt_latency() const = 0;
   /// Place of the window now, and everything in it.
   virtual Grid grid() const = 0;
   virtual Map map() const = 0;

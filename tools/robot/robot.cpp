@@ -25,6 +25,7 @@ void read_tilt(RobotTable table, Robot& robot) {
   table.read("fixed", tilt.fixed);
   table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, {-3.14, 3.14});
   table.read("latency_s", tilt.latency_s, {-1.0, 1.0});
+  table.read("latency_sd_s", tilt.latency_sd_s, {0.0, 1.0});
   table.read("angle_sd_rad", tilt.angle_sd_rad, {0.0, 0.1});
   table.read("time_sd_s", tilt.time_sd_s, {0.0, 1.0});
   table.read("max_extrapolation_s", tilt.max_extrapolation_s, {1e-4, 10.0});
