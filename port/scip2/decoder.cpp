@@ -18,6 +18,15 @@ bool is_scan_echo(std::string_view line) {
          all_digits(line.substr(2, scan_echo_size - 2));
 }
 
+/// Those of the code. A flip of one of the upper two bits leaves the sum as it is, and the character outside.
+bool all_encoded(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= 'o'; });
+}
+
+bool is_status(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z'); });
+}
+
 /// "DMIN:23;7": the semicolon before a sum does not count.
 bool body_sum_is_right(std::string_view line) {
   const bool has_semicolon = line.size() >= 3 && line[line.size() - 2] == ';';
@@ -68,8 +77,12 @@ Decoder::Event Decoder::take(std::span<const std::uint8_t>& bytes) {
 Decoder::Event Decoder::take_line(std::string_view line) {
   if (line.empty()) return end_reply();
   switch (state_) {
-    case State::echo:
-      take_echo(line);
+    case State::echo:  // behind the stump of another echo, if that was cut
+      if (begin_scan_echo(line)) {
+        counters_.cut += echo_size_ < line.size();
+      } else {
+        take_echo(line);
+      }
       break;
     case State::status:
       take_status(line);
@@ -80,7 +93,7 @@ Decoder::Event Decoder::take_line(std::string_view line) {
       break;
     case State::stamp:
     case State::ranges:
-      if (sum_is_right(line)) {
+      if (sum_is_right(line) && all_encoded(line)) {
         take_ranges(line.substr(0, line.size() - 1));
       } else {
         drop(counters_.bad_checksum, line);
@@ -111,7 +124,7 @@ void Decoder::take_echo(std::string_view line) {
 void Decoder::take_status(std::string_view line) {
   if (line.size() != 3) {
     drop(counters_.wrong_length, line);
-  } else if (!sum_is_right(line)) {
+  } else if (!sum_is_right(line) || !is_status(line.substr(0, 2))) {
     drop(counters_.bad_checksum, line);
   } else {
     std::copy_n(line.begin(), status_.size(), status_.begin());

@@ -91,7 +91,11 @@ bool Session::take(std::span<const std::uint8_t>& bytes, const scanner::Now& now
 void Session::take_reply(const Reply& reply, const scanner::Now& now) {
   const bool good = reply.status == "00";
   if (step_ == Step::measuring) {  // the stream ends with a status other than 99: a fault of the scanner
-    if (!reply.echo.starts_with("MD") || good) return;
+    if (reply.echo != command()) {
+      ++counters_.malformed;
+      return;
+    }
+    if (good) return;
     ++counters_.device_errors;
     problem_ = "the scanner stopped measuring for a fault of its own; expected status 99";
     go_to(Step::stop);

@@ -50,8 +50,9 @@ std::string hexadecimal(std::uint32_t id) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
 }
 
-/// A time in the logs that go with live scan lines; nothing if there are none.
+/// A time in the logs that go with live scan lines; nothing if there are none, or CAN is live too.
 std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
+  if (logs.can.starts_with("can:")) return std::nullopt;
   if (!robot.tilt.fixed) {
     const auto frame = CanLogReader(logs.can).next();
     return frame ? std::optional(frame->time_ns) : std::nullopt;

@@ -1,9 +1,12 @@
 // curbline-scanner: a simulated laser scanner to connect to.
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <charconv>
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <memory>
+#include <optional>
 
 #include "formats/bad_input.hpp"
 #include "scanner/server.hpp"
@@ -33,7 +36,8 @@ std::uint16_t port_of(const Options& o) {
 double speed_of(const std::string& text) {
   if (text == "max") return 0;
   double speed = 0;
-  if (!CLI::detail::lexical_cast(text, speed) || !(speed > 0)) {
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), speed);
+  if (failed != std::errc{} || end != text.data() + text.size() || !(speed > 0)) {
     throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
   }
   return speed;

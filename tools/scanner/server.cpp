@@ -97,6 +97,7 @@ void ScannerServer::open_pty() {
   if (::openpty(&reader_, &pty_, name.data(), &raw, nullptr) != 0)
     throw BadInput(std::string("pty: ") + std::strerror(errno) + "; expected one to be had");
   ::fcntl(reader_, F_SETFL, O_NONBLOCK);
+  for (const int fd : {reader_, pty_}) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
   path_ = name.data();
 }
 

@@ -27,8 +27,8 @@ struct ServerOptions {
       500'000;  ///< of a serial line at power-on; a real LMS200 comes with 9600, but keeps another if it is told to
 
   // Faults, for tests.
-  std::function<void(Bytes& telegram, long line)> damage;  ///< may change what is sent for a line, counted from 0
-  std::set<long> restart_before;                           ///< lines before which it is switched off and on
+  std::function<void(Bytes& telegram, long line)> damage{};  ///< may change what is sent for a line, counted from 0
+  std::set<long> restart_before{};                           ///< lines before which it is switched off and on
 };
 
 class ScannerServer {
