@@ -13,7 +13,7 @@ constexpr int tries_a_baud = 2;
 constexpr std::array<std::uint8_t, 8> stop_command{stx, 0, 2, 0, 0x20, 0x25, 0x35, 0x08};
 
 // Commands, and what they are answered by.
-constexpr std::uint8_t mode = 0x20, configuration = 0x74, variant = 0x3B;
+constexpr std::uint8_t mode = 0x20, configuration = 0x74, set_variant = 0x3B;
 constexpr std::uint8_t continuous = 0x24, request = 0x25, at_38400 = 0x40;
 constexpr std::uint8_t mode_reply = 0xA0, configuration_reply = 0xF4, variant_reply = 0xBB, scan = 0xB0,
                        power_on = 0x90;
@@ -75,7 +75,7 @@ std::size_t Session::write_command() {
     case Step::configuration:
       return write({configuration});
     case Step::variant:
-      return write({variant, static_cast<std::uint8_t>(variant_.field_deg), 0,
+      return write({set_variant, static_cast<std::uint8_t>(variant_.field_deg), 0,
                     static_cast<std::uint8_t>(variant_.step_centideg), 0});
     case Step::start:
       return write({mode, continuous});
