@@ -50,10 +50,22 @@ std::string hexadecimal(std::uint32_t id) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
 }
 
+/// A time in the logs that go with live scan lines; nothing if there are none, or CAN is live too.
+std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
+  if (logs.can.starts_with("can:")) return std::nullopt;
+  if (!robot.tilt.fixed) {
+    const auto frame = CanLogReader(logs.can).next();
+    return frame ? std::optional(frame->time_ns) : std::nullopt;
+  }
+  if (robot.pose.still) return std::nullopt;
+  const auto pose = TrajectoryReader(logs.poses).next();
+  return pose ? std::optional(pose->time_ns) : std::nullopt;
+}
+
 }  // namespace
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs)
-    : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))), scans_(logs.scans) {
+    : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))) {
   if (logs.can.starts_with("can:")) {
     throw BadInput(logs.can + ": live CAN interfaces are not read yet; expected a candump log");
   }
@@ -65,13 +77,13 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs)
   }
   if (!robot.tilt.fixed) can_.emplace(logs.can);
   if (!robot.pose.still) poses_.emplace(logs.poses);
+  scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
   grid_before_ = pipeline_->grid();
 }
 
 bool Replay::step(std::vector<Point3>* cloud) {
-  auto next = scans_.next();
+  auto next = scans_->next();
   if (!next) return false;
-  check_geometry(*next, robot_.laser, scans_.path(), scans_.line());
   line_ = std::move(*next);
   const auto last_beam_ns =
       line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line_.ranges_m.size()));

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "curbline/host_pipeline.hpp"
+#include "curbline/scan_source.hpp"
 #include "formats/can_log.hpp"
-#include "formats/carmen.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 
@@ -18,7 +18,7 @@ namespace curbline::tools {
 
 /// The logs of one drive. `can` and `poses` are empty where the robot has none.
 struct ReplayLogs {
-  std::string scans;
+  std::string scans;  ///< or a live scanner: scan_source.hpp
   std::string can;
   std::string poses;
 };
@@ -52,7 +52,7 @@ class Replay {
   Robot robot_;
   ReplayLogs logs_;
   std::unique_ptr<HostPipeline> pipeline_;
-  CarmenReader scans_;
+  std::unique_ptr<ScanSource> scans_;
   std::optional<CanLogReader> can_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;

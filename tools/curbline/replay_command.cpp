@@ -127,7 +127,7 @@ void run(const Options& o) {
 void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
   auto o = std::make_shared<Options>();
-  command->add_option("--scans", o->logs.scans, "scan lines, CARMEN log")->required();
+  command->add_option("--scans", o->logs.scans, "scan lines: a CARMEN log, or a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE")->required();
   command->add_option("--can", o->logs.can, "tilt frames, candump log");
   command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory");
   command->add_option("--robot", o->robot, "robot description")->required();
