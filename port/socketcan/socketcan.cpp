@@ -182,7 +182,11 @@ bool SocketCan::bind_to_interface() {
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = index_;
-  return ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return false;
+  if (interface_up()) return true;
+  int notice = 0;  // binding leaves word that the interface is down: known, and nothing that has happened since
+  socklen_t size = sizeof notice;
+  return ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &notice, &size) == 0 && (notice == 0 || notice == ENETDOWN);
 }
 
 bool SocketCan::interface_up() const {

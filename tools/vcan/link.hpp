@@ -68,12 +68,13 @@ class LinkRequest {
   } message_{};
 };
 
-/// A virtual CAN interface, up, that carries CAN FD frames too.
-inline int make_vcan(const char* name) {
+constexpr unsigned mtu_classic = 16, mtu_fd = 72;  // sizes of can_frame and canfd_frame
+
+/// A virtual CAN interface, up, that carries CAN FD frames too unless told.
+inline int make_vcan(const char* name, unsigned mtu = mtu_fd) {
   LinkRequest request(RTM_NEWLINK, NLM_F_CREATE | NLM_F_EXCL);
   request.link().ifi_flags = IFF_UP;
   request.link().ifi_change = IFF_UP;
-  const unsigned mtu = 72;  // sizeof(canfd_frame)
   request.add(IFLA_IFNAME, name);
   request.add(IFLA_MTU, &mtu, sizeof mtu);
   const std::size_t info = request.add(IFLA_LINKINFO, nullptr, 0);
