@@ -110,7 +110,7 @@ TEST_CASE("socketcan: 100,000 frames at 8,000 a second beside the pipeline: none
   const long heap_asked = test::heap_count() - heap_before;
   sending.join();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - 0.2;
-  WARN(frames / seconds << " frames/s, " << lines.taken() << " scan lines, " << pipeline->curbs().size() << " curbs");
+  WARN(frames / seconds << " frames/s, " << lines.taken() << " scan lines");
 
   CHECK(next == frames);
   CHECK(out_of_order == 0);
@@ -126,7 +126,7 @@ TEST_CASE("socketcan: 100,000 frames at 8,000 a second beside the pipeline: none
   CHECK(pipeline->counters().lines_dropped == 0);
   CHECK(pipeline->counters().tilt_dropped == 0);
   CHECK(pipeline->counters().beams_without_tilt == 0);
-  CHECK_FALSE(pipeline->curbs().empty());
+  CHECK(pipeline->counters().points > 0);
 }
 
 }  // namespace
