@@ -3,7 +3,8 @@
 //
 //   vcan probe                  exit status 0 if this kernel gives a vcan0
 //   vcan run COMMAND...         becomes the command, in a namespace with vcan0 and lo up
-//   process 1, vcan_job=FOLDER  runs what the folder says (`directory`, `environment`, `arguments`; the last two end
+//   process 1, vcan_job=FOLDER  of a guest kernel; runs what the folder says (`directory`, `environment`, `arguments`;
+//   the last two end
 //                               each word by a zero byte), writes its exit status to FOLDER/status, turns the guest off
 #include <fcntl.h>
 #include <sched.h>
@@ -11,7 +12,6 @@
 #include <sys/reboot.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
-#include <sys/utsname.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -82,10 +82,31 @@ int become(char** arguments) {
 
 // ------ As process 1 of a guest.
 
-void load_module(const std::string& folder, const char* name) {
-  const int fd = ::open((folder + name).c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0 || (::syscall(SYS_finit_module, fd, "", 0) != 0 && errno != EEXIST)) fail(name, errno);
+void load_module(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0 || (::syscall(SYS_finit_module, fd, "", 0) != 0 && errno != EEXIST)) fail(path.c_str(), errno);
   ::close(fd);
+}
+
+/// Their paths, one a line, each after those that it needs.
+void load_modules(const std::string& list) {
+  const std::string text = read_text(list);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    load_module(text.substr(at, end - at));
+    at = end + 1;
+  }
+}
+
+/// In QEMU this program comes as an initial RAM disk: the host's files are reached by 9P, then are the root.
+void enter_host_files() {
+  if (::access("/modules", F_OK) != 0) return;
+  load_modules("/modules");
+  ::mkdir("/host", 0700);
+  if (::mount("host", "/host", "9p", 0, "trans=virtio,version=9p2000.L,msize=262144,cache=mmap") != 0 ||
+      ::chdir("/host") != 0 || ::mount(".", "/", nullptr, MS_MOVE, nullptr) != 0 || ::chroot(".") != 0) {
+    fail("the host's files", errno);
+  }
 }
 
 void start_guest() {
@@ -99,11 +120,13 @@ void start_guest() {
   ::mount("tmpfs", "/run", "tmpfs", 0, nullptr);
 }
 
-/// Standard output and error are consoles 0 and 1, as they come: no carriage returns. Nothing comes in.
+/// Standard output and error are terminals 0 and 1, as they come: no carriage returns. Nothing comes in.
 void open_output() {
-  const char* const consoles[] = {"/dev/null", "/dev/tty0", "/dev/tty1"};
+  const char* const given = std::getenv("vcan_terminal");
+  const std::string terminal = given != nullptr ? given : "/dev/tty";
+  const std::string consoles[] = {"/dev/null", terminal + "0", terminal + "1"};
   for (int fd = 0; fd < 3; ++fd) {
-    const int opened = ::open(consoles[fd], (fd == 0 ? O_RDONLY : O_WRONLY) | O_NOCTTY);
+    const int opened = ::open(consoles[fd].c_str(), (fd == 0 ? O_RDONLY : O_WRONLY) | O_NOCTTY);
     if (opened < 0) continue;
     if (opened != fd) ::dup2(opened, fd);
     if (opened > 2) ::close(opened);
@@ -111,16 +134,6 @@ void open_output() {
     if (::tcgetattr(fd, &mode) != 0) continue;
     ::cfmakeraw(&mode);
     ::tcsetattr(fd, TCSANOW, &mode);
-  }
-}
-
-void load_can() {
-  utsname kernel{};
-  ::uname(&kernel);
-  const std::string folder = std::string("/usr/lib/uml/modules/") + kernel.release + "/kernel/";
-  for (const char* name : {"drivers/net/can/dev/can-dev.ko", "net/can/can.ko", "net/can/can-raw.ko",
-                           "net/can/can-bcm.ko", "net/can/can-gw.ko", "drivers/net/can/vcan.ko"}) {
-    load_module(folder, name);
   }
 }
 
@@ -141,7 +154,7 @@ class Words {
 int run_job(const std::string& job) {
   const pid_t child = ::fork();
   if (child == 0) {
-    load_can();
+    load_modules(job + "/modules");
     make_interfaces();
     Words environment(job + "/environment"), arguments(job + "/arguments");
     environ = environment.get();
@@ -158,6 +171,7 @@ int run_job(const std::string& job) {
 }
 
 int run_as_init() {
+  enter_host_files();
   start_guest();
   open_output();
   const char* const job = std::getenv("vcan_job");
