@@ -41,8 +41,8 @@ class Pace {
 /// Speed, 0 for max. A live bus sets the pace by its frames: it runs at 1, and scan lines are not held back.
 double parse_speed(const std::string& text, bool live) {
   if (text.empty() || text == "max" || live) {
-    if (live && text != "1" && !text.empty()) throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
-    return 0;
+    if (!live || text.empty() || text == "1") return 0;
+    throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
   }
   std::size_t used = 0;
   double speed = 0;
@@ -133,15 +133,17 @@ void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
   auto o = std::make_shared<Options>();
   command->add_option("--scans", o->logs.scans, "scan lines, CARMEN log")->required();
-  command->add_option("--can", o->logs.can, "tilt frames: a candump log, or can:IFACE, a live interface on which canplayer plays it");
+  command->add_option("--can", o->logs.can, "tilt frames: a candump log, or can:IFACE, a live interface");
   command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory");
   command->add_option("--robot", o->robot, "robot description")->required();
-  command->add_option("--speed", o->speed, "1 keeps the log's own time, max does not; default: max for logs, 1 for a live interface");
+  command->add_option("--speed", o->speed,
+                      "1 keeps the log's own time, max does not; default: max for logs, 1 for can:IFACE");
   add_map_options(*command, o->map);
   command->footer(
-      "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded times: each frame "
-      "is given the time\nthat the recording's own CAN log has for it (NAME.candump beside NAME.carmen, or can.log), else that of its "
-      "arrival after the first frame,\nwhich stands for the first scan line. Start replay first, then canplayer -I LOG IFACE=can0.");
+      "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded times:\n"
+      "each frame is given the time that the recording's own CAN log has for it (NAME.candump beside NAME.carmen, or\n"
+      "can.log), else that of its arrival after the first frame, which stands for the first scan line.\n"
+      "Start replay first, then canplayer -I LOG IFACE=can0.");
   command->callback([o] { run(*o); });
 }
 
