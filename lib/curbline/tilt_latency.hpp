@@ -28,6 +28,8 @@ class TiltLatency {
   /// To be added to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return state_[sweep_].offset_s; }
   float sd_s() const;
+  /// The larger of both sweeps' offsets: how far ahead of a line its readings may be wanted.
+  float latest_offset_s() const { return state_[0].offset_s > state_[1].offset_s ? state_[0].offset_s : state_[1].offset_s; }
 
  private:
   struct State {

@@ -66,16 +66,16 @@ std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs)
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs)
     : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))) {
-  if (logs.can.starts_with("can:")) {
-    throw BadInput(logs.can + ": live CAN interfaces are not read yet; expected a candump log");
-  }
   if (!robot.tilt.fixed && logs.can.empty()) {
     throw BadInput("no tilt log for a laser that nods; expected --can LOG, or tilt.fixed = true in the robot's description");
   }
   if (!robot.pose.still && logs.poses.empty()) {
     throw BadInput("no poses for a robot that drives; expected --poses FILE, or pose.still = true in the robot's description");
   }
-  if (!robot.tilt.fixed) can_.emplace(logs.can);
+  if (!robot.tilt.fixed) {
+    const auto bus = live_interface(logs.can);
+    can_ = bus ? live_frames(*bus, robot.tilt_signal, is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans)) : log_frames(logs.can);
+  }
   if (!robot.pose.still) poses_.emplace(logs.poses);
   scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
   grid_before_ = pipeline_->grid();
@@ -87,7 +87,7 @@ bool Replay::step(std::vector<Point3>* cloud) {
   line_ = std::move(*next);
   const auto last_beam_ns =
       line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line_.ranges_m.size()));
-  feed_tilt(last_beam_ns + static_cast<std::int64_t>(robot_.tilt.latency_s * 1e9f));
+  feed_tilt(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
@@ -101,9 +101,10 @@ bool Replay::step(std::vector<Point3>* cloud) {
 /// Frames up to the first reading at or after a time.
 void Replay::feed_tilt(std::int64_t until_ns) {
   while (can_ && tilt_until_ns_ < until_ns) {
-    const auto frame = can_->next();
+    const auto frame = can_->next(line_.time_ns);
     if (!frame) {
-      tilt_until_ns_ = log_ended;
+      if (can_->ended()) tilt_until_ns_ = log_ended;
+      if (!can_->ended() && beyond_extrapolation(line_.time_ns)) can_->fail_silent();
       return;
     }
     ++frames_;
@@ -113,6 +114,12 @@ void Replay::feed_tilt(std::int64_t until_ns) {
       tilt_until_ns_ = frame->time_ns;
     }
   }
+}
+
+/// Whether the newest reading is too old to say anything of that time.
+bool Replay::beyond_extrapolation(std::int64_t time_ns) const {
+  const float allowed_s = robot_.tilt.max_extrapolation_s + robot_.tilt.latency_s;
+  return tilt_readings_ == 0 || time_ns > tilt_until_ns_ + static_cast<std::int64_t>(allowed_s * 1e9f);
 }
 
 void Replay::feed_poses(std::int64_t until_ns) {
@@ -143,6 +150,8 @@ void Replay::keep_leaving_curbs() {
   }
   grid_before_ = grid;
 }
+
+std::string Replay::remarks() const { return can_ ? can_->remarks() : std::string(); }
 
 void Replay::check_complete() const {
   if (can_ && tilt_readings_ == 0) {

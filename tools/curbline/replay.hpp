@@ -10,13 +10,13 @@
 
 #include "curbline/host_pipeline.hpp"
 #include "curbline/scan_source.hpp"
-#include "formats/can_log.hpp"
+#include "curbline/tilt_frames.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {
 
-/// The logs of one drive. `can` and `poses` are empty where the robot has none.
+/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty where the robot has none.
 struct ReplayLogs {
   std::string scans;  ///< or a live scanner: scan_source.hpp
   std::string can;
@@ -35,6 +35,9 @@ class Replay {
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;
 
+  /// What a user should know of a live bus at the end; empty if all is well.
+  std::string remarks() const;
+
   const HostPipeline& pipeline() const { return *pipeline_; }
   const CarmenLine& line() const { return line_; }   ///< the one step() took
   Status status() const { return status_; }          ///< what the pipeline said of it
@@ -46,6 +49,7 @@ class Replay {
 
  private:
   void feed_tilt(std::int64_t until_ns);
+  bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
   void keep_leaving_curbs();
 
@@ -53,7 +57,7 @@ class Replay {
   ReplayLogs logs_;
   std::unique_ptr<HostPipeline> pipeline_;
   std::unique_ptr<ScanSource> scans_;
-  std::optional<CanLogReader> can_;
+  std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   Status status_ = Status::ok;
