@@ -44,33 +44,9 @@ TEST_CASE("v-measure: nothing scores 0") {
   CHECK(v_measure(Labels{}, Labels{}) == 0);
 }
 
-//   (0,2)____(1,2)
-//    |        |
-//    |      (1,1)____(2,1)
-//    |________________|
-const Region corner{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-
-TEST_CASE("inside: a notch is outside, either way round") {
-  const Region turned(corner.rbegin(), corner.rend());
-  for (const Region& region : {corner, turned}) {
-    CHECK(inside(region, 0.5, 1.5));
-    CHECK(inside(region, 1.5, 0.5));
-    CHECK_FALSE(inside(region, 1.5, 1.5));
-    CHECK_FALSE(inside(region, -0.1, 1.0));
-    CHECK_FALSE(inside(region, 2.1, 0.5));
-  }
-}
-
-TEST_CASE("inside: a line through a corner is crossed once") {
-  const Region diamond{{1, 0}, {2, 1}, {1, 2}, {0, 1}};
-  CHECK(inside(diamond, 0.5, 1));
-  CHECK_FALSE(inside(diamond, -0.5, 1));
-  CHECK_FALSE(inside(diamond, 2.5, 1));
-}
-
 TEST_CASE("regions of cells: a cell belongs by its centre, to the first region that holds it") {
   const Grid grid{0, 0, 1, 1, 3, 1};
-  const Region wide{{0, 0}, {1.6, 0}, {1.6, 1}, {0, 1}}, left{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const Polygon wide{{0, 0}, {1.6, 0}, {1.6, 1}, {0, 1}}, left{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   CHECK(regions_of_cells(grid, std::vector{wide, left}) == Labels{0, 0, -1});
   CHECK(regions_of_cells(grid, std::vector{left, wide}) == Labels{0, 1, -1});
 }

@@ -3,6 +3,7 @@
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
+#include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
 #include "simulator/simulate.hpp"
 #include "simulator/simulation.hpp"

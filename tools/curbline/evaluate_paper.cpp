@@ -8,6 +8,7 @@
 #include "curbline/map_cloud.hpp"
 #include "evaluation/labels.hpp"
 #include "formats/cloud.hpp"
+#include "formats/regions.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -44,7 +45,7 @@ std::vector<std::string> cloud_names(const std::string& data) {
 
 PaperCloud load(const std::string& data, const std::string& name) {
   const std::vector<Point3> points = read_cloud(data + "/" + name + ".xyz");
-  const std::vector<Region> regions = read_regions(data + "/" + name + ".gt");
+  const std::vector<Polygon> regions = read_regions(data + "/" + name + ".gt");
   PaperCloud cloud;
   cloud.name = name;
   cloud.same_place = name >= "scan-03" && name <= "scan-12";
@@ -75,7 +76,8 @@ double prediction(const std::vector<PaperCloud>& clouds, Map PaperCloud::*map) {
   for (const PaperCloud& trained : clouds) {
     std::vector<double> of_other;
     for (const PaperCloud& other : clouds) {
-      if (trained.same_place && other.same_place && trained.name != other.name) of_other.push_back(prediction_rmse(trained.*map, other.*map));
+      if (trained.same_place && other.same_place && trained.name != other.name)
+        of_other.push_back(prediction_rmse(trained.*map, other.*map));
     }
     if (!of_other.empty()) of_training.push_back(mean_sd(of_other).mean);
   }
@@ -100,15 +102,19 @@ nlohmann::json evaluate_paper(const std::string& data, bool print) {
     here_curbline.push_back(cloud.v_curbline);
     here_reference.push_back(cloud.v_reference);
   }
-  const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline), v_all_reference = mean_sd(all_reference);
-  const double rmse = prediction(clouds, &PaperCloud::curbline), rmse_reference = prediction(clouds, &PaperCloud::reference);
+  const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline),
+               v_all_reference = mean_sd(all_reference);
+  const double rmse = prediction(clouds, &PaperCloud::curbline),
+               rmse_reference = prediction(clouds, &PaperCloud::reference);
   out["v_same_place"] = {{"curbline", v.mean}, {"crf-em", v_reference.mean}};
   out["v_all"] = {{"curbline", v_all.mean}, {"crf-em", v_all_reference.mean}};
   out["rmse_m"] = {{"curbline", rmse}, {"crf-em", rmse_reference}, {"paper", 0.016}};
   if (print) {
     std::printf("\n%-32s %-16s %-16s %s\n", "", "curbline", "crf-em", "paper");
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd, v_reference.mean, v_reference.sd);
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean, v_all_reference.sd);
+    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd,
+                v_reference.mean, v_reference.sd);
+    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean,
+                v_all_reference.sd);
     std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, m", rmse, rmse_reference);
   }
   return out;

@@ -50,18 +50,27 @@ std::string hexadecimal(std::uint32_t id) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
 }
 
+std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
+  try {
+    return make_host_pipeline(pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs)
-    : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))), scans_(logs.scans) {
+    : robot_(robot), logs_(logs), pipeline_(pipeline_of(robot)), scans_(logs.scans) {
   if (logs.can.starts_with("can:")) {
     throw BadInput(logs.can + ": live CAN interfaces are not read yet; expected a candump log");
   }
   if (!robot.tilt.fixed && logs.can.empty()) {
-    throw BadInput("no tilt log for a laser that nods; expected --can LOG, or tilt.fixed = true in the robot's description");
+    throw BadInput(robot.file + ": the laser nods and there is no tilt log; expected --can LOG, or tilt.fixed = true");
   }
   if (!robot.pose.still && logs.poses.empty()) {
-    throw BadInput("no poses for a robot that drives; expected --poses FILE, or pose.still = true in the robot's description");
+    throw BadInput(robot.file +
+                   ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
   }
   if (!robot.tilt.fixed) can_.emplace(logs.can);
   if (!robot.pose.still) poses_.emplace(logs.poses);
@@ -73,8 +82,8 @@ bool Replay::step(std::vector<Point3>* cloud) {
   if (!next) return false;
   check_geometry(*next, robot_.laser, scans_.path(), scans_.line());
   line_ = std::move(*next);
-  const auto last_beam_ns =
-      line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line_.ranges_m.size()));
+  const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
+                                                                      static_cast<float>(line_.ranges_m.size()));
   feed_tilt(last_beam_ns + static_cast<std::int64_t>(robot_.tilt.latency_s * 1e9f));
   feed_poses(last_beam_ns);
   curbs_before_.clear();
@@ -111,12 +120,14 @@ void Replay::feed_poses(std::int64_t until_ns) {
       return;
     }
     const auto f = [](double value) { return static_cast<float>(value); };
-    pipeline_->add_pose({pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
+    pipeline_->add_pose(
+        {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
     poses_until_ns_ = pose->time_ns;
   }
 }
 
-/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept already.
+/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept
+/// already.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;

@@ -27,6 +27,7 @@ struct Sweep {
 };
 
 struct Robot {
+  std::string file;  ///< where it was read from, for messages
   std::string name = "robot";
   std::string laser_model = "utm-30lx";  ///< utm-30lx, lms-151, lms-200: presets of `laser` (and of scan_rate_hz)
   double scan_rate_hz = 40.0;

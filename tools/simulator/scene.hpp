@@ -5,7 +5,7 @@
 // two regions meet at different heights, a vertical face joins them. Obstacles are upright prisms.
 #pragma once
 
-#include "simulator/polygon.hpp"
+#include "map/polygon.hpp"
 
 #include <optional>
 #include <string>
@@ -58,6 +58,9 @@ struct Scene {
 /// Reads a scene file. Throws BadInput with file, line and key: an unknown key, a wrong type, a polygon that crosses
 /// itself.
 Scene read_scene(const std::string& path);
+
+/// The same for the text of a file; messages call it `file`.
+Scene parse_scene(const std::string& text, const std::string& file);
 
 /// The same for a file (a name with '/' or ending in .toml) or the name of a scene that ships.
 Scene find_scene(const std::string& name_or_path);

@@ -10,9 +10,9 @@
 
 #include "can/frame.hpp"
 #include "curbline/scan_line.hpp"
-#include "simulator/laser_model.hpp"
 #include "simulator/ray_caster.hpp"
 #include "simulator/robot_motion.hpp"
+#include "simulator/simulated_laser.hpp"
 
 #include <optional>
 #include <variant>
@@ -60,7 +60,7 @@ class Simulation {
   Scene scene_;  // in the map frame
   RobotMotion motion_;
   RayCaster world_;
-  LaserModel laser_;
+  SimulatedLaser laser_;
   Random tilt_random_, pose_random_;
   Eigen::Isometry3d T_base_tilt_, T_tilt_laser_;
   double duration_s_;
