@@ -43,8 +43,34 @@ TEST_CASE("scene: every scene that ships can be read and stood on") {
   }
 }
 
+TEST_CASE("scene: a random street is one for all its seeds, can be stood on and has a curb through the window") {
+  CHECK(find_scene("random:7").source == find_scene("random:7").source);
+  CHECK(find_scene("random:7").source != find_scene("random:8").source);
+  int low = 0, bends = 0;
+  for (int seed = 0; seed < 60; ++seed) {
+    INFO("random:" << seed);
+    const Scene scene = in_map_frame(find_scene("random:" + std::to_string(seed)));
+    CHECK_NOTHROW(RobotMotion(scene));
+    for (const Obstacle& obstacle : scene.obstacles) CHECK_FALSE(contains(obstacle.outline, {0, 0}));
+    double inside_m = 0, lowest_m = 1;
+    for (const TruthCurb& curb : make_truth(scene, 0).curbs) {
+      const Point2 middle{(curb.from.x + curb.to.x) / 2, (curb.from.y + curb.to.y) / 2};
+      if (curb.kind != "step" || !crosses({0, -2, 4, 2}, curb.from, curb.to)) continue;
+      inside_m += length_m(curb);
+      if (std::hypot(middle.x - 2, middle.y) < 2) lowest_m = std::min(lowest_m, curb.height_m);
+    }
+    CHECK(inside_m > 1);
+    CHECK(lowest_m < 0.16);
+    low += lowest_m < 0.04;
+    bends += scene.source.find("bends") != std::string::npos;
+  }
+  CHECK(low > 10);
+  CHECK(bends > 10);
+}
+
 TEST_CASE("scene: a name that is not known is refused with those that are") {
   REQUIRE_THROWS_WITH(find_scene("atlantis"), Contains("atlantis") && Contains("straight_curb"));
+  REQUIRE_THROWS_WITH(find_scene("random:x"), Contains("random:x") && Contains("expected random:"));
 }
 
 TEST_CASE("scene: bad files are refused with line and key") {
