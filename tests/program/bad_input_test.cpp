@@ -173,7 +173,7 @@ TEST_CASE("program: a scene file is refused with its line and key") {
                   scene + at, "expected");
   };
   error("", ":");
-  error("[ground]\nz = \"low\"\n", ":2: ground.z is \"low\"");
+  error("[ground]\nz = \"low\"\n", ":2: ground.z is 'low'");
   error("[ground]\nz = 0\n[robot]\nat = [0, 0]\nspeed = 1\n", ":5: unknown key robot.speed");
   error("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n", ": ");  // the robot stands on nothing
   check_refused(curbline({"simulate", "--scene", dir.path("none.toml"), "--robot", shipped_robot("utm30lx"), "--out",

@@ -8,7 +8,8 @@ Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
   Settings settings;
   apply_window(options, settings.window);
   const Grid grid = asked_grid(options, settings.window);
-  if (options.method != MapMethod::curbline) return map_batch(cloud, grid, static_cast<double>(settings.window.max_height_m), options);
+  if (options.method != MapMethod::curbline)
+    return map_batch(cloud, grid, static_cast<double>(settings.window.max_height_m), options);
   // Nothing is known of the sensor: every point has the variance that the prior expects.
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;

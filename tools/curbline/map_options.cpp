@@ -45,6 +45,16 @@ void check_written(AtomicFile* file, const std::string& path) {
 
 }  // namespace
 
+void add_method_option(CLI::App& command, MapMethod& method) {
+  const std::map<std::string, MapMethod> methods{{"curbline", MapMethod::curbline},
+                                                 {"crf-em", MapMethod::crf_em},
+                                                 {"em", MapMethod::em},
+                                                 {"segment", MapMethod::segment}};
+  command.add_option("--method", method, "curbline, or the paper's steps: crf-em, em, segment")
+      ->transform(CLI::CheckedTransformer(methods).description(""))
+      ->option_text("METHOD");
+}
+
 void add_map_options(CLI::App& command, MapOptions& options) {
   const CLI::Validator finite(
       [](const std::string& text) {
@@ -59,13 +69,7 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   size->needs(origin);
   command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
   command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(finite);
-  const std::map<std::string, MapMethod> methods{{"curbline", MapMethod::curbline},
-                                                 {"crf-em", MapMethod::crf_em},
-                                                 {"em", MapMethod::em},
-                                                 {"segment", MapMethod::segment}};
-  command.add_option("--method", options.method, "curbline, or the paper's steps: crf-em, em, segment")
-      ->transform(CLI::CheckedTransformer(methods).description(""))
-      ->option_text("METHOD");
+  add_method_option(command, options.method);
   const std::map<std::string, reference::EdgePotential> edges{{"potts", reference::EdgePotential::potts},
                                                               {"eq10", reference::EdgePotential::eq10}};
   command.add_option("--edge", options.edge, "edge potential of crf-em: potts (factor 10) or eq10")
@@ -138,7 +142,7 @@ Map crop(const Map& map, const Grid& asked) {
   return out;
 }
 
-void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary) {
+void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary) {
   // Everything is written beside its target first and takes its place only when all of it could be written.
   std::unique_ptr<AtomicFile> labels, curbs;
   if (!options.labels.empty()) {
@@ -151,7 +155,7 @@ void give_out(const MapOptions& options, const Map& map, const std::string& titl
   }
   check_written(labels.get(), options.labels);
   check_written(curbs.get(), options.curbs);
-  if (!options.picture.empty()) draw_picture(map, options.picture, {.title = title});
+  if (!options.picture.empty()) draw_picture(map, options.picture, picture);
   if (labels) labels->commit();
   if (curbs) curbs->commit();
   if (options.curbs == "-") {

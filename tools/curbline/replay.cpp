@@ -123,6 +123,9 @@ void Replay::feed_poses(std::int64_t until_ns) {
     pipeline_->add_pose(
         {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
     poses_until_ns_ = pose->time_ns;
+    robot_marker_ = {pose->x_m, pose->y_m,
+                     std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
+                                1 - 2 * (pose->qy * pose->qy + pose->qz * pose->qz))};
   }
 }
 

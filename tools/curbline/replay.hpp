@@ -1,5 +1,5 @@
-// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would have
-// them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
+// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would
+// have them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
 #include "formats/trajectory.hpp"
+#include "picture/picture.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {
@@ -28,16 +29,17 @@ class Replay {
   /// Opens the logs. Throws BadInput if the robot needs one that is not given.
   Replay(const Robot& robot, const ReplayLogs& logs);
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. With `cloud` its points are added there
-  /// and the pipeline maps nothing: for the methods that take a whole cloud.
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. With `cloud` its points
+  /// are added there and the pipeline maps nothing: for the methods that take a whole cloud.
   bool step(std::vector<Point3>* cloud = nullptr);
 
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;
 
   const HostPipeline& pipeline() const { return *pipeline_; }
-  const CarmenLine& line() const { return line_; }   ///< the one step() took
-  Status status() const { return status_; }          ///< what the pipeline said of it
+  RobotMarker robot() const { return robot_marker_; }  ///< where the newest pose has it; the origin if it stands
+  const CarmenLine& line() const { return line_; }     ///< the one step() took
+  Status status() const { return status_; }            ///< what the pipeline said of it
   long tilt_readings() const { return tilt_readings_; }
   long frames() const { return frames_; }
 
@@ -56,6 +58,7 @@ class Replay {
   std::optional<CanLogReader> can_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
+  RobotMarker robot_marker_;
   Status status_ = Status::ok;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;

@@ -27,7 +27,8 @@ class Pace {
   void wait_for(std::int64_t log_time_ns) {
     if (speed_ <= 0) return;
     if (first_ns_ == none) first_ns_ = log_time_ns;
-    const auto since_start = std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
+    const auto since_start =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
     std::this_thread::sleep_until(start_ + since_start);
   }
 
@@ -47,7 +48,8 @@ double parse_speed(const std::string& text) {
   } catch (const std::exception&) {
     used = 0;
   }
-  if (used != text.size() || !(speed > 0)) throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
+  if (used != text.size() || !(speed > 0))
+    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
   return speed;
 }
 
@@ -119,7 +121,7 @@ void run(const Options& o) {
   }
   MapOptions out = o.map;
   if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
-  give_out(out, map, o.logs.scans, summary_of(replay));
+  give_out(out, map, {.title = o.logs.scans, .truth = {}, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace

@@ -187,14 +187,17 @@ class Street {
       }
       draw_region(name, outline, {height, 0, 0});
     };
-    draw_ground({road_inside ? step : 0, 0, 0});
+    const double inside_m = road_inside ? 0 : step, outside_m = road_inside ? step : 0;
     if (chance(0.5)) {
-      const double outer = radius + between(1.0, 2.0), height = (road_inside ? step : 0) + up_or_down_m();
-      disc(road_inside ? "strip" : "road", outer, height);
+      const double beyond_m = outside_m + (road_inside ? up_or_down_m() : step_m());
+      draw_ground({beyond_m, 0, 0});
+      disc(road_inside ? "pavement" : "road", radius + between(1.0, 2.0), outside_m);
+    } else {
+      draw_ground({outside_m, 0, 0});
     }
-    disc(road_inside ? "road" : "pavement", radius, road_inside ? 0 : step);
+    disc(road_inside ? "road" : "pavement", radius, inside_m);
     if (radius > 4 && chance(0.5)) {
-      const double inner = radius - between(1.0, 2.2), height = (road_inside ? 0 : step) + step_m();
+      const double inner = radius - between(1.0, 2.2), height = inside_m + step_m();
       disc("inner strip", inner, height);
     }
   }
