@@ -142,8 +142,9 @@ TEST_CASE("robot: values out of range are refused with the range") {
   CHECK(error_in("[laser]\nbearing_step_rad = 0\n").starts_with("r.toml:2: laser.bearing_step_rad is 0"));
   CHECK(error_in("[laser]\nbearing_step_rad = 0.1\n").starts_with("r.toml:2: laser.bearing_step_rad times the beams"));
   CHECK(error_in("[laser]\nscan_rate_hz = 100\n").starts_with("r.toml:1: laser.beam_interval_s times the beams"));
-  CHECK(error_in("[laser]\nmin_range_m = 50\n").starts_with("r.toml:1: laser.max_range_m is not above min_range_m"));
-  CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad"));
+  CHECK(error_in("[laser]\nmin_range_m = 50\n")
+            .starts_with("r.toml:1: laser.max_range_m is not above min_range_m; expected"));
+  CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad; expected"));
   CHECK(error_in("[tilt.signal]\nservo = \"esc\"\n")
             .starts_with("r.toml:2: tilt.signal.servo is \"esc\"; expected cia402, "));
   CHECK(error_in("[tilt.signal]\nnode = 128\n") ==

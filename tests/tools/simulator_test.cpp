@@ -3,6 +3,7 @@
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
+#include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
 #include "simulator/simulate.hpp"
 #include "simulator/simulation.hpp"
@@ -165,7 +166,8 @@ TEST_CASE("simulation: so many returns are lost as the robot's description says"
 
 TEST_CASE("simulation: a tilt frame bears the angle of its latency ago, rounded to the encoder's count") {
   Robot robot = plain_robot();
-  robot.tilt.latency_s = 0.03f;
+  robot.tilt.latency_s = 0.01f;  // what the robot knows of
+  robot.simulated.tilt_latency_s = 0.02;
   robot.tilt_signal.scale = 0.01;  // a coarse encoder
   const Samples samples = run(scene_of(flat), robot, 0.5);
   REQUIRE(samples.frames.size() == static_cast<std::size_t>(40 * (0.5 + 2 * simulated_margin_s)) + 1);

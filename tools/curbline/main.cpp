@@ -6,6 +6,22 @@
 #include "curbline/commands.hpp"
 #include "formats/bad_input.hpp"
 
+namespace {
+
+/// CLI11 says of an unknown command only that one is required.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == argv[1]) return;
+    commands += (commands.empty() ? "" : ", ") + command->get_name();
+  }
+  throw CLI::ParseError(std::string(argv[1]) + " is no command; expected one of " + commands,
+                        CLI::ExitCodes::ExtrasError);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace curbline::tools;
   CLI::App app("Finds curbs in the scan lines of a nodding laser.", "curbline");
@@ -15,6 +31,7 @@ int main(int argc, char** argv) {
   add_map(app);
   add_evaluate(app);
   try {
+    check_command(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
@@ -26,7 +43,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!std::cout.flush()) {
-    std::cerr << "standard output: cannot be written\n";
+    std::cerr << "standard output: cannot be written; expected room for it\n";
     return 1;
   }
   return 0;

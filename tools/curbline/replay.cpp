@@ -62,15 +62,26 @@ std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs)
   return pose ? std::optional(pose->time_ns) : std::nullopt;
 }
 
+std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
+  try {
+    return make_host_pipeline(pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
 }  // namespace
 
-Replay::Replay(const Robot& robot, const ReplayLogs& logs)
-    : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))) {
+Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, pipeline_of(robot)) {}
+
+Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
+    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)) {
   if (!robot.tilt.fixed && logs.can.empty()) {
-    throw BadInput("no tilt log for a laser that nods; expected --can LOG, or tilt.fixed = true in the robot's description");
+    throw BadInput(robot.file + ": the laser nods and there is no tilt log; expected --can LOG, or tilt.fixed = true");
   }
   if (!robot.pose.still && logs.poses.empty()) {
-    throw BadInput("no poses for a robot that drives; expected --poses FILE, or pose.still = true in the robot's description");
+    throw BadInput(robot.file +
+                   ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
   }
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
@@ -81,18 +92,18 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs)
   grid_before_ = pipeline_->grid();
 }
 
-bool Replay::step(std::vector<Point3>* cloud) {
+bool Replay::step(std::vector<Point>* points) {
   auto next = scans_->next();
   if (!next) return false;
   line_ = std::move(*next);
-  const auto last_beam_ns =
-      line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line_.ranges_m.size()));
+  const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
+                                                                      static_cast<float>(line_.ranges_m.size()));
   feed_tilt(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
   const ScanLine line{line_.time_ns, line_.ranges_m};
-  status_ = cloud == nullptr ? pipeline_->take(line) : pipeline_->project(line, *cloud);
+  status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
   lines_taken_ += status_ == Status::ok;
   keep_leaving_curbs();
   return true;
@@ -130,12 +141,17 @@ void Replay::feed_poses(std::int64_t until_ns) {
       return;
     }
     const auto f = [](double value) { return static_cast<float>(value); };
-    pipeline_->add_pose({pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
+    pipeline_->add_pose(
+        {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
     poses_until_ns_ = pose->time_ns;
+    robot_marker_ = {pose->x_m, pose->y_m,
+                     std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
+                                1 - 2 * (pose->qy * pose->qy + pose->qz * pose->qz))};
   }
 }
 
-/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept already.
+/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept
+/// already.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;

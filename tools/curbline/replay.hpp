@@ -1,5 +1,5 @@
-// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would have
-// them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
+// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would
+// have them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 #include "curbline/scan_source.hpp"
 #include "curbline/tilt_frames.hpp"
 #include "formats/trajectory.hpp"
+#include "picture/picture.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {
@@ -27,10 +28,13 @@ class Replay {
  public:
   /// Opens the logs. Throws BadInput if the robot needs one that is not given.
   Replay(const Robot& robot, const ReplayLogs& logs);
+  /// Goes on with a pipeline that has taken other logs before.
+  Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline);
+  std::unique_ptr<HostPipeline> take_pipeline() { return std::move(pipeline_); }
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. With `cloud` its points are added there
-  /// and the pipeline maps nothing: for the methods that take a whole cloud.
-  bool step(std::vector<Point3>* cloud = nullptr);
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. Its points are added to `points`, for the
+  /// methods that take a whole cloud.
+  bool step(std::vector<Point>* points = nullptr);
 
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;
@@ -39,8 +43,9 @@ class Replay {
   std::string remarks() const;
 
   const HostPipeline& pipeline() const { return *pipeline_; }
-  const CarmenLine& line() const { return line_; }   ///< the one step() took
-  Status status() const { return status_; }          ///< what the pipeline said of it
+  RobotMarker robot() const { return robot_marker_; }  ///< where the newest pose has it; the origin if it stands
+  const CarmenLine& line() const { return line_; }     ///< the one step() took
+  Status status() const { return status_; }            ///< what the pipeline said of it
   long tilt_readings() const { return tilt_readings_; }
   long frames() const { return frames_; }
 
@@ -60,6 +65,7 @@ class Replay {
   std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
+  RobotMarker robot_marker_;
   Status status_ = Status::ok;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;

@@ -27,7 +27,8 @@ class Pace {
   void wait_for(std::int64_t log_time_ns) {
     if (speed_ <= 0) return;
     if (first_ns_ == none) first_ns_ = log_time_ns;
-    const auto since_start = std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
+    const auto since_start =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
     std::this_thread::sleep_until(start_ + since_start);
   }
 
@@ -51,7 +52,8 @@ double parse_speed(const std::string& text, bool live) {
   } catch (const std::exception&) {
     used = 0;
   }
-  if (used != text.size() || !(speed > 0)) throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
+  if (used != text.size() || !(speed > 0))
+    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
   return speed;
 }
 
@@ -86,6 +88,8 @@ nlohmann::json summary_of(const Replay& replay) {
           {"no_returns", c.no_returns},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
+          {"tilt_latency_offset_s", replay.pipeline().tilt_latency().offset_s()},
+          {"tilt_latency_sd_s", replay.pipeline().tilt_latency().sd_s()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},
           {"poses_dropped", c.poses_dropped},
@@ -103,17 +107,17 @@ void run(const Options& o) {
   Replay replay(robot, o.logs);
   CurbStream stream;
   const bool batch = o.map.method != MapMethod::curbline;
-  std::vector<Point3> cloud;
-  while (replay.step(batch ? &cloud : nullptr)) {
+  std::vector<Point> points;
+  while (replay.step(batch ? &points : nullptr)) {
     pace.wait_for(replay.line().time_ns);
-    if (o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
+    if (!batch && o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();
   if (const std::string remarks = replay.remarks(); !remarks.empty()) std::cerr << remarks << '\n';
   const Grid grid = o.map.fixed() ? asked_grid(o.map, robot.window) : replay.pipeline().grid();
   Map map;
   if (batch) {
-    map = map_batch(cloud, grid, static_cast<double>(robot.window.max_height_m), o.map);
+    map = map_batch(cloud_of(points), grid, static_cast<double>(robot.window.max_height_m), o.map);
   } else {
     map = replay.pipeline().map();
     if (o.map.fixed()) {
@@ -124,7 +128,7 @@ void run(const Options& o) {
   }
   MapOptions out = o.map;
   if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
-  give_out(out, map, o.logs.scans, summary_of(replay));
+  give_out(out, map, {.title = o.logs.scans, .truth = {}, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace

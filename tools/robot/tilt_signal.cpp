@@ -6,7 +6,7 @@ namespace {
 constexpr double farthest_rad = 1e6;
 
 /// The preset of a servo, with the keys that only presets have.
-can::Signal read_servo(RobotTable& table) {
+can::Signal read_servo(TomlTable& table) {
   std::string servo = "cia402";
   table.read("servo", servo);
   const auto node = [&](int lowest, int highest) {
@@ -27,7 +27,7 @@ can::Signal read_servo(RobotTable& table) {
   table.refuse("servo", "is \"" + servo + "\"; expected cia402, odrive, vesc, cubemars, robstride or mini-cheetah");
 }
 
-can::ByteOrder read_byte_order(RobotTable& table, can::ByteOrder otherwise) {
+can::ByteOrder read_byte_order(TomlTable& table, can::ByteOrder otherwise) {
   std::string word = otherwise == can::ByteOrder::little ? "little" : "big";
   table.read("byte_order", word);
   if (word != "little" && word != "big") table.refuse("byte_order", "is \"" + word + "\"; expected little or big");
@@ -36,7 +36,7 @@ can::ByteOrder read_byte_order(RobotTable& table, can::ByteOrder otherwise) {
 
 }  // namespace
 
-void read_tilt_signal(RobotTable table, Robot& robot) {
+void read_tilt_signal(TomlTable table, Robot& robot) {
   can::Signal signal = read_servo(table);
   table.read_whole("id", signal.id, 0, 0x1FFFFFFF);
   table.read_whole("id_mask", signal.id_mask, 0, 0x1FFFFFFF);

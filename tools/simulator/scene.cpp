@@ -2,14 +2,32 @@
 
 #include "formats/bad_input.hpp"
 #include "formats/shipped.hpp"
+#include "simulator/random_street.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <set>
 
 namespace curbline::tools {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view random_prefix = "random:";
+
+Scene random_scene(const std::string& name) {
+  const std::string_view digits = std::string_view(name).substr(random_prefix.size());
+  std::uint64_t seed = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
+  if (problem != std::errc{} || end != digits.data() + digits.size()) {
+    throw BadInput("no scene '" + name + "'; expected random: and a whole number, the seed");
+  }
+  return parse_scene(random_street(seed), name);
+}
+
+}  // namespace
 
 std::vector<std::string> shipped_scenes() {
   std::set<std::string> names;
@@ -28,6 +46,9 @@ Scene find_scene(const std::string& name_or_path) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
     return read_scene(name_or_path);
   }
+  if (name_or_path.starts_with(random_prefix)) {
+    return random_scene(name_or_path);
+  }
   if (const std::string file = shipped_file("scenes", name_or_path); !file.empty()) {
     return read_scene(file);
   }
@@ -35,7 +56,7 @@ Scene find_scene(const std::string& name_or_path) {
   for (const std::string& name : shipped_scenes()) {
     known += " " + name;
   }
-  throw BadInput("no scene '" + name_or_path + "'; expected a file or one of:" + known);
+  throw BadInput("no scene '" + name_or_path + "'; expected a file, random:SEED or one of:" + known);
 }
 
 int region_at(const std::vector<GroundRegion>& regions, Point2 p) {

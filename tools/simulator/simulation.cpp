@@ -118,7 +118,8 @@ void Simulation::stamp_next_frame() {
 can::Frame Simulation::take_frame() {
   const double due_s = static_cast<double>(frames_) / robot_.simulated.tilt_rate_hz - simulated_margin_s;
   can::Frame frame;
-  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - static_cast<double>(robot_.tilt.latency_s)), frame);
+  const double latency_s = static_cast<double>(robot_.tilt.latency_s) + robot_.simulated.tilt_latency_s;
+  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - latency_s), frame);
   frame.time_ns = stamp_ns(frame_stamp_s_);
   ++frames_;
   stamp_next_frame();

@@ -1,4 +1,4 @@
-// Simple polygons on the ground plan, metres: what a scene's surfaces and the footprints of its obstacles are made of.
+// Polygons on the ground plan, metres: drawn regions, the surfaces of a scene, the footprints of its obstacles.
 #pragma once
 
 #include <vector>

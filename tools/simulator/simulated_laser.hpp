@@ -14,9 +14,9 @@
 
 namespace curbline::tools {
 
-class LaserModel {
+class SimulatedLaser {
  public:
-  LaserModel(const LaserSettings& laser, const SimulatedErrors& errors, std::uint64_t seed);
+  SimulatedLaser(const LaserSettings& laser, const SimulatedErrors& errors, std::uint64_t seed);
 
   /// Range of a beam, metres; NaN if nothing comes back or it is out of the laser's range.
   float measure(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad);

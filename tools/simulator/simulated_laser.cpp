@@ -1,4 +1,4 @@
-#include "simulator/laser_model.hpp"
+#include "simulator/simulated_laser.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,10 +30,10 @@ double first_echo(const std::array<double, rays>& hits) {
 
 }  // namespace
 
-LaserModel::LaserModel(const LaserSettings& laser, const SimulatedErrors& errors, std::uint64_t seed)
+SimulatedLaser::SimulatedLaser(const LaserSettings& laser, const SimulatedErrors& errors, std::uint64_t seed)
     : laser_(laser), errors_(errors), random_(seed) {}
 
-double LaserModel::echo(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad) const {
+double SimulatedLaser::echo(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad) const {
   const Eigen::Vector3d origin = T_map_laser.translation();
   const Eigen::Vector3d ahead = T_map_laser.linear() * Eigen::Vector3d(std::cos(bearing_rad), std::sin(bearing_rad), 0);
   if (errors_.beam_divergence_rad <= 0) {
@@ -50,7 +50,7 @@ double LaserModel::echo(const RayCaster& world, const Eigen::Isometry3d& T_map_l
   return first_echo(hits);
 }
 
-float LaserModel::measure(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad) {
+float SimulatedLaser::measure(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad) {
   // Drawn for every beam, so that what one beam hits does not shift the noise of the next.
   const double bearing_noise = random_.normal(), range_noise = random_.normal(), luck = random_.uniform();
   const double true_m = echo(world, T_map_laser, bearing_rad + laser_.bearing_sd_rad * bearing_noise);

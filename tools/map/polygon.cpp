@@ -1,4 +1,4 @@
-#include "simulator/polygon.hpp"
+#include "map/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
