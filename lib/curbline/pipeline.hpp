@@ -214,10 +214,9 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion) {
   if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return Status::no_tilt;
   const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
   tilt_rate_rad_s_ = any.rate_rad_s;
-  if (tilt_latency_.follow(any.angle_rad)) {
-    dem_.begin_sweep();
-    tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
-  }
+  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s);
+  if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
   return Status::ok;
 }
 

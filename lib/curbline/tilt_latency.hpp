@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "curbline/settings.hpp"
 
@@ -15,8 +16,13 @@ class TiltLatency {
  public:
   void init(const TiltSettings& tilt, const PoseSettings& pose);
 
-  /// The angle at the beginning of a line; true if the servo has turned round since the last: a new sweep begins.
-  bool follow(float angle_rad);
+  enum class Turn : std::uint8_t {
+    none,
+    back,       ///< of a damaged reading, or play: the offset is another, the sweep goes on
+    new_sweep,
+  };
+  /// The angle and its rate at the beginning of a line: has the servo turned round since the last?
+  Turn follow(float angle_rad, float rate_rad_s);
 
   /// A point of the line on ground that an earlier sweep has mapped: how far it lies above it, the variance of that, and by how much
   /// its height grows a second of latency.
@@ -39,8 +45,8 @@ class TiltLatency {
 
   float prior_variance_s2_ = 0.0f;
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
-  float extreme_rad_ = 0.0f;   ///< furthest angle of the sweep
-  bool any_angle_ = false;
+  float slow_rad_s_ = 0.0f;     ///< below it a wrong latency is less than the error of an angle
+  float turned_at_rad_ = 1e6f;  ///< where the sweep began
   std::size_t sweep_ = 0;      ///< 0: upward (the angle falls), 1: downward
   std::array<State, 2> state_{};
   float precision_ = 0.0f, weighted_ = 0.0f, growth_ = 0.0f, points_ = 0.0f;  ///< sums of a line

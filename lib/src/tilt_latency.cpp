@@ -5,9 +5,8 @@
 namespace curbline {
 namespace {
 
-/// A servo that has come back by so much has turned round: less than any sweep worth one, more than play, overshoot and the damaged
-/// readings of a degree or two that servos have been seen to send.
-constexpr float turn_rad = 0.05f;
+/// No sweep worth the name is smaller; turns closer together come from damaged readings and from play.
+constexpr float least_sweep_rad = 0.05f;
 
 }  // namespace
 
@@ -21,22 +20,19 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
     height_variance_m2_ = pose.height_sd_m * pose.height_sd_m;
   }
   state_.fill({0.0f, prior_variance_s2_});
+  if (tilt.latency_sd_s > 0.0f) slow_rad_s_ = tilt.angle_sd_rad / tilt.latency_sd_s;
 }
 
-bool TiltLatency::follow(float angle_rad) {
-  if (!any_angle_) {
-    any_angle_ = true;
-    extreme_rad_ = angle_rad;
-    return true;
-  }
-  const float sign = sweep_ == 1 ? 1.0f : -1.0f;
-  const float advance = sign * (angle_rad - extreme_rad_);
-  if (advance > 0.0f) extreme_rad_ = angle_rad;
-  if (advance >= -turn_rad) return false;
-  sweep_ ^= 1u;
-  extreme_rad_ = angle_rad;
+TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
+  const bool slow = rate_rad_s < slow_rad_s_ && rate_rad_s > -slow_rad_s_;
+  const std::size_t direction = slow ? sweep_ : rate_rad_s > 0.0f ? 1u : 0u;
+  if (direction == sweep_) return Turn::none;
+  sweep_ = direction;
+  const float swept = angle_rad - turned_at_rad_;
+  if (swept < least_sweep_rad && swept > -least_sweep_rad) return Turn::back;
+  turned_at_rad_ = angle_rad;
   state_[sweep_].variance_s2 += prior_variance_s2_;
-  return true;
+  return Turn::new_sweep;
 }
 
 void TiltLatency::compare(float above_m, float variance_m2, float growth_m_s) {
