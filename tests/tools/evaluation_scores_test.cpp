@@ -96,6 +96,15 @@ TEST_CASE("scores: a window with one true plane says nothing of V, and does not 
   CHECK(std::isnan(score_planes({{cells_of(truth, 1.9)}, {}, {}}, truth).v));
 }
 
+TEST_CASE("scores: a method without labels has no V") {
+  std::vector<LabelledCell> cells = cells_of(truth);
+  for (LabelledCell& cell : cells) cell.cell.label = -1;
+  const PlaneScores planes = score_planes({{cells}, {}, {}}, truth);
+  CHECK(std::isnan(planes.v));
+  CHECK(std::isnan(planes.plane_rmse_m));
+  CHECK(planes.cell_rmse_m == Approx(0).margin(1e-9));
+}
+
 TEST_CASE("scores: a plane that leans and lies too high has the errors that it has") {
   std::vector<LabelledCell> cells = cells_of(truth, 1.9);
   for (LabelledCell& cell : cells) cell.cell.height_m = 0.02 + 0.01 * (cell.x_m - 1.0);

@@ -162,11 +162,11 @@ TEST_CASE("picture: in either layout a curb's height stands on both panels") {
     const Seen with(map);
     map.curbs[0].height_m = 0.001;  // no text
     const Seen without(map);
-    for (const View* view : {&with.page.heights, &with.page.planes}) {
+    for (const View* panel : {&with.page.heights, &with.page.planes}) {
       int differ = 0;
-      for (double u = 0; u < view->box.width; ++u) {
-        for (double v = 0; v < view->box.height; ++v) {
-          const Pixel at{view->box.x + u, view->box.y + v};
+      for (double u = 0; u < panel->box.width; ++u) {
+        for (double v = 0; v < panel->box.height; ++v) {
+          const Pixel at{panel->box.x + u, panel->box.y + v};
           differ += !same(with.at(at), without.at(at));
         }
       }

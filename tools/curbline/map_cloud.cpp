@@ -1,6 +1,7 @@
 #include "curbline/map_cloud.hpp"
 
 #include "curbline/host_pipeline.hpp"
+#include "peers/peers.hpp"
 
 namespace curbline::tools {
 
@@ -25,6 +26,10 @@ Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
 }
 
 Map map_batch(std::span<const Point3> cloud, const Grid& grid, double max_height_m, const MapOptions& options) {
+  if (options.method == MapMethod::canny || options.method == MapMethod::gradient) {
+    const bool canny = options.method == MapMethod::canny;
+    return peers::map_cloud(cloud, grid, max_height_m, canny ? peers::Method::canny : peers::Method::gradient);
+  }
   reference::Options out;
   out.method = options.method == MapMethod::segment ? reference::Method::segment
                : options.method == MapMethod::em    ? reference::Method::em

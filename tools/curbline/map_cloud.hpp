@@ -13,7 +13,7 @@ namespace curbline::tools {
 /// Window, cell size, height and method as the options have them; the robot stands at the origin.
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
 
-/// The same by the paper's methods (options.method is one of them) on a given grid.
+/// The same by the paper's methods or its peers' (options.method is one of them) on a given grid.
 Map map_batch(std::span<const Point3> cloud, const Grid& grid, double max_height_m, const MapOptions& options);
 
 /// Without their variances.

@@ -46,11 +46,12 @@ void check_written(AtomicFile* file, const std::string& path) {
 }  // namespace
 
 void add_method_option(CLI::App& command, MapMethod& method) {
-  const std::map<std::string, MapMethod> methods{{"curbline", MapMethod::curbline},
-                                                 {"crf-em", MapMethod::crf_em},
-                                                 {"em", MapMethod::em},
-                                                 {"segment", MapMethod::segment}};
-  command.add_option("--method", method, "curbline, or the paper's steps: crf-em, em, segment")
+  const std::map<std::string, MapMethod> methods{
+      {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em},
+      {"segment", MapMethod::segment},   {"canny", MapMethod::canny},   {"gradient", MapMethod::gradient}};
+  command
+      .add_option("--method", method,
+                  "curbline; the paper's steps: crf-em, em, segment; its peers, curbs alone: canny, gradient")
       ->transform(CLI::CheckedTransformer(methods).description(""))
       ->option_text("METHOD");
 }

@@ -15,7 +15,7 @@
 
 namespace curbline::tools {
 
-enum class MapMethod { curbline, crf_em, em, segment };
+enum class MapMethod { curbline, crf_em, em, segment, canny, gradient };
 
 struct MapOptions {
   std::vector<double> origin;  ///< x y, metres; empty: the window follows the robot

@@ -74,7 +74,9 @@ double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
     label.push_back(part.label);
   }
   const auto large = [&](std::size_t n) { return static_cast<double>(n) >= 0.05 * static_cast<double>(parts.size()); };
-  return std::count_if(cells_of.begin(), cells_of.end(), large) >= 2 ? v_measure(of_truth, label) : nan;
+  const bool labelled = std::any_of(label.begin(), label.end(), [](int l) { return l >= 0; });
+  const bool parted = std::count_if(cells_of.begin(), cells_of.end(), large) >= 2;
+  return labelled && parted ? v_measure(of_truth, label) : nan;
 }
 
 bool on_ground(const LabelledCell& cell, const Truth& truth) {

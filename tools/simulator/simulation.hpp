@@ -3,10 +3,9 @@
 // scene, robot, seed and duration give the same numbers.
 //
 // Servo: from `sweep.from_rad` to `sweep.to_rad` and back at constant speed, which it takes up and gives up evenly over
-// a tenth of the half period at each end. A frame stamped t bears the angle that was true at t - latency_s - tilt_latency_s;
-// jitter is
-// added to the stamp after that, and stamps stay in order. The angle is rounded as tilt_signal rounds it.
-// Poses: the true pose with white noise of position and attitude.
+// a tenth of the half period at each end. A frame stamped t bears the angle that was true at t - latency_s -
+// tilt_latency_s; jitter is added to the stamp after that, and stamps stay in order. The angle is rounded as
+// tilt_signal rounds it. Poses: the true pose with white noise of position and attitude.
 #pragma once
 
 #include "can/frame.hpp"
