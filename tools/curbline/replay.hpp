@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "can/tilt_decoder.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
@@ -39,7 +40,7 @@ class Replay {
   const CarmenLine& line() const { return line_; }   ///< the one step() took
   Status status() const { return status_; }          ///< what the pipeline said of it
   long tilt_readings() const { return tilt_readings_; }
-  long frames() const { return frames_; }
+  can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
 
   /// Curbs of the whole way: those in the window now and those of the parts it has left, as they were last.
   std::vector<MapCurb> all_curbs() const;
@@ -54,11 +55,12 @@ class Replay {
   std::unique_ptr<HostPipeline> pipeline_;
   CarmenReader scans_;
   std::optional<CanLogReader> can_;
+  can::TiltDecoder tilt_decoder_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   Status status_ = Status::ok;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
-  long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;
+  long tilt_readings_ = 0, lines_taken_ = 0;
   Grid grid_before_;
   std::vector<MapCurb> curbs_before_, left_behind_;
 };

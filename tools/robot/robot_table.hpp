@@ -34,6 +34,8 @@ class RobotTable {
     value = static_cast<Integer>(whole(key, static_cast<std::int64_t>(value), lowest, highest));
   }
 
+  bool has(const char* key) { return find(key) != nullptr; }
+
   RobotTable table(const char* key);  ///< empty if absent
 
   /// Throws BadInput if a key was not asked for. Call when every key has been read.
