@@ -1,4 +1,4 @@
-// curbline: simulate, replay, map, evaluate.
+// curbline: simulate, replay, map, evaluate, dbc.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   add_replay(app);
   add_map(app);
   add_evaluate(app);
+  add_dbc(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
