@@ -57,6 +57,40 @@ TEST_CASE("program: curbs of 4 cm and more of the scenes are found, within half 
   }
 }
 
+/// Labels of a recording by a robot whose description has these lines of its tilt signal.
+std::string labels_by_signal(const std::string& lines) {
+  const TemporaryDirectory dir;
+  std::string text = read_file(shipped_robot("utm30lx"));
+  text.replace(text.find("node = 1\n"), 9, lines);
+  const std::string robot = dir.write("r.toml", text);
+  const Words simulate{"simulate", "--scene", "straight_curb", "--robot", robot, "--out", dir.path("run"), "--duration", "2"};
+  REQUIRE(curbline(simulate).status == 0);
+  const Outcome outcome = curbline({"replay", "--scans", dir.path("run/scans.carmen"), "--can", dir.path("run/can.log"), "--robot",
+                                    robot, "--labels", dir.path("labels.csv"), "--json"});
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto summary = nlohmann::json::parse(outcome.out);
+  CHECK(summary.at("can_malformed") == 0);
+  CHECK(summary.at("can_without_sync") == 0);
+  CHECK(summary.at("tilt_readings") > 200);
+  return read_file(dir.path("labels.csv"));
+}
+
+TEST_CASE("program: angles sampled on SYNC and sent later, or multiplexed, give the map of those sent at once") {
+  const std::string at_once = labels_by_signal("node = 1\n");
+  CHECK(lines_of(at_once).size() > 100);
+  CHECK(labels_by_signal("node = 1\nsync_id = 0x80\n") == at_once);
+  CHECK(labels_by_signal("node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n") == at_once);
+}
+
+TEST_CASE("program: positions without their SYNC are refused with what was expected") {
+  const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
+  std::string robot = read_file(shipped_robot("clausius"));
+  robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
+  const std::string path = logs.directory().write("sync.toml", robot);
+  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ", "expected id 0x80 before each");
+}
+
 TEST_CASE("program: a curb of 3 cm is found too") {
   const Recording logs("low_curb", "utm30lx");
   replay(logs);

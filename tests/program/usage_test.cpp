@@ -8,7 +8,7 @@ TEST_CASE("program: --help and the help of each command exit with 0") {
   const Outcome help = curbline({"--help"});
   CHECK(help.status == 0);
   CHECK(help.err.empty());
-  for (const std::string command : {"simulate", "replay", "map", "evaluate"}) {
+  for (const std::string command : {"simulate", "replay", "map", "evaluate", "dbc"}) {
     CHECK(help.out.find(command) != std::string::npos);
     const Outcome of_command = curbline({command, "--help"});
     CHECK(of_command.status == 0);

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "can/signal.hpp"
+#include "can/tilt_decoder.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "reference/reference.hpp"
 #include "robot/robot.hpp"
@@ -36,11 +36,13 @@ struct Street {
     settings.window.fixed = true;  // all 40 x 40 cells in view
     settings.window.origin_x_m = 0.8f;
     Simulation simulation(in_map_frame(find_scene("street")), robot, 1);
+    can::TiltDecoder decoder;
+    decoder.init(robot.tilt_signal, robot.tilt_sync_id);
     while (const auto event = simulation.next()) {
       if (const auto* line = std::get_if<ScanLine>(&*event)) {
         lines.emplace_back(line->time_ns, std::vector<float>(line->ranges_m.begin(), line->ranges_m.end()));
       } else if (const auto* frame = std::get_if<can::Frame>(&*event)) {
-        if (const auto angle = can::decode(robot.tilt_signal, *frame)) tilt.push_back({frame->time_ns, static_cast<float>(*angle)});
+        if (const auto reading = decoder.take(*frame)) tilt.push_back(*reading);
       }
     }
     project();

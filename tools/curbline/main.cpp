@@ -1,4 +1,4 @@
-// curbline: simulate, replay, map, evaluate.
+// curbline: simulate, replay, map, evaluate, dbc.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   add_replay(app);
   add_map(app);
   add_evaluate(app);
+  add_dbc(app);
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

@@ -7,12 +7,6 @@ namespace {
 
 constexpr std::int64_t reach_ns = 1'000'000'000, first_reach_ns = 10'000'000'000;
 
-/// What the kernel's filter lets through.
-bool carries(const can::Signal& signal, const can::Frame& frame) {
-  return !frame.error && !frame.remote && frame.extended == signal.extended &&
-         ((frame.id ^ signal.id) & signal.id_mask) == 0;
-}
-
 bool same(const can::Frame& a, const can::Frame& b) {
   return a.id == b.id && a.fd == b.fd && a.length == b.length &&
          std::equal(a.data.begin(), a.data.begin() + a.length, b.data.begin());
@@ -20,11 +14,18 @@ bool same(const can::Frame& a, const can::Frame& b) {
 
 }  // namespace
 
+/// What the kernel's filters let through.
+bool RecordedTimes::wanted(const can::Frame& frame) const {
+  if (frame.error || frame.remote) return false;
+  if (sync_id_ && !frame.extended && frame.id == *sync_id_) return true;
+  return frame.extended == signal_.extended && ((frame.id ^ signal_.id) & signal_.id_mask) == 0;
+}
+
 bool RecordedTimes::read_one() {
   while (!at_end_) {
     const auto frame = log_.next();
     at_end_ = !frame;
-    if (frame && carries(signal_, *frame)) {
+    if (frame && wanted(*frame)) {
       ahead_.push_back(*frame);
       return true;
     }

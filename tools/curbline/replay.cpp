@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "can/signal.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
@@ -70,6 +69,21 @@ std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
   }
 }
 
+/// Why a log gave no reading at all.
+std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
+  const std::string frames = std::to_string(counters.frames) + " frames";
+  if (counters.without_sync > 0) {
+    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id 0x" + hexadecimal(*robot.tilt_sync_id) +
+           " before each, as the robot's description has it";
+  }
+  if (counters.malformed > 0) {
+    return std::to_string(counters.malformed) + " of " + frames + " have the tilt signal's id and none holds an angle; expected " +
+           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
+  }
+  return "none of " + frames + " is the tilt signal; expected id 0x" + hexadecimal(robot.tilt_signal.id) +
+         " as the robot's description has it";
+}
+
 }  // namespace
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, pipeline_of(robot)) {}
@@ -85,10 +99,11 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
   }
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
-    can_ = bus ? live_frames(*bus, robot.tilt_signal, is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans)) : log_frames(logs.can);
+    can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id, is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans)) : log_frames(logs.can);
   }
   if (!robot.pose.still) poses_.emplace(logs.poses);
   scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
+  tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   grid_before_ = pipeline_->grid();
 }
 
@@ -118,11 +133,10 @@ void Replay::feed_tilt(std::int64_t until_ns) {
       if (!can_->ended() && beyond_extrapolation(line_.time_ns)) can_->fail_silent();
       return;
     }
-    ++frames_;
-    if (const auto angle = can::decode(robot_.tilt_signal, *frame)) {
+    if (const auto reading = tilt_decoder_.take(*frame)) {
       ++tilt_readings_;
-      pipeline_->add_tilt({frame->time_ns, static_cast<float>(*angle)});
-      tilt_until_ns_ = frame->time_ns;
+      pipeline_->add_tilt(*reading);
+      tilt_until_ns_ = reading->time_ns;
     }
   }
 }
@@ -170,10 +184,7 @@ void Replay::keep_leaving_curbs() {
 std::string Replay::remarks() const { return can_ ? can_->remarks() : std::string(); }
 
 void Replay::check_complete() const {
-  if (can_ && tilt_readings_ == 0) {
-    throw BadInput(logs_.can + ": none of " + std::to_string(frames_) + " frames is the tilt signal; expected id 0x" +
-                   hexadecimal(robot_.tilt_signal.id) + " as the robot's description has it");
-  }
+  if (can_ && tilt_readings_ == 0) throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
   if (lines_taken_ == 0) {
     throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
                    "; expected times that agree with the tilt log and the poses");

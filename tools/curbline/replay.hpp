@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "can/tilt_decoder.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "curbline/scan_source.hpp"
 #include "curbline/tilt_frames.hpp"
@@ -47,7 +48,7 @@ class Replay {
   const CarmenLine& line() const { return line_; }     ///< the one step() took
   Status status() const { return status_; }            ///< what the pipeline said of it
   long tilt_readings() const { return tilt_readings_; }
-  long frames() const { return frames_; }
+  can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
 
   /// Curbs of the whole way: those in the window now and those of the parts it has left, as they were last.
   std::vector<MapCurb> all_curbs() const;
@@ -63,12 +64,13 @@ class Replay {
   std::unique_ptr<HostPipeline> pipeline_;
   std::unique_ptr<ScanSource> scans_;
   std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
+  can::TiltDecoder tilt_decoder_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   RobotMarker robot_marker_;
   Status status_ = Status::ok;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
-  long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;
+  long tilt_readings_ = 0, lines_taken_ = 0;
   Grid grid_before_;
   std::vector<MapCurb> curbs_before_, left_behind_;
 };

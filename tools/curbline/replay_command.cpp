@@ -82,10 +82,14 @@ class CurbStream {
 
 nlohmann::json summary_of(const Replay& replay) {
   const Counters& c = replay.pipeline().counters();
+  const can::TiltDecoderCounters can = replay.can_counters();
   return {{"lines", c.lines},
           {"lines_dropped", c.lines_dropped},
           {"points", c.points},
           {"no_returns", c.no_returns},
+          {"can_frames", can.frames},
+          {"can_malformed", can.malformed},
+          {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
           {"tilt_latency_offset_s", replay.pipeline().tilt_latency().offset_s()},

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <filesystem>
+#include <span>
 
 #include "formats/bad_input.hpp"
 #include "socketcan/socketcan.hpp"
@@ -40,16 +41,17 @@ std::optional<std::string> recording_beside(const std::string& scans) {
 
 class LiveFrames final : public TiltFrames {
  public:
-  LiveFrames(const std::string& interface_name, const can::Signal& signal, const std::optional<std::string>& scan_log)
+  LiveFrames(const std::string& interface_name, const can::Signal& signal, std::optional<std::uint16_t> sync_id,
+             const std::optional<std::string>& scan_log)
       : name_("can:" + interface_name), signal_(signal) {
-    const std::array filters{socketcan::filter_of(signal)};
-    if (const auto status = bus_.open(interface_name.c_str(), filters); status != socketcan::Status::ok) {
+    const std::array filters{socketcan::filter_of(signal), socketcan::Filter{sync_id.value_or(0), CAN_SFF_MASK, false}};
+    if (const auto status = bus_.open(interface_name.c_str(), std::span(filters).first(sync_id ? 2 : 1)); status != socketcan::Status::ok) {
       throw BadInput(name_ + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
     }
     if (!scan_log) {
       offset_ns_ = 0;
     } else if (const auto log = recording_beside(*scan_log)) {
-      recorded_.emplace(*log, signal);
+      recorded_.emplace(*log, signal, sync_id);
     }
   }
 
@@ -129,8 +131,8 @@ std::unique_ptr<TiltFrames> log_frames(const std::string& path) {
 }
 
 std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const can::Signal& signal,
-                                        const std::optional<std::string>& scan_log) {
-  return std::make_unique<LiveFrames>(interface_name, signal, scan_log);
+                                        std::optional<std::uint16_t> sync_id, const std::optional<std::string>& scan_log) {
+  return std::make_unique<LiveFrames>(interface_name, signal, sync_id, scan_log);
 }
 
 std::optional<std::string> live_interface(const std::string& can) {

@@ -41,10 +41,10 @@ class TiltFrames {
 /// Reads a candump log.
 std::unique_ptr<TiltFrames> log_frames(const std::string& path);
 
-/// Frames of the signal on a live interface. `scan_log` is where the recording's CAN log is looked for; beside a live scanner there is
+/// Frames of the signal, and SYNC frames if it waits for them, on a live interface. `scan_log` is where the recording's CAN log is looked for; beside a live scanner there is
 /// none, and frames keep the kernel's times. Throws BadInput if the interface cannot be opened.
 std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const can::Signal& signal,
-                                        const std::optional<std::string>& scan_log);
+                                        std::optional<std::uint16_t> sync_id, const std::optional<std::string>& scan_log);
 
 /// "vcan0" of "can:vcan0"; nothing if the text names a file.
 std::optional<std::string> live_interface(const std::string& can);
@@ -53,7 +53,8 @@ std::optional<std::string> live_interface(const std::string& can);
 /// order.
 class RecordedTimes {
  public:
-  RecordedTimes(const std::string& log, const can::Signal& signal) : log_(log), signal_(signal) {}
+  RecordedTimes(const std::string& log, const can::Signal& signal, std::optional<std::uint16_t> sync_id)
+      : log_(log), signal_(signal), sync_id_(sync_id) {}
 
   /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s).
   /// Nothing if there is no such frame within a second of it. Recorded frames before it have been missed.
@@ -66,9 +67,11 @@ class RecordedTimes {
 
  private:
   bool read_one();
+  bool wanted(const can::Frame& frame) const;
 
   CanLogReader log_;
   can::Signal signal_;
+  std::optional<std::uint16_t> sync_id_;
   std::deque<can::Frame> ahead_;  ///< read and not met yet
   bool at_end_ = false;
   long missed_ = 0;

@@ -2,9 +2,12 @@
 // need to know of the machine.
 #pragma once
 
+#include "can/servo_presets.hpp"
 #include "can/signal.hpp"
 #include "curbline/settings.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace curbline::tools {
@@ -41,6 +44,7 @@ struct Robot {
   LabelSettings labels{};
   CurbSettings curbs{};
   can::Signal tilt_signal = can::cia402_position(1);
+  std::optional<std::uint16_t> tilt_sync_id{};  ///< angles are sampled on this frame (can/tilt_decoder.hpp)
   Sweep sweep{};
   SimulatedErrors simulated{};
 };

@@ -53,6 +53,7 @@ class Simulation {
   double line_end_s() const;
   ScanLine take_line();
   can::Frame take_frame();
+  can::Frame take_position();
   SimulatedPose take_pose();
   void stamp_next_frame();
 
@@ -66,6 +67,7 @@ class Simulation {
   double duration_s_;
   std::int64_t lines_ = 0, frames_ = 0, poses_ = 0;  // given out
   double frame_stamp_s_;
+  bool synced_ = false;  ///< the position whose SYNC has been given out comes next
   std::vector<float> ranges_m_;
 };
 
