@@ -76,7 +76,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
   // Gradient of the map's z in the tilt axis' frame.
   Eigen::Vector3f up_axis = T_base_tilt_.rotation.row(2);
-  if (!motion.still) up_axis = T_base_tilt_.rotation.transpose() * motion.T_map_base_first.rotation.row(2).transpose();
+  if (!motion.still) up_axis = rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(2));
   NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
     const float range = line.ranges_m[i];
@@ -104,7 +104,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
-    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, up_axis.dot(along), up_axis.dot(across), by_tilt, p_base, angle.rate_rad_s)},
+    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s)},
          by_tilt * angle.rate_rad_s);
   }
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bus.hpp"
+#include "can/servo_presets.hpp"
 #include "support/heap_count.hpp"
 
 namespace curbline::socketcan::testing {
