@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
@@ -38,12 +39,18 @@ class LabelField {
     std::array<float, candidates> probability;   ///< sums to 1
   };
 
+  /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
   struct Place {
-    Slot<limits> slot, i, j;
+    Slot<limits> slot;
+    std::array<Slot<limits>, directions> neighbour;
+    std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
+    std::uint8_t same_labels;                       ///< a bit a direction: the neighbour has the same candidates
+    std::array<std::int16_t, candidates> heard;     ///< in 1 / message_scale nat
   };
-  /// Working memory of one update(): the cells that it visits, row by row.
+  /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
   struct Visits {
     std::array<Place, Dem<limits>::capacity> place;
+    std::array<Slot<limits>, Dem<limits>::capacity> index;
     int size;
   };
 
@@ -64,14 +71,16 @@ class LabelField {
  private:
   // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes nothing.
   static constexpr int message_scale = 32, node_scale = 256;
+  static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
 
+  using Message = std::array<std::uint8_t, candidates>;  ///< of each candidate of the sender
   struct Site {
     std::array<LabelType, candidates> label{none, none, none};
     LabelType best = none;
     std::array<std::int16_t, candidates> node{};                                ///< log potential of each candidate
-    std::array<std::array<std::uint8_t, candidates>, directions> message{};     ///< to the neighbour there, of each candidate
+    std::array<Message, directions> message{};     ///< to the neighbour there
   };
-  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4 };  ///< bits
+  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };  ///< bits; renew: its candidates too
   using Logs = std::array<float, candidates>;
   using Nats = std::array<std::int32_t, candidates>;  ///< in 1 / node_scale nat
   using Planes = PlaneSet<limits.planes>;
@@ -81,14 +90,18 @@ class LabelField {
   }
 
   void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits, Counters& counters);
-  bool must_visit(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const;
+  bool must_renew(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const;
   void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
-  void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Place& place);
+  void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   void keep_messages(Site& site, const std::array<LabelType, candidates>& label);
-  void send(const Dem<limits>& dem, const Place& from, int direction);
-  int follow_beliefs(const Dem<limits>& dem);
-  Nats log_belief(const Dem<limits>& dem, int i, int j, int slot, int except) const;
-  static void hear(const Site& site, const Site& other, std::size_t direction, Nats& logs);
+  Place place(const Dem<limits>& dem, int i, int j, int slot) const;
+  void hear_neighbours(Place& place) const;
+  static void hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message, bool same_labels, int sign,
+                   std::array<std::int16_t, candidates>& sum);
+  void send(const Place& from, std::size_t direction, Visits& visits);
+  int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
+  int follow_belief(const Place& place);
+  static Nats log_belief(const Site& site, const std::array<std::int16_t, candidates>& sum);
   static Logs normalised(const Site& site, const Nats& logs);
 
   LabelSettings settings_{};
@@ -121,14 +134,15 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
                                Counters& counters) {
   find_planes_near_by(dem, mixture);
   choose_visits(dem, mixture, scope, visits, counters);
-  for (int n = 0; n < visits.size; ++n) choose_candidates(dem, mixture, visits.place[static_cast<std::size_t>(n)]);
+  const std::span<Place> places(visits.place.data(), static_cast<std::size_t>(visits.size));
+  for (Place& place : places) hear_neighbours(place);
   // Each direction's messages follow its own order, so that one pass carries them across the window.
-  for (int direction = 0; direction < directions; ++direction) {
+  for (std::size_t direction = 0; direction < directions; ++direction) {
     const bool forward = direction % 2 == 0;
-    for (int n = 0; n < visits.size; ++n) send(dem, visits.place[static_cast<std::size_t>(forward ? n : visits.size - 1 - n)], direction);
+    for (std::size_t n = 0; n < places.size(); ++n) send(places[forward ? n : places.size() - 1 - n], direction, visits);
   }
   counters.messages += static_cast<std::uint32_t>(directions * visits.size);
-  return follow_beliefs(dem);
+  return follow_beliefs(dem, visits);
 }
 
 /// What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of rows.
@@ -139,31 +153,43 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   const int first = band_ < rows ? band_ : 0;
   band_ = first + settings_.refresh_rows;
   int left = scope == FieldScope::line ? settings_.max_messages / directions : capacity;
-  const auto wanted = [&](int s) {
-    return scope == FieldScope::window || (flag_[static_cast<std::size_t>(s)] & (heard | deferred)) != 0 || must_visit(dem, mixture, s);
+  /// `visited`, with `renew` or without, or `quiet`.
+  const auto wanted = [&](int s) -> std::uint8_t {
+    const std::uint8_t before = flag_[static_cast<std::size_t>(s)];
+    if ((before & renew) != 0 || scope == FieldScope::window || must_renew(dem, mixture, s)) return visited | renew;
+    if ((before & (heard | deferred)) == 0) return quiet;
+    return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
   };
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
       auto& flag = flag_[static_cast<std::size_t>(s)];
-      flag = !wanted(s) ? quiet : left > 0 ? visited : deferred;
-      left -= flag == visited;
-      counters.cells_deferred += flag == deferred;
+      flag = wanted(s);
+      if (flag == quiet) return;
+      if (left > 0) {
+        --left;
+      } else {
+        flag ^= visited | deferred;
+        ++counters.cells_deferred;
+      }
     });
   }
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
     auto& flag = flag_[static_cast<std::size_t>(s)];
     if (flag == quiet && i >= first && i < band_ && left > 0) {
-      flag = visited;
+      flag = visited | renew;
       --left;
     }
-    if (flag != visited) return;
-    visits.place[static_cast<std::size_t>(visits.size++)] = {static_cast<Slot<limits>>(s), static_cast<Slot<limits>>(i), static_cast<Slot<limits>>(j)};
+    if ((flag & visited) == 0) return;
+    if ((flag & renew) != 0) choose_candidates(dem, mixture, i, j, s);
+    flag = visited;
+    visits.index[static_cast<std::size_t>(s)] = static_cast<Slot<limits>>(visits.size);
+    visits.place[static_cast<std::size_t>(visits.size++)] = place(dem, i, j, s);
   });
 }
 
 template <Limits limits>
-bool LabelField<limits>::must_visit(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const {
+bool LabelField<limits>::must_renew(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const {
   if (dem.touched(slot) || mixture.relabelled(slot)) return true;
   const Site& site = sites_[static_cast<std::size_t>(slot)];
   if (mixture.any_fresh()) {
@@ -200,9 +226,9 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
 
 /// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept.
 template <Limits limits>
-void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Place& place) {
-  const Cell& cell = dem.cell(place.slot);
-  const float x = dem.centroid_x_m(place.i, cell), y = dem.centroid_y_m(place.j, cell);
+void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot) {
+  const Cell& cell = dem.cell(slot);
+  const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = noise_m2_ / cell.weight;
   Logs best{};
   std::array<LabelType, candidates> label{none, none, none};
@@ -225,11 +251,11 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     label[rank] = static_cast<LabelType>(k);
     best[rank] = log_potential;
   };
-  near_by_[block_of(dem, place.i, place.j)].for_each(consider);
+  near_by_[block_of(dem, i, j)].for_each(consider);
   if (label[0] == none) {
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
-  Site& site = sites_[place.slot];
+  Site& site = sites_[static_cast<std::size_t>(slot)];
   if (label != site.label) keep_messages(site, label);
   for (std::size_t c = 0; c < candidates; ++c) {
     const float below = label[c] == none ? 0.0f : best[c] - best[0];
@@ -252,39 +278,59 @@ void LabelField<limits>::keep_messages(Site& site, const std::array<LabelType, c
   site.label = label;
 }
 
-/// Log belief of each candidate from its node and the messages from all neighbours but the one at `except`.
 template <Limits limits>
-auto LabelField<limits>::log_belief(const Dem<limits>& dem, int i, int j, int slot, int except) const -> Nats {
-  const Site& site = sites_[static_cast<std::size_t>(slot)];
-  Nats logs{};
-  for (int d = 0; d < directions; ++d) {
-    const int g = dem.next_valid(slot, d, settings_.link_reach);
-    if (g == 0 || d == except) continue;
-    const auto n = static_cast<std::size_t>(d);
-    hear(site, sites_[static_cast<std::size_t>(dem.slot(i + g * step_i[n], j + g * step_j[n]))], n ^ 1u, logs);
+auto LabelField<limits>::place(const Dem<limits>& dem, int i, int j, int slot) const -> Place {
+  Place place;
+  place.slot = static_cast<Slot<limits>>(slot);
+  for (std::size_t d = 0; d < directions; ++d) {
+    const int g = dem.next_valid(slot, static_cast<int>(d), settings_.link_reach);
+    place.distance[d] = static_cast<std::uint8_t>(g);
+    place.neighbour[d] = static_cast<Slot<limits>>(g == 0 ? slot : dem.slot(i + g * step_i[d], j + g * step_j[d]));
   }
-  for (std::size_t c = 0; c < candidates; ++c) logs[c] = site.node[c] + logs[c] * (node_scale / message_scale);
-  return logs;
+  return place;
 }
 
-/// Adds what a neighbour says in a direction of the labels that both may bear.
+/// When all candidates are chosen.
 template <Limits limits>
-void LabelField<limits>::hear(const Site& site, const Site& other, std::size_t direction, Nats& logs) {
-  const auto& message = other.message[direction];
-  if (site.label == other.label) {
-    for (std::size_t c = 0; c < candidates; ++c) logs[c] += message[c];
+void LabelField<limits>::hear_neighbours(Place& place) const {
+  const Site& site = sites_[place.slot];
+  place.same_labels = 0;
+  place.heard.fill(0);
+  for (std::size_t d = 0; d < directions; ++d) {
+    if (place.distance[d] == 0) continue;
+    const Site& other = sites_[place.neighbour[d]];
+    const bool same = site.label == other.label;
+    place.same_labels |= static_cast<std::uint8_t>(same << d);
+    hear(site, other.label, other.message[d ^ 1u], same, 1, place.heard);
+  }
+}
+
+/// Adds (sign 1) or takes away (-1) what a neighbour says of the labels that both may bear.
+template <Limits limits>
+void LabelField<limits>::hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message, bool same_labels,
+                              int sign, std::array<std::int16_t, candidates>& sum) {
+  if (same_labels) {
+    for (std::size_t c = 0; c < candidates; ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * message[c]);
     return;
   }
   for (std::size_t c = 0; c < candidates && site.label[c] != none; ++c) {
     for (std::size_t o = 0; o < candidates; ++o) {
-      if (site.label[c] == other.label[o]) logs[c] += message[o];
+      if (site.label[c] == label[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * message[o]);
     }
   }
 }
 
+/// Log belief of each candidate, from its node and what was heard.
+template <Limits limits>
+auto LabelField<limits>::log_belief(const Site& site, const std::array<std::int16_t, candidates>& sum) -> Nats {
+  Nats logs;
+  for (std::size_t c = 0; c < candidates; ++c) logs[c] = site.node[c] + sum[c] * (node_scale / message_scale);
+  return logs;
+}
+
 template <Limits limits>
 auto LabelField<limits>::normalised(const Site& site, const Nats& logs) -> Logs {
-  constexpr std::int32_t nothing = -16 * node_scale;  // below it no message and no printed probability changes
+  constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
   std::int32_t top = logs[0];
   for (std::size_t c = 1; c < candidates; ++c) {
     if (site.label[c] != none && logs[c] > top) top = logs[c];
@@ -304,50 +350,77 @@ auto LabelField<limits>::normalised(const Site& site, const Nats& logs) -> Logs 
 /// Potts message, normalised to 1 for labels that the sender rules out: m(l) = 1 + (exp(J/g) - 1) p(l), p the sender's belief
 /// without what the receiver told it. At most exp(J).
 template <Limits limits>
-void LabelField<limits>::send(const Dem<limits>& dem, const Place& from, int direction) {
-  const int g = dem.next_valid(from.slot, direction, settings_.link_reach);
-  if (g == 0) return;
-  const auto d = static_cast<std::size_t>(direction), distance = static_cast<std::size_t>(g);
+void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& visits) {
+  const std::size_t distance = from.distance[direction];
+  if (distance == 0) return;
   Site& site = sites_[from.slot];
-  std::array<std::uint8_t, candidates> message{loudest_[distance], 0, 0};
+  const Site& other = sites_[from.neighbour[direction]];
+  const bool same = (from.same_labels >> direction & 1) != 0;
+  Message message{loudest_[distance], 0, 0};
   if (site.label[1] != none) {
-    const Logs p = normalised(site, log_belief(dem, from.i, from.j, from.slot, direction));
+    auto by_others = from.heard;
+    hear(site, other.label, other.message[direction ^ 1u], same, -1, by_others);
+    const Logs p = normalised(site, log_belief(site, by_others));
     for (std::size_t c = 0; c < candidates; ++c) {
       message[c] = p[c] == 0.0f   ? std::uint8_t{0}
                    : p[c] == 1.0f ? loudest_[distance]
                                   : static_cast<std::uint8_t>(round_to_int(log(1.0f + boost_[distance] * p[c]) * float{message_scale}));
     }
   }
-  if (message == site.message[d]) return;
-  site.message[d] = message;
-  flag_[static_cast<std::size_t>(dem.slot(from.i + g * step_i[d], from.j + g * step_j[d]))] |= heard;
+  auto& sent = site.message[direction];
+  bool news = false;
+  for (std::size_t c = 0; c < candidates; ++c) {
+    const int change = message[c] - sent[c];
+    news |= change > no_news || change < -no_news;
+  }
+  if (!news) return;
+  auto& flag = flag_[from.neighbour[direction]];
+  if ((flag & visited) != 0) {
+    auto& sum = visits.place[visits.index[from.neighbour[direction]]].heard;
+    hear(other, site.label, sent, same, -1, sum);
+    hear(other, site.label, message, same, 1, sum);
+  }
+  flag |= heard;
+  sent = message;
 }
 
 /// The most likely label of each cell that was visited or heard something new. Returns how many changed.
 template <Limits limits>
-int LabelField<limits>::follow_beliefs(const Dem<limits>& dem) {
+int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
   int changed = 0;
+  for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.place[static_cast<std::size_t>(n)]);
   dem.for_each_valid([&](int i, int j, int s) {
-    if (flag_[static_cast<std::size_t>(s)] == quiet) return;
-    Site& site = sites_[static_cast<std::size_t>(s)];
-    std::size_t best = 0;
-    if (site.label[1] != none) {
-      const Nats logs = log_belief(dem, i, j, s, -1);
-      for (std::size_t c = 1; c < candidates; ++c) {
-        if (site.label[c] != none && logs[c] > logs[best]) best = c;
-      }
-    }
-    changed += site.best != site.label[best];
-    site.best = site.label[best];
+    const auto flag = flag_[static_cast<std::size_t>(s)];
+    if (flag == quiet || (flag & visited) != 0) return;
+    Place heard_only = place(dem, i, j, s);
+    hear_neighbours(heard_only);
+    changed += follow_belief(heard_only);
   });
   return changed;
 }
 
+/// 1 if it changed.
+template <Limits limits>
+int LabelField<limits>::follow_belief(const Place& place) {
+  Site& site = sites_[place.slot];
+  std::size_t best = 0;
+  if (site.label[1] != none) {
+    const Nats logs = log_belief(site, place.heard);
+    for (std::size_t c = 1; c < candidates; ++c) {
+      if (site.label[c] != none && logs[c] > logs[best]) best = c;
+    }
+  }
+  if (site.best == site.label[best]) return 0;
+  site.best = site.label[best];
+  return 1;
+}
+
 template <Limits limits>
 auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
-  const int s = dem.slot(i, j);
-  const Site& site = sites_[static_cast<std::size_t>(s)];
-  return {site.label, normalised(site, log_belief(dem, i, j, s, -1))};
+  Place here = place(dem, i, j, dem.slot(i, j));
+  hear_neighbours(here);
+  const Site& site = sites_[here.slot];
+  return {site.label, normalised(site, log_belief(site, here.heard))};
 }
 
 }  // namespace curbline

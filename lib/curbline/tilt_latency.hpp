@@ -47,6 +47,7 @@ class TiltLatency {
 
   float new_sweep_variance_s2_ = 0.0f;  ///< by how much a sweep's latency differs from the last one's of its direction
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
+  float largest_offset_s_ = 0.0f;       ///< five standard deviations: beyond, the settings are wrong and not the servo late
   float slow_rad_s_ = 0.0f;     ///< below it a wrong latency is less than the error of an angle
   bool begun_ = false;
   float turned_at_rad_ = 0.0f;  ///< where the sweep began

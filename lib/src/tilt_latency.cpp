@@ -13,11 +13,14 @@ constexpr float gate = 9.0f;
 
 float square(float x) { return x * x; }
 
+float within(float x, float bound) { return x < -bound ? -bound : x > bound ? bound : x; }
+
 }  // namespace
 
 void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   *this = TiltLatency{};
   const float prior_variance_s2 = square(tilt.latency_sd_s);
+  largest_offset_s_ = 5.0f * tilt.latency_sd_s;
   time_variance_s2_ = square(tilt.time_sd_s);
   angle_variance_ = square(tilt.angle_sd_rad);
   if (pose.still) {
@@ -68,7 +71,7 @@ void TiltLatency::end_line(float tilt_rate_rad_s) {
     const float innovation_variance = state.variance_s2 + 1.0f / precision_ + common_s2;
     if (square(observed_s) <= gate * innovation_variance) {
       const float gain = state.variance_s2 / innovation_variance;
-      state.offset_s += gain * observed_s;
+      state.offset_s = within(state.offset_s + gain * observed_s, largest_offset_s_);
       state.variance_s2 -= gain * state.variance_s2;
     }
   }

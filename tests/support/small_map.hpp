@@ -19,6 +19,7 @@ inline constexpr Limits small_limits{.rows = 24, .cols = 24, .planes = 6, .beams
 inline Settings small_settings(int rows = 24, int cols = 24) {
   Settings settings;
   settings.window = {.rows = rows, .cols = cols, .origin_x_m = 0.0f, .origin_y_m = 0.0f, .fixed = true};
+  settings.labels.max_messages = 4 * rows * cols;  // a single update() reaches every cell
   return settings;
 }
 

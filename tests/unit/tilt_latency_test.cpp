@@ -94,6 +94,14 @@ TEST_CASE("tilt latency: a line that disagrees by more than latency can explain 
   CHECK(latency.sd_s() == Approx(0.01f));
 }
 
+TEST_CASE("tilt latency: it stays within five standard deviations, whatever is seen") {
+  TiltLatency latency = started();
+  test::Noise noise(6);
+  for (int k = 0; k < 10; ++k) sweep(latency, k % 2 == 0, latency.offset_s() + 0.02f, noise);
+  CHECK(latency.offset_s() == Approx(0.05f));
+  CHECK(latency.latest_offset_s() == Approx(0.05f));
+}
+
 TEST_CASE("tilt latency: the first sweep is no new one, a turn is, a damaged reading is not") {
   TiltLatency latency = started();
   CHECK(latency.follow(0.20f, rate_rad_s) == Turn::none);
