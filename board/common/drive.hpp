@@ -1,0 +1,135 @@
+// Runs a drive: records of drive_log.hpp through the pipeline, a result out after each scan line. The same code on a desk
+// and on every board, so that their results can be compared byte by byte. Nothing is allocated.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "curbline/pipeline.hpp"
+#include "drive_log/drive_log.hpp"
+
+namespace curbline::board {
+
+/// Sizes of the boards' pipeline: 40 x 40 cells, 16 planes, 1081 beams. The budgets hold for them.
+inline constexpr Limits limits{};
+
+using drive_log::RecordHeader;
+using drive_log::RecordKind;
+
+/// How a drive ended. Anything but `done` names what was wrong with the stream.
+enum class DriveEnd : std::uint8_t { done, cut_record, no_setup, other_build, setup_refused, unknown_record, no_room_for_results };
+const char* to_string(DriveEnd end);
+
+/// A place that bytes come from and results go to; see port/README.md.
+/// read(span) fills the whole span or returns how many bytes it got before the end; write(span) is false on failure.
+template <typename Stream>
+concept ByteStream = requires(Stream& stream, std::span<std::byte> in, std::span<const std::byte> out) {
+  { stream.read(in) } -> std::same_as<std::size_t>;
+  { stream.write(out) } -> std::same_as<bool>;
+};
+
+template <ByteStream Stream>
+class Drive {
+ public:
+  Drive(Stream& stream, Pipeline<limits>& pipeline) : stream_(stream), pipeline_(pipeline) {}
+
+  /// Everything up to the end of the stream.
+  DriveEnd run();
+
+ private:
+  enum class Got : std::uint8_t { record, end, cut };
+
+  Got read_header(RecordHeader& header);
+  template <typename T>
+  bool read(T& value, std::size_t bytes) {
+    return bytes == sizeof value && stream_.read(std::as_writable_bytes(std::span<T, 1>(&value, 1))) == sizeof value;
+  }
+  DriveEnd set_up();
+  DriveEnd take(const RecordHeader& header);
+  DriveEnd take_line(std::size_t bytes);
+  bool end_line(const ScanLine& line, Status status);
+
+  Stream& stream_;
+  Pipeline<limits>& pipeline_;
+  can::Signal tilt_signal_{};
+  std::array<float, limits.beams> ranges_m_{};
+};
+
+template <ByteStream Stream>
+DriveEnd Drive<Stream>::run() {
+  if (const DriveEnd end = set_up(); end != DriveEnd::done) return end;
+  RecordHeader header;
+  for (Got got = read_header(header); got != Got::end; got = read_header(header)) {
+    if (got == Got::cut) return DriveEnd::cut_record;
+    if (const DriveEnd end = take(header); end != DriveEnd::done) return end;
+  }
+  return DriveEnd::done;
+}
+
+template <ByteStream Stream>
+auto Drive<Stream>::read_header(RecordHeader& header) -> Got {
+  const std::size_t bytes = stream_.read(std::as_writable_bytes(std::span(&header, 1)));
+  return bytes == sizeof header ? Got::record : bytes == 0 ? Got::end : Got::cut;
+}
+
+template <ByteStream Stream>
+DriveEnd Drive<Stream>::set_up() {
+  RecordHeader header;
+  if (read_header(header) != Got::record || header.kind != RecordKind::setup) return DriveEnd::no_setup;
+  if (header.bytes != sizeof(drive_log::Setup)) return DriveEnd::other_build;
+  drive_log::Setup setup;
+  if (!read(setup, header.bytes)) return DriveEnd::cut_record;
+  tilt_signal_ = setup.tilt_signal;
+  return pipeline_.init(setup.settings) == Status::ok ? DriveEnd::done : DriveEnd::setup_refused;
+}
+
+template <ByteStream Stream>
+DriveEnd Drive<Stream>::take(const RecordHeader& header) {
+  switch (header.kind) {
+    case RecordKind::can_frame: {
+      can::Frame frame;
+      if (!read(frame, header.bytes)) return DriveEnd::cut_record;
+      const std::optional<double> angle_rad = can::decode(tilt_signal_, frame);
+      if (angle_rad) pipeline_.add_tilt({frame.time_ns, static_cast<float>(*angle_rad)});
+      return DriveEnd::done;
+    }
+    case RecordKind::pose: {
+      Pose pose;
+      if (!read(pose, header.bytes)) return DriveEnd::cut_record;
+      pipeline_.add_pose(pose);
+      return DriveEnd::done;
+    }
+    case RecordKind::scan_line:
+      return take_line(header.bytes);
+    default:
+      return DriveEnd::unknown_record;
+  }
+}
+
+template <ByteStream Stream>
+DriveEnd Drive<Stream>::take_line(std::size_t bytes) {
+  drive_log::ScanLineHead head;
+  if (bytes < sizeof head || (bytes - sizeof head) % sizeof(float) != 0) return DriveEnd::cut_record;
+  const std::size_t beams = (bytes - sizeof head) / sizeof(float);
+  if (beams > ranges_m_.size()) return DriveEnd::other_build;
+  const std::span<float> ranges_m = std::span(ranges_m_).first(beams);
+  if (!read(head, sizeof head) || stream_.read(std::as_writable_bytes(ranges_m)) != ranges_m.size_bytes()) return DriveEnd::cut_record;
+  const ScanLine line{head.time_ns, ranges_m};
+  const Status status = pipeline_.take(line);
+  return end_line(line, status) ? DriveEnd::done : DriveEnd::no_room_for_results;
+}
+
+/// Not inlined: tools/budget tells scan lines apart by calls of it.
+template <ByteStream Stream>
+[[gnu::noinline]] bool Drive<Stream>::end_line(const ScanLine& line, Status status) {
+  const drive_log::Result<limits.curbs> result(line, status, pipeline_.counters(), pipeline_.curbs());
+  return stream_.write(result.bytes());
+}
+
+}  // namespace curbline::board
+
+extern template class curbline::Pipeline<curbline::board::limits>;  // in drive.cpp

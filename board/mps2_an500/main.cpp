@@ -1,0 +1,35 @@
+// The firmware: a drive from the host through the pipeline, results back. Its command line is the emulator's: DRIVE RESULTS.
+#include <cstdint>
+
+#include "board.hpp"
+#include "drive.hpp"
+#include "semihosting/semihosting.hpp"
+
+namespace semihosting = curbline::semihosting;
+
+namespace {
+
+curbline::Pipeline<curbline::board::limits> pipeline;
+semihosting::FilePair files;
+curbline::board::Drive drive(files, pipeline);
+
+}  // namespace
+
+int main() {
+  const semihosting::CommandLine command_line;
+  const auto words = command_line.words();
+  if (words.size() != 3) {
+    semihosting::print("usage: FIRMWARE DRIVE RESULTS\n");
+    return 2;
+  }
+  if (!files.open(words[1], words[2])) {
+    semihosting::print("a file cannot be opened; expected DRIVE to read and RESULTS to write\n");
+    return 1;
+  }
+  const curbline::board::DriveEnd end = drive.run();
+  semihosting::print_number("stack bytes used: ", static_cast<std::uint32_t>(curbline::board::stack_used()));
+  if (end == curbline::board::DriveEnd::done) return 0;
+  semihosting::print(to_string(end));
+  semihosting::print("\n");
+  return 1;
+}
