@@ -3,35 +3,31 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "board.hpp"
+#include "runtime.hpp"
 #include "semihosting/semihosting.hpp"
 
 extern "C" {
-using Word = std::uint32_t;
-using Function = void (*)();
-extern Word stack_begin[], stack_end[], data_begin[], data_end[], data_load[], bss_begin[], bss_end[];  // of the linker script
-extern const Function init_array_begin[], init_array_end[];
-int main();
+extern std::uint32_t stack_end[];
 [[noreturn]] void reset();
 [[noreturn]] void unexpected();
-void on_timer();
+[[gnu::weak]] void on_timer();  // a program that starts the timer has it
 }
 
 namespace {
 
-constexpr Word paint = 0xC0DEC0DEu;
+using Handler = void (*)();
 constexpr std::size_t timer0_irq = 8;
 
 struct Vectors {
-  Word* stack;
-  Function exceptions[15];
-  Function interrupts[16];
+  std::uint32_t* stack;
+  Handler exceptions[15];
+  Handler interrupts[16];
 };
 
 constexpr Vectors make_vectors() {
   Vectors vectors{stack_end, {reset}, {}};
   for (std::size_t i = 1; i < 15; ++i) vectors.exceptions[i] = unexpected;
-  for (Function& handler : vectors.interrupts) handler = unexpected;
+  for (Handler& handler : vectors.interrupts) handler = unexpected;
   vectors.interrupts[timer0_irq] = on_timer;
   return vectors;
 }
@@ -40,31 +36,19 @@ constexpr Vectors make_vectors() {
 
 }  // namespace
 
-/// A board without a servo timer leaves it so.
-extern "C" [[gnu::weak]] void on_timer() {
+void on_timer() {
   unexpected();
 }
 
-extern "C" void unexpected() {
+void unexpected() {
   curbline::semihosting::print("unexpected exception\n");
   curbline::semihosting::exit(3);
 }
 
-/// Naked of calls until the stack is painted and the FPU is on.
-extern "C" void reset() {
-  *reinterpret_cast<volatile Word*>(0xE000ED88) |= 0xFu << 20;  // CPACR: full access to CP10 and CP11, the FPU
+void reset() {
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xFu << 20;  // CPACR: full access to CP10 and CP11, the FPU
   asm volatile("dsb\n isb" ::: "memory");
-  Word* const here = static_cast<Word*>(__builtin_frame_address(0)) - 16;
-  for (volatile Word* p = stack_begin; p < here; ++p) *p = paint;
-  const volatile Word* from = data_load;
-  for (volatile Word* to = data_begin; to < data_end; ++to, ++from) *to = *from;
-  for (volatile Word* to = bss_begin; to < bss_end; ++to) *to = 0;
-  for (const Function* f = init_array_begin; f < init_array_end; ++f) (*f)();
-  curbline::semihosting::exit(main());
-}
-
-std::size_t curbline::board::stack_used() {
-  const volatile Word* p = stack_begin;
-  while (p < stack_end && *p == paint) ++p;
-  return static_cast<std::size_t>(reinterpret_cast<std::uintptr_t>(stack_end) - reinterpret_cast<std::uintptr_t>(p));
+  constexpr std::size_t own_frames = 128;  // of this function and the ones it calls
+  curbline::board::paint_stack(static_cast<const std::byte*>(__builtin_frame_address(0)) - own_frames);
+  curbline::board::run_main();
 }

@@ -10,11 +10,21 @@
 
 namespace curbline {
 
+// Sums of three are written out: Eigen orders them, and fuses them with the multiplications, as the target's vectors suit it.
+
+inline float dot(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
+inline Eigen::Vector3f rotated(const Eigen::Matrix3f& rotation, const Eigen::Vector3f& p) {
+  return {dot(rotation.row(0), p), dot(rotation.row(1), p), dot(rotation.row(2), p)};
+}
+
 struct Transform {
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
   Eigen::Vector3f translation = Eigen::Vector3f::Zero();
 
-  Eigen::Vector3f operator*(const Eigen::Vector3f& p) const { return rotation * p + translation; }
+  Eigen::Vector3f operator*(const Eigen::Vector3f& p) const { return rotated(rotation, p) + translation; }
 };
 
 /// R_z(yaw) R_y(pitch) R_x(roll), then translation.

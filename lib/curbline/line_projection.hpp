@@ -64,7 +64,7 @@ void LineProjection<limits>::init(const Settings& settings) {
   laser_up_ = T_tilt_laser_.rotation.col(2);
   for (int i = 0; i < laser_.beams; ++i) {
     const SinCos b = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
-    direction_[static_cast<std::size_t>(i)] = T_tilt_laser_.rotation * Eigen::Vector3f(b.cos, b.sin, 0.0f);
+    direction_[static_cast<std::size_t>(i)] = rotated(T_tilt_laser_.rotation, {b.cos, b.sin, 0.0f});
   }
 }
 
@@ -95,7 +95,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     if (!motion.still) {
       const Eigen::Vector3f first = motion.T_map_base_first * p_base, last = motion.T_map_base_last * p_base;
       p_map = first + (static_cast<float>(i) * step) * (last - first);
-      up_axis = T_base_tilt_.rotation.transpose() * motion.T_map_base_first.rotation.row(2).transpose();
+      up_axis = rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(2));
     }
     const Eigen::Vector3f along = tilted(s, direction_[i]);
     const Eigen::Vector3f across = tilted(s, laser_up_.cross(direction_[i]));
@@ -118,7 +118,7 @@ float LineProjection<limits>::height_variance_m2(float range_m, const Eigen::Vec
   const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
   const float tilt_variance = square(tilt_.angle_sd_rad) + square(tilt_rate * tilt_.time_sd_s);
   const float attitude = square(pose_.attitude_sd_rad);
-  return square(up_axis.dot(along) * laser_.range_sd_m) + square(range_m * up_axis.dot(across) * laser_.bearing_sd_rad) +
+  return square(dot(up_axis, along) * laser_.range_sd_m) + square(range_m * dot(up_axis, across) * laser_.bearing_sd_rad) +
          square(by_tilt) * tilt_variance + square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) +
          square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) + square(pose_.height_sd_m);
 }

@@ -16,6 +16,11 @@ FILES = {
 }
 
 
+def run(line, text=None):
+    """Standard output of a command that must succeed."""
+    return subprocess.run([str(word) for word in line], input=text, capture_output=True, text=True, check=True).stdout
+
+
 def stage_of_frame(function, path):
     """Stage of one frame of an inline stack, None for what any stage uses."""
     name = Path(path).name
@@ -44,8 +49,7 @@ def stage_of_stack(frames):
 
 def inline_stacks(elf, addresses, addr2line):
     """{address: [(function, file), ...]}, innermost first."""
-    listing = subprocess.run([addr2line, "-a", "-f", "-C", "-i", "-e", elf], input="\n".join(hex(a) for a in addresses),
-                             capture_output=True, text=True, check=True).stdout.splitlines()
+    listing = run([addr2line, "-a", "-f", "-C", "-i", "-e", elf], "\n".join(hex(a) for a in addresses)).splitlines()
     stacks, frames = {}, None
     lines = iter(listing)
     for line in lines:
@@ -58,7 +62,7 @@ def inline_stacks(elf, addresses, addr2line):
 
 def symbols(elf, nm):
     """[(address, size, type, demangled name)] of what has a size."""
-    out = subprocess.run([nm, "-S", "-C", elf], capture_output=True, text=True, check=True).stdout
+    out = run([nm, "-S", "-C", elf])
     found = re.findall(r"^([0-9a-f]+) ([0-9a-f]+) (\w) (.*)$", out, re.M)
     return [(int(a, 16), int(s, 16), t, n) for a, s, t, n in found]
 

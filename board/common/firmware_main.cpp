@@ -1,8 +1,9 @@
-// The firmware: a drive from the host through the pipeline, results back. Its command line is the emulator's: DRIVE RESULTS.
+// The firmware of a board that has its logs from the host: a drive through the pipeline, results back. Its command line, of the
+// emulator's -semihosting-config: PROGRAM DRIVE RESULTS.
 #include <cstdint>
 
-#include "board.hpp"
 #include "drive.hpp"
+#include "runtime.hpp"
 #include "semihosting/semihosting.hpp"
 
 namespace semihosting = curbline::semihosting;
