@@ -2,12 +2,22 @@
 
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 namespace curbline::can {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+/// The bits of a number: the part that a signal and a multiplexor have in common.
+struct Bits {
+  int start, length;
+  ByteOrder order;
+};
+
+constexpr Bits bits_of(const Signal& s) {
+  return {s.start_bit, s.length, s.order};
+}
+constexpr Bits bits_of(const Multiplexor& m) {
+  return {m.start_bit, m.length, m.order};
+}
 
 /// The bit below in significance, in the numbering of Signal::start_bit.
 constexpr int next_lower(ByteOrder order, int bit) {
@@ -15,30 +25,34 @@ constexpr int next_lower(ByteOrder order, int bit) {
   return bit % 8 == 0 ? bit + 15 : bit - 1;
 }
 
-constexpr int most_significant(const Signal& s) {
-  return s.order == ByteOrder::little ? s.start_bit + s.length - 1 : s.start_bit;
+constexpr int most_significant(const Bits& b) {
+  return b.order == ByteOrder::little ? b.start + b.length - 1 : b.start;
 }
 
 /// Bytes that a frame must have.
-constexpr int bytes_needed(const Signal& s) {
-  if (s.order == ByteOrder::little) return most_significant(s) / 8 + 1;
-  const int before_start = s.start_bit / 8 * 8 + (7 - s.start_bit % 8);  // bits sent before the first of the signal
-  return (before_start + s.length - 1) / 8 + 1;
+constexpr int bytes_of(const Bits& b) {
+  if (b.order == ByteOrder::little) return most_significant(b) / 8 + 1;
+  const int before_start = b.start / 8 * 8 + (7 - b.start % 8);  // bits sent before the first of the number
+  return (before_start + b.length - 1) / 8 + 1;
 }
 
-std::uint64_t read_bits(const Signal& s, const Frame& frame) {
+constexpr bool fits_a_frame(const Bits& b) {
+  return b.length >= 1 && b.length <= 64 && bytes_of(b) <= 64;
+}
+
+std::uint64_t read_bits(const Bits& b, const Frame& frame) {
   std::uint64_t raw = 0;
-  int bit = most_significant(s);
-  for (int i = 0; i < s.length; ++i, bit = next_lower(s.order, bit)) {
+  int bit = most_significant(b);
+  for (int i = 0; i < b.length; ++i, bit = next_lower(b.order, bit)) {
     const unsigned byte = frame.data[static_cast<std::size_t>(bit / 8)];
     raw = raw << 1 | (byte >> (bit % 8) & 1u);
   }
   return raw;
 }
 
-void write_bits(const Signal& s, std::uint64_t raw, Frame& frame) {
-  int bit = most_significant(s);
-  for (int i = s.length - 1; i >= 0; --i, bit = next_lower(s.order, bit)) {
+void write_bits(const Bits& b, std::uint64_t raw, Frame& frame) {
+  int bit = most_significant(b);
+  for (int i = b.length - 1; i >= 0; --i, bit = next_lower(b.order, bit)) {
     std::uint8_t& byte = frame.data[static_cast<std::size_t>(bit / 8)];
     const unsigned mask = 1u << (bit % 8);
     byte = static_cast<std::uint8_t>((raw >> i & 1u) != 0 ? byte | mask : byte & ~mask);
@@ -82,16 +96,31 @@ std::uint64_t number_to_raw(const Signal& s, double count) {
 }  // namespace
 
 bool valid(const Signal& s) {
-  if (s.length < 1 || s.length > 64 || (s.is_float && s.length != 32)) return false;
+  if (!fits_a_frame(bits_of(s)) || (s.is_float && s.length != 32)) return false;
   if (s.id > (s.extended ? 0x1FFFFFFFu : 0x7FFu)) return false;
+  if (s.multiplexor) {
+    const Bits bits = bits_of(*s.multiplexor);
+    if (!fits_a_frame(bits) || (bits.length < 64 && s.multiplexor->value >> bits.length != 0)) return false;
+  }
   return std::isfinite(s.scale) && s.scale != 0.0 && std::isfinite(s.offset);
 }
 
+int bytes_needed(const Signal& s) {
+  const int own = bytes_of(bits_of(s)), selector = s.multiplexor ? bytes_of(bits_of(*s.multiplexor)) : 0;
+  return own > selector ? own : selector;
+}
+
+bool carries(const Signal& signal, const Frame& frame) {
+  if (frame.extended != signal.extended || frame.remote || frame.error) return false;
+  if (((frame.id ^ signal.id) & signal.id_mask) != 0) return false;
+  if (!signal.multiplexor) return true;
+  const Bits selector = bits_of(*signal.multiplexor);
+  return frame.length < bytes_of(selector) || read_bits(selector, frame) == signal.multiplexor->value;
+}
+
 std::optional<double> decode(const Signal& signal, const Frame& frame) {
-  if (frame.extended != signal.extended || frame.remote || frame.error) return std::nullopt;
-  if (((frame.id ^ signal.id) & signal.id_mask) != 0) return std::nullopt;
-  if (frame.length < bytes_needed(signal)) return std::nullopt;
-  const double value = raw_to_number(signal, read_bits(signal, frame)) * signal.scale + signal.offset;
+  if (!carries(signal, frame) || frame.length < bytes_needed(signal)) return std::nullopt;
+  const double value = raw_to_number(signal, read_bits(bits_of(signal), frame)) * signal.scale + signal.offset;
   if (!std::isfinite(value)) return std::nullopt;
   return value;
 }
@@ -103,64 +132,8 @@ void encode(const Signal& signal, double value, Frame& frame) {
   const auto needed = static_cast<std::uint8_t>(bytes_needed(signal));
   if (needed > 8) frame.fd = true;
   if (needed > frame.length) frame.length = fd_length(needed);
-  write_bits(signal, number_to_raw(signal, (value - signal.offset) / signal.scale), frame);
-}
-
-// CANopen CiA 402: statusword 0x6041 (u16), then position actual value 0x6064 (i32), a common mapping of the first
-// transmit PDO. Counts a turn are the encoder's; 2^20 is that of a 20-bit absolute encoder.
-Signal cia402_position(std::uint8_t node) {
-  return {.id = 0x180u + node, .start_bit = 16, .scale = 2.0 * std::numbers::pi / 1048576.0};
-}
-
-// ODrive documentation, CAN protocol: Get_Encoder_Estimates, command 0x09; bytes 0-3 position in turns.
-Signal odrive_encoder_estimates(std::uint8_t node) {
-  return {.id = (static_cast<std::uint32_t>(node) << 5) | 0x09u, .is_float = true, .scale = 2.0 * std::numbers::pi};
-}
-
-// VESC documentation, comm_can: CAN_PACKET_STATUS_4 = 16; bytes 6-7 position in degrees x 50.
-Signal vesc_status_4(std::uint8_t node) {
-  return {.id = (16u << 8) | node,
-          .extended = true,
-          .start_bit = 55,
-          .length = 16,
-          .order = ByteOrder::big,
-          .scale = degree / 50.0};
-}
-
-// CubeMars AK series manual, servo mode upload: bytes 0-1 position in 0.1 degree; what stands above the low byte of the
-// id differs between firmware versions.
-Signal cubemars_servo(std::uint8_t node) {
-  return {.id = node,
-          .id_mask = 0xFFu,
-          .extended = true,
-          .start_bit = 7,
-          .length = 16,
-          .order = ByteOrder::big,
-          .scale = degree / 10.0};
-}
-
-// RobStride and CyberGear manuals, communication type 2: id bits 28-24 type, 15-8 motor, the rest mode and faults.
-Signal robstride_feedback(std::uint8_t motor) {
-  return {.id = (2u << 24) | (static_cast<std::uint32_t>(motor) << 8),
-          .id_mask = 0x1F00FF00u,
-          .extended = true,
-          .start_bit = 7,
-          .length = 16,
-          .order = ByteOrder::big,
-          .is_signed = false,
-          .scale = 8.0 * std::numbers::pi / 65535.0,
-          .offset = -4.0 * std::numbers::pi};
-}
-
-// Mini-cheetah motor controller, CAN_com: pack_reply(), bytes 1-2; P_MAX is 12.5 or 95.5 rad by firmware.
-Signal mini_cheetah_reply(std::uint16_t id, double p_max_rad) {
-  return {.id = id,
-          .start_bit = 15,
-          .length = 16,
-          .order = ByteOrder::big,
-          .is_signed = false,
-          .scale = 2.0 * p_max_rad / 65535.0,
-          .offset = -p_max_rad};
+  if (signal.multiplexor) write_bits(bits_of(*signal.multiplexor), signal.multiplexor->value, frame);
+  write_bits(bits_of(signal), number_to_raw(signal, (value - signal.offset) / signal.scale), frame);
 }
 
 }  // namespace curbline::can

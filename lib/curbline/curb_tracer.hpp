@@ -1,5 +1,5 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window, chained into
-// polylines by the pair of planes they part, and cut into straight pieces. Each piece tells how much higher the far
+// polylines by the pair of planes they part (borders.hpp), and cut into straight pieces. Each piece tells how much higher the far
 // plane is. Cost: two passes over the window, 50 look-ups a border point, and the square of a chain's length for cutting it.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/borders.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
@@ -27,12 +28,24 @@ const char* to_string(CurbKind kind);
 /// A straight piece of curb line, in the map frame. Near is the side of the robot.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
-  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up
+  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease
   float height_sd_m = 0.0f;  ///< from both planes' posteriors
   float probability = 0.0f;  ///< that the cells on both sides lie on different planes, mean along the piece
   CurbKind kind = CurbKind::crease;
   std::uint16_t near_label = 0, far_label = 0;
 };
+
+/// A border as it was drawn between two planes.
+struct DrawnBorder {
+  float height_m, height_sd_m;  ///< second plane less first there
+  float half_gap_m;             ///< between the cells of the one and the other
+  float reach_m;                ///< how far the planes' meeting may lie away
+};
+
+/// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of it and differ in
+/// height there by no more than their slopes make up across half the gap, and what is not known (95 %) of the planes and of the cells
+/// by which the border was drawn.
+bool is_crease(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 template <Limits limits>
 class CurbTracer {
@@ -42,9 +55,9 @@ class CurbTracer {
     curbs_ = 0;
   }
 
-  /// Finds all curbs of the window. (robot_x_m, robot_y_m): the robot in the window's frame.
+  /// Finds all curbs of the window, in working memory that is the caller's. (robot_x_m, robot_y_m): the robot in the window's frame.
   void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, float robot_x_m, float robot_y_m,
-             Counters& counters);
+             Borders<limits>& borders, Counters& counters);
 
   /// What the last trace() found. Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
@@ -52,66 +65,41 @@ class CurbTracer {
  private:
   using LabelType = Label<limits>;
   static constexpr LabelType none = no_label<limits>;
-  static constexpr std::uint16_t no_border = 0xFFFF;
+  using Border = typename Borders<limits>::Border;
 
-  /// Middle of the gap between two planes on a row or column, in the window's frame.
-  struct Border {
-    float x_m, y_m;
-    float probability;
-    float half_gap_m;
-    LabelType low, high;         ///< the planes, low < high by number
-    std::int8_t axis;            ///< 0: found along x, 1: along y
-    std::int8_t sign;            ///< +1 if `high` lies in the positive direction of the axis
-    std::uint16_t next_in_cell;  ///< another border in the same cell
-    bool chained;
-  };
   /// A cell of a row or column and its plane.
   struct Place {
     LabelType label = none;
-    int along = 0;
+    std::int16_t along = 0;
   };
 
-  void find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field);
-  void scan(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, Counters& counters);
-  void add_border(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a, const Place& b, Counters& counters);
-  std::uint16_t nearest(const Dem<limits>& dem, const Border& from) const;
-  std::uint16_t nearest_within(const Dem<limits>& dem, const Border& from, int reach) const;
-  int chain(const Dem<limits>& dem, std::uint16_t start);
-  void cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first, int last, Counters& counters);
-  int farthest_from_chord(int first, int last, float tolerance_m) const;
-  void give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first, int last, Counters& counters);
-  int cell_of(const Dem<limits>& dem, const Border& border) const {
-    return dem.slot(static_cast<int>(border.x_m / dem.cell_x_m()), static_cast<int>(border.y_m / dem.cell_y_m()));
-  }
+  int find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field);
+  void find_borders(const Dem<limits>& dem, const LabelField<limits>& field, Borders<limits>& borders, Counters& counters) const;
+  Border border_between(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a, const Place& b) const;
+  void cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int length, Counters& counters);
+  static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
+  void give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int first, int last, Counters& counters);
 
   CurbSettings settings_{};
   float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;
+  float reach_m_ = 0.0f;  ///< as far as gaps are bridged
   std::array<bool, limits.planes> ground_{};
-  std::array<Border, limits.borders> border_{};
-  int borders_ = 0;
-  std::array<std::uint16_t, Dem<limits>::capacity> border_in_cell_{};
-  std::array<std::uint16_t, limits.borders> chain_{};  ///< of the polyline in hand, in order
   std::array<Curb, limits.curbs> curb_{};
   int curbs_ = 0;
 };
 
 template <Limits limits>
 void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, float robot_x_m,
-                               float robot_y_m, Counters& counters) {
+                               float robot_y_m, Borders<limits>& borders, Counters& counters) {
   robot_x_m_ = robot_x_m;
   robot_y_m_ = robot_y_m;
-  borders_ = curbs_ = 0;
-  border_in_cell_.fill(no_border);
-  find_ground(dem, mixture, field);
-  for (int j = 0; j < dem.cols(); ++j) scan(dem, field, 0, j, counters);
-  for (int i = 0; i < dem.rows(); ++i) scan(dem, field, 1, i, counters);
-  for (int b = 0; b < borders_; ++b) {
-    if (border_[static_cast<std::size_t>(b)].chained) continue;
-    // Walk to an end of the polyline, then chain it from there.
-    const int walked = chain(dem, static_cast<std::uint16_t>(b));
-    for (int k = 0; k < walked; ++k) border_[chain_[static_cast<std::size_t>(k)]].chained = false;
-    const int length = chain(dem, chain_[static_cast<std::size_t>(walked - 1)]);
-    cut(dem, mixture, 0, length - 1, counters);
+  curbs_ = 0;
+  reach_m_ = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
+  if (find_ground(dem, mixture, field) < 2) return;
+  borders.clear();
+  find_borders(dem, field, borders, counters);
+  for (int b = 0; b < borders.size(); ++b) {
+    if (!borders.chained(b)) cut(dem, mixture, borders, borders.chain(dem, b, settings_.link_reach), counters);
   }
 }
 
@@ -119,55 +107,62 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
 /// deviation (1.4826 times the median residual) exceeds the bound. Not the face of a curb: a label whose runs are at most two
 /// cells long on average along the rows or along the columns, as many as a vertical face can touch.
 template <Limits limits>
-void CurbTracer<limits>::find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field) {
+int CurbTracer<limits>::find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field) {
   std::array<int, limits.planes> cells{}, off{}, row_runs{}, col_runs{};
-  const float bound = settings_.max_roughness_m / 1.4826f;
-  const auto starts_run = [&](int i, int j, int di, int dj, LabelType label) {
-    const int g = dem.next_valid(i, j, -di, -dj, settings_.link_reach);
-    return g == 0 || field.label(dem.slot(i - g * di, j - g * dj)) != label;
+  std::array<Place, limits.cols> last_in_col{};
+  Place last_in_row;
+  int row = -1;
+  const auto starts_run = [&](Place& last, const Place& here) {
+    const bool starts = last.label != here.label || here.along - last.along > settings_.link_reach;
+    last = here;
+    return starts;
   };
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const int s = dem.slot(i, j);
-      const Cell& cell = dem.cell(s);
-      const LabelType label = field.label(s);
-      if (!cell.valid() || label == none) continue;
-      const float residual = cell.height_m - mixture.plane(label).height_m(dem.centroid_x_m(i, cell), dem.centroid_y_m(j, cell));
-      ++cells[label];
-      off[label] += residual > bound || residual < -bound;
-      row_runs[label] += starts_run(i, j, 1, 0, label);
-      col_runs[label] += starts_run(i, j, 0, 1, label);
-    }
-  }
+  const float bound = settings_.max_roughness_m / 1.4826f;
+  dem.for_each_valid([&](int i, int j, int s) {
+    const LabelType label = field.label(s);
+    if (i != row) last_in_row = {};
+    row = i;
+    const bool starts_col = starts_run(last_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}), starts_row = starts_run(last_in_row, {label, static_cast<std::int16_t>(j)});
+    if (label == none) return;
+    const Cell& cell = dem.cell(s);
+    const float residual = cell.height_m - mixture.plane(label).height_m(dem.centroid_x_m(i, cell), dem.centroid_y_m(j, cell));
+    ++cells[label];
+    off[label] += residual > bound || residual < -bound;
+    row_runs[label] += starts_row;
+    col_runs[label] += starts_col;
+  });
+  int ground = 0;
   for (std::size_t l = 0; l < ground_.size(); ++l) {
     ground_[l] = 2 * off[l] <= cells[l] && cells[l] > 2 * row_runs[l] && cells[l] > 2 * col_runs[l];
+    ground += ground_[l];
   }
+  return ground;
 }
 
-/// One row (axis 0) or column: a border wherever the plane changes. Cells that are not ground are looked through, as gaps are.
+/// A border wherever the plane changes along a row or column. Cells that are not ground are looked through, as gaps are.
 template <Limits limits>
-void CurbTracer<limits>::scan(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, Counters& counters) {
-  const int length = axis == 0 ? dem.rows() : dem.cols();
-  Place before;
-  for (int along = 0; along < length; ++along) {
-    const int s = axis == 0 ? dem.slot(along, across) : dem.slot(across, along);
-    const LabelType label = dem.cell(s).valid() ? field.label(s) : none;
-    if (label == none || !ground_[label]) continue;
-    const Place here{label, along};
-    if (before.label != none && before.label != label && along - before.along <= settings_.link_reach) {
-      add_border(dem, field, axis, across, before, here, counters);
-    }
+void CurbTracer<limits>::find_borders(const Dem<limits>& dem, const LabelField<limits>& field, Borders<limits>& borders, Counters& counters) const {
+  std::array<Place, limits.cols> before_in_col{};
+  Place before_in_row;
+  int row = -1;
+  const auto pass = [&](Place& before, const Place& here, int axis, int across) {
+    const bool border = before.label != none && before.label != here.label && here.along - before.along <= settings_.link_reach;
+    if (border && !borders.add(dem, border_between(dem, field, axis, across, before, here))) ++counters.borders_full;
     before = here;
-  }
+  };
+  dem.for_each_valid([&](int i, int j, int s) {
+    const LabelType label = field.label(s);
+    if (label == none || !ground_[label]) return;
+    if (i != row) before_in_row = {};
+    row = i;
+    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, 0, j);
+    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, 1, i);
+  });
 }
 
 template <Limits limits>
-void CurbTracer<limits>::add_border(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a, const Place& b,
-                                    Counters& counters) {
-  if (borders_ == limits.borders) {
-    ++counters.borders_full;
-    return;
-  }
+auto CurbTracer<limits>::border_between(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a,
+                                        const Place& b) const -> Border {
   const auto cell_belief = [&](int along) { return axis == 0 ? field.belief(dem, along, across) : field.belief(dem, across, along); };
   const auto p = cell_belief(a.along), q = cell_belief(b.along);
   float same = 0.0f;
@@ -179,78 +174,45 @@ void CurbTracer<limits>::add_border(const Dem<limits>& dem, const LabelField<lim
   const float pitch = axis == 0 ? dem.cell_x_m() : dem.cell_y_m();
   const float middle = 0.5f * static_cast<float>(a.along + b.along + 1) * pitch;
   const float other = (static_cast<float>(across) + 0.5f) * (axis == 0 ? dem.cell_y_m() : dem.cell_x_m());
-  Border border{axis == 0 ? middle : other, axis == 0 ? other : middle, 1.0f - same, 0.5f * static_cast<float>(b.along - a.along) * pitch,
-                a.label < b.label ? a.label : b.label, a.label < b.label ? b.label : a.label, static_cast<std::int8_t>(axis),
-                static_cast<std::int8_t>(a.label < b.label ? 1 : -1), no_border, false};
-  std::uint16_t& head = border_in_cell_[static_cast<std::size_t>(cell_of(dem, border))];
-  border.next_in_cell = head;
-  head = static_cast<std::uint16_t>(borders_);
-  border_[static_cast<std::size_t>(borders_++)] = border;
-}
-
-/// The nearest border of the same planes that is in no chain yet: within two cells, else as far as gaps are bridged.
-template <Limits limits>
-std::uint16_t CurbTracer<limits>::nearest(const Dem<limits>& dem, const Border& from) const {
-  const std::uint16_t near = nearest_within(dem, from, 2);
-  return near != no_border ? near : nearest_within(dem, from, settings_.link_reach);
-}
-
-template <Limits limits>
-std::uint16_t CurbTracer<limits>::nearest_within(const Dem<limits>& dem, const Border& from, int reach) const {
-  const int ci = static_cast<int>(from.x_m / dem.cell_x_m()), cj = static_cast<int>(from.y_m / dem.cell_y_m());
-  std::uint16_t best = no_border;
-  float best_m2 = 1e30f;
-  for (int i = ci > reach ? ci - reach : 0; i <= ci + reach && i < dem.rows(); ++i) {
-    for (int j = cj > reach ? cj - reach : 0; j <= cj + reach && j < dem.cols(); ++j) {
-      for (std::uint16_t b = border_in_cell_[static_cast<std::size_t>(dem.slot(i, j))]; b != no_border; b = border_[b].next_in_cell) {
-        const Border& border = border_[b];
-        if (border.chained || border.low != from.low || border.high != from.high) continue;
-        const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;
-        const float m2 = dx * dx + dy * dy;
-        if (m2 < best_m2) {
-          best_m2 = m2;
-          best = b;
-        }
-      }
-    }
-  }
-  return best;
-}
-
-template <Limits limits>
-int CurbTracer<limits>::chain(const Dem<limits>& dem, std::uint16_t start) {
-  int length = 0;
-  for (std::uint16_t b = start; b != no_border; b = nearest(dem, border_[b])) {
-    border_[b].chained = true;
-    chain_[static_cast<std::size_t>(length++)] = b;
-  }
-  return length;
+  const bool rising = a.label < b.label;
+  return {axis == 0 ? middle : other,
+          axis == 0 ? other : middle,
+          1.0f - same,
+          0.5f * static_cast<float>(b.along - a.along) * pitch,
+          rising ? a.label : b.label,
+          rising ? b.label : a.label,
+          static_cast<std::int8_t>(axis),
+          static_cast<std::int8_t>(rising ? 1 : -1),
+          false,
+          0};
 }
 
 /// Splits the chain where it leaves the chord by more than a cell (a straight line crossing cells stays within one) and
 /// gives out the pieces in order.
 template <Limits limits>
-void CurbTracer<limits>::cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first, int last, Counters& counters) {
+void CurbTracer<limits>::cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int length,
+                             Counters& counters) {
   const float tolerance_m = dem.cell_x_m() > dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m();
+  int first = 0;
   do {
-    int end = last;
-    for (int split = farthest_from_chord(first, end, tolerance_m); split >= 0; split = farthest_from_chord(first, end, tolerance_m)) end = split;
-    give_out(dem, mixture, first, end, counters);
+    int end = length - 1;
+    for (int split = end; split >= 0; split = farthest_from_chord(borders, first, end, tolerance_m)) end = split;
+    give_out(dem, mixture, borders, first, end, counters);
     first = end;
-  } while (first < last);
+  } while (first < length - 1);
 }
 
 /// The border farthest from the chord between two others, -1 if none is farther than the tolerance.
 template <Limits limits>
-int CurbTracer<limits>::farthest_from_chord(int first, int last, float tolerance_m) const {
-  const Border& a = border_[chain_[static_cast<std::size_t>(first)]];
-  const Border& b = border_[chain_[static_cast<std::size_t>(last)]];
+int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m) {
+  const Border& a = borders.at(first);
+  const Border& b = borders.at(last);
   const float dx = b.x_m - a.x_m, dy = b.y_m - a.y_m;
   const float length2 = dx * dx + dy * dy;
   float worst = tolerance_m * tolerance_m;
   int found = -1;
   for (int k = first + 1; k < last; ++k) {
-    const Border& p = border_[chain_[static_cast<std::size_t>(k)]];
+    const Border& p = borders.at(k);
     const float px = p.x_m - a.x_m, py = p.y_m - a.y_m;
     const float cross = dx * py - dy * px;
     // Of a closed chain the ends coincide: the distance from them counts.
@@ -264,19 +226,20 @@ int CurbTracer<limits>::farthest_from_chord(int first, int last, float tolerance
 }
 
 template <Limits limits>
-void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first, int last, Counters& counters) {
+void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int first, int last,
+                                  Counters& counters) {
   if (curbs_ == limits.curbs) {
     ++counters.curbs_full;
     return;
   }
-  const Border& a = border_[chain_[static_cast<std::size_t>(first)]];
-  const Border& b = border_[chain_[static_cast<std::size_t>(last)]];
+  const Border& a = borders.at(first);
+  const Border& b = borders.at(last);
   const Plane& low = mixture.plane(a.low);
   const Plane& high = mixture.plane(a.high);
   LineFit fit;
   float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, toward_x = 0.0f, toward_y = 0.0f;
   for (int k = first; k <= last; ++k) {
-    const Border& border = border_[chain_[static_cast<std::size_t>(k)]];
+    const Border& border = borders.at(k);
     fit.add(border.x_m, border.y_m);
     height += high.height_m(border.x_m, border.y_m) - low.height_m(border.x_m, border.y_m);
     variance += high.height_variance_m2(border.x_m, border.y_m) + low.height_variance_m2(border.x_m, border.y_m);
@@ -300,12 +263,12 @@ void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<lim
   curb.probability = probability * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
-  // Planes of different slope that meet within the gap between them are a crease: their heights in its middle differ by no
-  // more than the slopes make up across half of it, and what is not known of them (95 %).
-  const float slope_x = high.slope_x - low.slope_x, slope_y = high.slope_y - low.slope_y;
-  const float across = segment.normal_x * slope_x + segment.normal_y * slope_y;
-  const float meet = (across < 0.0f ? -across : across) * half_gap * n + 2.0f * curb.height_sd_m;
-  curb.kind = curb.height_m > meet ? CurbKind::step_up : curb.height_m < -meet ? CurbKind::step_down : CurbKind::crease;
+  if (is_crease(low, high, segment, {height * n, curb.height_sd_m, half_gap * n, reach_m_})) {
+    curb.kind = CurbKind::crease;
+    curb.height_m = 0.0f;
+  } else {
+    curb.kind = curb.height_m > 0.0f ? CurbKind::step_up : CurbKind::step_down;
+  }
   curb_[static_cast<std::size_t>(curbs_++)] = curb;
 }
 

@@ -19,6 +19,13 @@ namespace curbline {
 /// Side of a block: the window moves by whole blocks, and leaves never cross their borders.
 inline constexpr int block_side = 4;
 
+/// Directions along the axes: +x, -x, +y, -y. d ^ 1 is opposite to d.
+inline constexpr int directions = 4;
+inline constexpr std::array<int, directions> step_i{1, -1, 0, 0}, step_j{0, 0, 1, -1};
+
+/// Cells further apart than this know nothing of each other: what four bits hold.
+inline constexpr int max_link_reach = 15;
+
 /// Index types, as small as the limits allow.
 template <Limits limits>
 using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
@@ -77,19 +84,42 @@ class Dem {
   float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m; }
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
-  bool touched(int slot) const { return touched_[static_cast<std::size_t>(slot)] != 0; }
-  void clear_touched() { touched_.fill(0); }
-
-  /// Distance in cells to the next valid cell from (i, j) along +x (di = 1) or another axis direction; 0 if there is none
-  /// within `reach` cells or the window.
-  int next_valid(int i, int j, int di, int dj, int reach) const {
-    for (int g = 1; g <= reach; ++g) {
-      i += di;
-      j += dj;
-      if (i < 0 || j < 0 || i >= settings_.rows || j >= settings_.cols) return 0;
-      if (cell(slot(i, j)).valid()) return g;
+  bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & 1) != 0; }
+  void clear_touched() {
+    if (any_touched_) {
+      for (std::uint8_t& touched : touched_) touched &= 0xFE;
     }
-    return 0;
+    any_touched_ = false;
+  }
+
+  /// True if any cell is.
+  bool any_touched() const { return any_touched_; }
+
+  /// Calls visit(i, j, slot) for each valid cell, row by row.
+  template <typename Visit>
+  void for_each_valid(Visit&& visit) const {
+    for (int i = 0; i < settings_.rows; ++i) for_each_valid_in_row(i, visit);
+  }
+  template <typename Visit>
+  void for_each_valid_in_row(int i, Visit&& visit) const {
+    int s = slot(i, 0);
+    const int row_end = s - col_shift_ + settings_.cols;
+    for (int j = 0; j < settings_.cols; ++j) {
+      if (cell(s).valid()) visit(i, j, s);
+      if (++s == row_end) s -= settings_.cols;
+    }
+  }
+
+  /// The laser sweeps over the ground anew.
+  void begin_sweep() { sweep_ = static_cast<std::uint8_t>(sweep_ + 2); }
+  /// The cell under a point, if an earlier sweep has seen it and this one not yet; -1 if not.
+  int mapped_before(float x_m, float y_m) const;
+
+  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells, at most
+  /// max_link_reach. O(1).
+  int next_valid(int slot, int direction, int reach) const {
+    const int g = distances_[static_cast<std::size_t>(slot)] >> (4 * direction) & 15;
+    return g <= reach ? g : 0;
   }
 
  private:
@@ -98,6 +128,12 @@ class Dem {
     return r < 0 ? r + size : r;
   }
   void place(float x_m, float y_m, std::int32_t& row, std::int32_t& col) const;
+  void set_distance(int slot, int direction, int distance) {
+    auto& distances = distances_[static_cast<std::size_t>(slot)];
+    distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
+  }
+  void meet_neighbours(int i, int j);
+  void leave(int i, int j);
 
   WindowSettings settings_{};
   PlanePrior prior_{};
@@ -105,7 +141,10 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  std::array<std::uint8_t, capacity> touched_{};
+  std::array<std::uint8_t, capacity> touched_{};  ///< bit 0; above it the number of the sweep that touched the cell last
+  std::uint8_t sweep_ = 0;
+  std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
+  bool any_touched_ = false;
 };
 
 template <Limits limits>
@@ -114,6 +153,8 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior, 
   prior_ = prior;
   cells_.fill(Cell{});
   touched_.fill(0);
+  distances_.fill(0);
+  any_touched_ = false;
   first_row_ = first_col_ = 0;
   row_shift_ = col_shift_ = 0;
   anchor_x_m_ = settings.origin_x_m;
@@ -144,14 +185,56 @@ void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
       const int s = slot(i, j);
       if (!cell(s).valid()) continue;
       left(s);
-      cells_[static_cast<std::size_t>(s)] = Cell{};
-      touched_[static_cast<std::size_t>(s)] = 1;
+      leave(i, j);
     }
   }
   first_row_ = row;
   first_col_ = col;
   row_shift_ = wrap(row, settings_.rows);
   col_shift_ = wrap(col, settings_.cols);
+}
+
+/// A cell that has just become valid: it and the next ones on its row and column learn of each other.
+template <Limits limits>
+void Dem<limits>::meet_neighbours(int i, int j) {
+  const int s = slot(i, j);
+  for (int d = 0; d < directions; ++d) {
+    const auto n = static_cast<std::size_t>(d);
+    int a = i, b = j;
+    for (int g = 1; g <= max_link_reach; ++g) {
+      a += step_i[n];
+      b += step_j[n];
+      if (a < 0 || b < 0 || a >= settings_.rows || b >= settings_.cols) break;
+      const int other = slot(a, b);
+      if (!cell(other).valid()) continue;
+      set_distance(s, d, g);
+      set_distance(other, d ^ 1, g);
+      break;
+    }
+  }
+}
+
+/// Clears a cell. What lies beyond it leaves too, so its neighbours see nothing there any more.
+template <Limits limits>
+void Dem<limits>::leave(int i, int j) {
+  const int s = slot(i, j);
+  for (int d = 0; d < directions; ++d) {
+    const auto n = static_cast<std::size_t>(d);
+    const int g = next_valid(s, d, max_link_reach);
+    if (g > 0) set_distance(slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
+  }
+  cells_[static_cast<std::size_t>(s)] = Cell{};
+  distances_[static_cast<std::size_t>(s)] = 0;
+  touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | 1);
+  any_touched_ = true;
+}
+
+template <Limits limits>
+int Dem<limits>::mapped_before(float x_m, float y_m) const {
+  const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
+  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return -1;
+  const int s = slot(static_cast<int>(u), static_cast<int>(v));
+  return cell(s).valid() && (touched_[static_cast<std::size_t>(s)] ^ sweep_) > 1 ? s : -1;
 }
 
 template <Limits limits>
@@ -164,36 +247,28 @@ bool Dem<limits>::add(const Point& point) {
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return false;
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const auto s = static_cast<std::size_t>(slot(i, j));
+  if (!cells_[s].valid()) meet_neighbours(i, j);
   cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m, (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m,
                 prior_.noise_m2 / variance_m2);
-  touched_[s] = 1;
+  touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
+  any_touched_ = true;
   return true;
 }
 
 /// Two valid cells with no valid cell between them on a row or column.
 struct Link {
   std::size_t from, to;  ///< slots
-  int i, j;              ///< of `from`
-  int di, dj;            ///< direction to `to`: (1, 0) or (0, 1)
   int distance;          ///< in cells
 };
 
 /// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const int from = dem.slot(i, j);
-      if (!dem.cell(from).valid()) continue;
-      for (int axis = 0; axis < 2; ++axis) {
-        const int di = axis == 0 ? 1 : 0, dj = 1 - di;
-        const int g = dem.next_valid(i, j, di, dj, reach);
-        if (g == 0) continue;
-        const int to = dem.slot(i + g * di, j + g * dj);
-        visit(Link{static_cast<std::size_t>(from), static_cast<std::size_t>(to), i, j, di, dj, g});
-      }
-    }
-  }
+  dem.for_each_valid([&](int i, int j, int s) {
+    const auto from = static_cast<std::size_t>(s);
+    if (const int g = dem.next_valid(s, 0, reach); g > 0) visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g});
+    if (const int g = dem.next_valid(s, 2, reach); g > 0) visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g});
+  });
 }
 
 }  // namespace curbline

@@ -33,7 +33,8 @@ class LineProjection {
   /// Time from the first beam to the last, and the time of beam i after the first.
   std::int64_t duration_ns(std::size_t beams) const { return beams == 0 ? 0 : beam_ns(beams - 1); }
 
-  /// Calls take(const Point&) for each beam that returned, in the order of the beams. `tilt` is not read with a fixed tilt.
+  /// Calls take(const Point&, float growth_m_s) for each beam that returned, in the order of the beams; growth: of its height by a
+  /// second of tilt latency. `tilt` is not read with a fixed tilt.
   template <typename Take>
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters, Take&& take) const;
 
@@ -41,16 +42,15 @@ class LineProjection {
   std::int64_t beam_ns(std::size_t beam) const { return static_cast<std::int64_t>(beam) * beam_interval_ns_; }
   bool returned(float range_m) const { return range_m >= laser_.min_range_m && range_m < laser_.max_range_m; }  // false for NaN
   TiltAngle tilt_at(std::int64_t time_ns, TiltSnapshot<limits>& tilt) const;
-  float height_variance_m2(float range_m, const Eigen::Vector3f& direction, const Eigen::Vector3f& across, const Eigen::Vector3f& p_axis,
-                           const Eigen::Vector3f& p_base, const Eigen::Vector3f& up_axis, float tilt_rate) const;
+  float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base, float tilt_rate) const;
 
   LaserSettings laser_{};
   TiltSettings tilt_{};
   PoseSettings pose_{};
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
-  Eigen::Vector3f laser_up_ = Eigen::Vector3f::UnitZ();  ///< the laser's z axis, in the tilt frame
-  std::array<Eigen::Vector3f, limits.beams> direction_;  ///< of each beam, in the tilt frame
+  Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(), laser_y_ = Eigen::Vector3f::UnitY();  ///< the laser's axes, in the tilt frame
+  std::array<SinCos, limits.beams> bearing_;  ///< of each beam
 };
 
 template <Limits limits>
@@ -61,10 +61,10 @@ void LineProjection<limits>::init(const Settings& settings) {
   beam_interval_ns_ = static_cast<std::int64_t>(laser_.beam_interval_s * 1e9f + 0.5f);
   T_base_tilt_ = make_transform(tilt_.T_base_tilt);
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
-  laser_up_ = T_tilt_laser_.rotation.col(2);
+  laser_x_ = T_tilt_laser_.rotation.col(0);
+  laser_y_ = T_tilt_laser_.rotation.col(1);
   for (int i = 0; i < laser_.beams; ++i) {
-    const SinCos b = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
-    direction_[static_cast<std::size_t>(i)] = rotated(T_tilt_laser_.rotation, {b.cos, b.sin, 0.0f});
+    bearing_[static_cast<std::size_t>(i)] = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
   }
 }
 
@@ -74,6 +74,10 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
                                      Take&& take) const {
   const std::size_t beams = line.ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
+  // Gradient of the map's z in the tilt axis' frame.
+  Eigen::Vector3f up_axis = T_base_tilt_.rotation.row(2);
+  if (!motion.still) up_axis = rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(2));
+  NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
     const float range = line.ranges_m[i];
     if (!returned(range)) {
@@ -87,19 +91,21 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     counters.beams_extrapolated += angle.source == TiltAngle::Source::extrapolated;
 
-    const SinCos s = sin_cos(angle.angle_rad);
-    const Eigen::Vector3f p_axis = tilted(s, direction_[i] * range + T_tilt_laser_.translation);
+    const SinCos s = near.at(angle.angle_rad);
+    const Eigen::Vector3f x = tilted(s, laser_x_), y = tilted(s, laser_y_);  // the laser's axes
+    const SinCos& bearing = bearing_[i];
+    const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;
+    const Eigen::Vector3f p_axis = along * range + tilted(s, T_tilt_laser_.translation);
     const Eigen::Vector3f p_base = T_base_tilt_ * p_axis;
     Eigen::Vector3f p_map = p_base;
-    Eigen::Vector3f up_axis = T_base_tilt_.rotation.row(2);  // gradient of the map's z in the tilt axis' frame
     if (!motion.still) {
       const Eigen::Vector3f first = motion.T_map_base_first * p_base, last = motion.T_map_base_last * p_base;
       p_map = first + (static_cast<float>(i) * step) * (last - first);
-      up_axis = rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(2));
     }
-    const Eigen::Vector3f along = tilted(s, direction_[i]);
-    const Eigen::Vector3f across = tilted(s, laser_up_.cross(direction_[i]));
-    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, along, across, p_axis, p_base, up_axis, angle.rate_rad_s)});
+    const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
+    const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
+    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s)},
+         by_tilt * angle.rate_rad_s);
   }
 }
 
@@ -111,16 +117,14 @@ TiltAngle LineProjection<limits>::tilt_at(std::int64_t time_ns, TiltSnapshot<lim
 
 /// First-order propagation: the derivative of the height by each error, times its standard deviation, squared and summed.
 template <Limits limits>
-float LineProjection<limits>::height_variance_m2(float range_m, const Eigen::Vector3f& along, const Eigen::Vector3f& across,
-                                                 const Eigen::Vector3f& p_axis, const Eigen::Vector3f& p_base,
-                                                 const Eigen::Vector3f& up_axis, float tilt_rate) const {
+float LineProjection<limits>::height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base,
+                                                 float tilt_rate) const {
   const auto square = [](float x) { return x * x; };
-  const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
   const float tilt_variance = square(tilt_.angle_sd_rad) + square(tilt_rate * tilt_.time_sd_s);
   const float attitude = square(pose_.attitude_sd_rad);
-  return square(dot(up_axis, along) * laser_.range_sd_m) + square(range_m * dot(up_axis, across) * laser_.bearing_sd_rad) +
-         square(by_tilt) * tilt_variance + square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) +
-         square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) + square(pose_.height_sd_m);
+  return square(by_range * laser_.range_sd_m) + square(range_m * by_bearing * laser_.bearing_sd_rad) + square(by_tilt) * tilt_variance +
+         square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) + square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) +
+         square(pose_.height_sd_m);
 }
 
 }  // namespace curbline

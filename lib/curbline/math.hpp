@@ -38,4 +38,23 @@ struct SinCos {
 /// Error below 2e-7 for |x| <= 2 pi.
 SinCos sin_cos(float x);
 
+/// The same for angles that follow each other closely: within 2 mrad of the last full one by its Taylor series to the second order,
+/// whose rest is below 2e-9.
+class NearSinCos {
+ public:
+  SinCos at(float x) {
+    const float d = x - x_;
+    if (!(d < 0.002f && d > -0.002f)) {
+      x_ = x;
+      return last_ = sin_cos(x);
+    }
+    const float half_square = 0.5f * d * d;
+    return {last_.sin + d * last_.cos - half_square * last_.sin, last_.cos - d * last_.sin - half_square * last_.cos};
+  }
+
+ private:
+  float x_ = 0.0f;
+  SinCos last_{0.0f, 1.0f};
+};
+
 }  // namespace curbline

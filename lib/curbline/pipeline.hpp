@@ -23,7 +23,9 @@
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/status.hpp"
+#include "curbline/tilt_latency.hpp"
 #include "curbline/tilt_track.hpp"
+#include "curbline/workspace.hpp"
 
 namespace curbline {
 
@@ -75,10 +77,12 @@ class Pipeline {
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
+  const TiltLatency& tilt_latency() const { return tilt_latency_; }
   const Settings& settings() const { return settings_; }
 
  private:
   Status place_line(const ScanLine& line, LineMotion& motion);
+  void compare_with_map(const Point& point, float growth_m_s);
   void move_window(float x_m, float y_m);
   void take_point(const Point& point);
   void follow_regions();
@@ -91,7 +95,9 @@ class Pipeline {
   float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;  ///< in the map frame, of the last line
   float ceiling_m_ = 0.0f;                     ///< points above are ignored, z of the map frame
   Counters counters_{};
+  float tilt_rate_rad_s_ = 0.0f;               ///< of the line in hand
   TiltTrack<limits> tilt_track_{};
+  TiltLatency tilt_latency_{};
   TiltSnapshot<limits> tilt_snapshot_{};
   PoseTrack<limits> pose_track_{};
   LineProjection<limits> line_projection_{};
@@ -100,6 +106,7 @@ class Pipeline {
   PlaneMixture<limits> plane_mixture_{};
   LabelField<limits> label_field_{};
   CurbTracer<limits> curb_tracer_{};
+  Workspace<limits> workspace_{};
 };
 
 template <Limits limits>
@@ -115,6 +122,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   robot_x_m_ = robot_y_m_ = 0.0f;
   ceiling_m_ = window.max_height_m;
   tilt_track_.init(settings.tilt);
+  tilt_latency_.init(settings.tilt, settings.pose);
   pose_track_.init(settings.pose);
   line_projection_.init(settings);
   dem_.init(window, settings.planes.prior, 0.0f, 0.0f);
@@ -162,8 +170,29 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
     move_window(robot.x(), robot.y());
   }
-  line_projection_.project(line, tilt_snapshot_, motion, counters_, take);
+  line_projection_.project(line, tilt_snapshot_, motion, counters_, [&](const Point& point, float growth_m_s) {
+    compare_with_map(point, growth_m_s);
+    take(point);
+  });
+  tilt_latency_.end_line(tilt_rate_rad_s_);
   return Status::ok;
+}
+
+/// Where an earlier sweep has been: by the slope of the cell's plane from its centroid to the point.
+template <Limits limits>
+void Pipeline<limits>::compare_with_map(const Point& point, float growth_m_s) {
+  const int slot = dem_.mapped_before(point.x_m, point.y_m);
+  if (slot < 0) return;
+  const Cell& cell = dem_.cell(slot);
+  const Label<limits> label = label_field_.label(slot);
+  if (label == no_label<limits>) return;
+  const Plane& plane = plane_mixture_.plane(label);
+  const float x = point.x_m - dem_.origin_x_m(), y = point.y_m - dem_.origin_y_m();
+  const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
+  const float rise = plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
+  const PlanePrior& prior = settings_.planes.prior;
+  const float variance_m2 = point.variance_m2 + prior.texture_m2 + prior.noise_m2 / cell.weight;
+  tilt_latency_.compare(point.z_m - cell.height_m - rise, variance_m2, growth_m_s);
 }
 
 /// Everything that can be wrong with a line, before anything is changed; the tilt snapshot and the motion for it.
@@ -179,11 +208,16 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion) {
     motion = {make_transform(first), make_transform(last), false};
   }
   if (settings_.tilt.fixed) return Status::ok;
-  tilt_track_.snapshot(tilt_snapshot_);
-  const bool any = tilt_snapshot_.at(line.time_ns).source != TiltAngle::Source::none ||
-                   tilt_snapshot_.at(last_beam_ns).source != TiltAngle::Source::none;
+  tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
+  const TiltAngle first = tilt_snapshot_.at(line.time_ns), last = tilt_snapshot_.at(last_beam_ns);
   tilt_snapshot_.rewind();
-  return any ? Status::ok : Status::no_tilt;
+  if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return Status::no_tilt;
+  const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
+  tilt_rate_rad_s_ = any.rate_rad_s;
+  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s);
+  if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
+  return Status::ok;
 }
 
 template <Limits limits>
@@ -238,14 +272,15 @@ int Pipeline<limits>::settle(int passes) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_regions() {
-  segmentation_.update(dem_, counters_);
-  plane_mixture_.update(dem_, segmentation_, [this](int slot) { return label_field_.label(slot); }, counters_);
+  auto& work = workspace_.segmentation();
+  segmentation_.update(dem_, work, counters_);
+  plane_mixture_.update(dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
 }
 
 /// E-step, and the M-step if planes come from responsibilities. Returns how many labels changed.
 template <Limits limits>
 int Pipeline<limits>::follow_labels(FieldScope scope) {
-  const int changed = label_field_.update(dem_, plane_mixture_, scope, counters_);
+  const int changed = label_field_.update(dem_, plane_mixture_, scope, workspace_.visits(), counters_);
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
       const auto belief = label_field_.belief(dem_, i, j);
@@ -260,7 +295,8 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), counters_);
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(),
+                     workspace_.borders(), counters_);
 }
 
 template <Limits limits>

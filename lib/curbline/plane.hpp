@@ -2,6 +2,10 @@
 // Moments are about the mean (Chan, Golub and LeVeque 1979), so that float is enough wherever the window is.
 #pragma once
 
+#include <array>
+
+#include "curbline/math.hpp"
+
 namespace curbline {
 
 /// Weighted moments of points (x, y, z), metres in the window's frame. 48 bytes.
@@ -15,6 +19,8 @@ struct PlaneMoments {
 
   /// Merges two sets of points; exact up to rounding, about 30 operations.
   void add(const PlaneMoments& other);
+  /// The same for one cell, whose points lie at one place: its scatter is that of heights alone.
+  void add_cell(const PlaneMoments& cell);
 };
 
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
@@ -26,9 +32,30 @@ struct PlanePrior {
 };
 // The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
 
-/// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between
-/// partitions of the same points. About 80 operations and 3 logarithms.
-float log_evidence(const PlaneMoments& moments, const PlanePrior& prior);
+/// How well one plane explains points; what depends on the prior alone is computed once.
+class PlaneEvidence {
+ public:
+  PlaneEvidence() : PlaneEvidence(PlanePrior{}) {}
+  explicit PlaneEvidence(const PlanePrior& prior);
+
+  /// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between partitions of the
+  /// same points. About 60 operations and 2 logarithms.
+  float log_evidence(const PlaneMoments& moments) const;
+
+  /// The share of a region in the posterior of a partition of the cells under a Dirichlet process with alpha = 1: its evidence times
+  /// Gamma(cells).
+  float score(const PlaneMoments& moments) const { return log_evidence(moments) + log_gamma_of(moments.cells); }
+
+ private:
+  float log_gamma_of(float cells) const {
+    const auto n = static_cast<unsigned>(cells);
+    return n < log_gamma_.size() ? log_gamma_[n] : log_gamma(cells);
+  }
+
+  float noise_m2_, degrees_;
+  float constant_;                        ///< of every plane
+  std::array<float, 64> log_gamma_{};     ///< of whole numbers
+};
 
 /// A fitted plane with the uncertainty of its height.
 struct Plane {

@@ -1,6 +1,6 @@
 // The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become planes
 // again and take the label with which their cells overlap most, so that a plane keeps its label while it grows, is
-// cut and merged; a label that no region took dies. Cost: three passes over the window, K^2 for the matching.
+// cut and merged; a label that no region took dies. Cost: two passes over the window, K^3 for the matching.
 #pragma once
 
 #include <array>
@@ -33,6 +33,7 @@ class PlaneMixture {
     settings_ = settings;
     planes_.fill(Plane{});
     fresh_.fill(false);
+    any_fresh_ = any_relabelled_ = false;
     region_label_.fill(none);
     relabelled_.fill(0);
   }
@@ -40,7 +41,8 @@ class PlaneMixture {
   /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
   /// label_of(slot) is the cell's label up to now, none if it has none yet.
   template <typename LabelOf>
-  void update(const Dem<limits>& dem, const Segmentation<limits>& segmentation, LabelOf&& label_of, Counters& counters);
+  void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, LabelOf&& label_of,
+              Counters& counters);
 
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label, responsibility)
   /// for each label that a cell may bear.
@@ -65,105 +67,98 @@ class PlaneMixture {
   LabelType region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
   /// True if that changed in the last update().
   bool relabelled(int slot) const { return relabelled_[static_cast<std::size_t>(slot)] != 0; }
-  /// Cells that planes claim, together.
-  float cells() const { return cells_; }
+  bool any_fresh() const { return any_fresh_; }
+  bool any_relabelled() const { return any_relabelled_; }
   PlaneUpdate mode() const { return settings_.update; }
 
  private:
+  using Node = typename RegionGraph<limits>::Index;
   struct Candidate {
-    Slot<limits> region;
-    std::uint32_t cells;
+    Node node;
+    const PlaneMoments* moments;
   };
-  int largest_regions(const Dem<limits>& dem, const Segmentation<limits>& segmentation, Counters& counters);
+  int largest_regions(const typename Segmentation<limits>::Work& work, Counters& counters);
+  void forget_changes();
   void match(int regions);
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
   std::array<bool, limits.planes> fresh_{};
-  float cells_ = 0.0f;
+  bool any_fresh_ = false, any_relabelled_ = false;
   std::array<LabelType, Dem<limits>::capacity> region_label_{};
   std::array<std::uint8_t, Dem<limits>::capacity> relabelled_{};
 
   // Working memory of one update().
-  std::array<Slot<limits>, Dem<limits>::capacity> count_{};  ///< cells of a region, then its rank + 1
+  std::array<LabelType, limits.regions> rank_{};  ///< of a region's node by size, `none` if it is too small
   std::array<Candidate, limits.planes> largest_{};
-  std::array<PlaneMoments, limits.planes> moments_{};
   std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap_{};  ///< [rank][label], cells
   std::array<LabelType, limits.planes> label_of_rank_{};
 };
 
 template <Limits limits>
 template <typename LabelOf>
-void PlaneMixture<limits>::update(const Dem<limits>& dem, const Segmentation<limits>& segmentation, LabelOf&& label_of,
-                                  Counters& counters) {
-  const int regions = largest_regions(dem, segmentation, counters);
-  const auto rank_of = [&](int slot) { return static_cast<int>(count_[segmentation.region(slot)]) - 1; };
-  const auto for_each_cell = [&](auto&& visit) {
-    for (int i = 0; i < dem.rows(); ++i) {
-      for (int j = 0; j < dem.cols(); ++j) {
-        const int s = dem.slot(i, j);
-        if (dem.cell(s).valid()) visit(i, j, s);
-      }
-    }
-  };
-
-  moments_.fill(PlaneMoments{});
+void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
+                                  LabelOf&& label_of, Counters& counters) {
+  forget_changes();
+  if (!dem.any_touched()) return;
+  const int regions = largest_regions(work, counters);
   for (auto& row : overlap_) row.fill(0);
-  for_each_cell([&](int i, int j, int s) {
-    const int rank = rank_of(s);
-    if (rank < 0) return;
-    const auto r = static_cast<std::size_t>(rank);
-    moments_[r].add(dem.moments(i, j, dem.cell(s)));
-    // A cell that still waits for its label counts for the plane that its region had.
-    const LabelType old = label_of(s) != none ? label_of(s) : region_label_[static_cast<std::size_t>(s)];
-    if (old != none) ++overlap_[r][old];
+  const auto rank_of = [&](int slot) { return rank_[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])]; };
+  dem.for_each_valid([&](int, int, int s) {
+    const LabelType rank = rank_of(s);
+    if (rank == none) return;
+    // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
+    const LabelType before = region_label_[static_cast<std::size_t>(s)];
+    const LabelType old = before != none ? before : label_of(s);
+    if (old != none) ++overlap_[rank][old];
   });
 
   match(regions);
-  cells_ = 0.0f;
   for (int r = 0; r < regions; ++r) {
     const auto n = static_cast<std::size_t>(r);
     Plane& plane = planes_[label_of_rank_[n]];
-    const auto cells = static_cast<float>(largest_[n].cells);
-    cells_ += cells;
+    const PlaneMoments& moments = *largest_[n].moments;
     if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label_of_rank_[n]]) continue;
-    plane = fit_plane(moments_[n], cells, settings_.prior);
+    plane = fit_plane(moments, moments.cells, settings_.prior);
   }
 
-  for_each_cell([&](int, int, int s) {
-    const int rank = rank_of(s);
-    const LabelType label = rank < 0 ? none : label_of_rank_[static_cast<std::size_t>(rank)];
-    relabelled_[static_cast<std::size_t>(s)] = region_label_[static_cast<std::size_t>(s)] != label;
-    region_label_[static_cast<std::size_t>(s)] = label;
+  dem.for_each_valid([&](int, int, int s) {
+    const LabelType rank = rank_of(s);
+    const LabelType label = rank == none ? none : label_of_rank_[rank];
+    LabelType& now = region_label_[static_cast<std::size_t>(s)];
+    if (now == label) return;
+    now = label;
+    relabelled_[static_cast<std::size_t>(s)] = 1;
+    any_relabelled_ = true;
   });
 }
 
-/// Counts the cells of each region, keeps the largest in largest_, and leaves each region's rank + 1 (0: none) in count_.
 template <Limits limits>
-int PlaneMixture<limits>::largest_regions(const Dem<limits>& dem, const Segmentation<limits>& segmentation, Counters& counters) {
-  count_.fill(0);
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const int s = dem.slot(i, j);
-      if (dem.cell(s).valid()) ++count_[segmentation.region(s)];
-    }
-  }
+void PlaneMixture<limits>::forget_changes() {
+  if (any_relabelled_) relabelled_.fill(0);
+  any_relabelled_ = false;
+  fresh_.fill(false);
+  any_fresh_ = false;
+}
+
+/// Keeps the largest regions in largest_ and their ranks in rank_.
+template <Limits limits>
+int PlaneMixture<limits>::largest_regions(const typename Segmentation<limits>::Work& work, Counters& counters) {
+  rank_.fill(none);
   int kept = 0;
-  for (std::size_t region = 0; region < count_.size(); ++region) {
-    const std::uint32_t cells = count_[region];
-    count_[region] = 0;
-    if (static_cast<float>(cells) < settings_.min_cells) continue;
+  Segmentation<limits>::for_each_region(work, [&](Node node, const PlaneMoments& moments) {
+    if (moments.cells < settings_.min_cells) return;
     if (kept == limits.planes) {
       ++counters.planes_full;
-      if (largest_[static_cast<std::size_t>(kept - 1)].cells >= cells) continue;
+      if (largest_[static_cast<std::size_t>(kept - 1)].moments->cells >= moments.cells) return;
     } else {
       ++kept;
     }
     auto place = static_cast<std::size_t>(kept - 1);
-    for (; place > 0 && largest_[place - 1].cells < cells; --place) largest_[place] = largest_[place - 1];
-    largest_[place] = {static_cast<Slot<limits>>(region), cells};
-  }
-  for (int r = 0; r < kept; ++r) count_[largest_[static_cast<std::size_t>(r)].region] = static_cast<Slot<limits>>(r + 1);
+    for (; place > 0 && largest_[place - 1].moments->cells < moments.cells; --place) largest_[place] = largest_[place - 1];
+    largest_[place] = {node, &moments};
+  });
+  for (int r = 0; r < kept; ++r) rank_[largest_[static_cast<std::size_t>(r)].node] = static_cast<LabelType>(r);
   return kept;
 }
 
@@ -189,46 +184,41 @@ void PlaneMixture<limits>::match(int regions) {
     label_of_rank_[best_rank] = static_cast<LabelType>(best_label);
     taken[best_label] = true;
   }
-  fresh_.fill(false);
   std::size_t free = 0;
   for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
     if (label_of_rank_[r] != none) continue;
     while (taken[free]) ++free;
     taken[free] = true;
-    fresh_[free] = true;
+    fresh_[free] = any_fresh_ = true;
     label_of_rank_[r] = static_cast<LabelType>(free);
   }
   for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
     if (taken[l] || !planes_[l].alive()) continue;
     planes_[l] = Plane{};
-    fresh_[l] = true;
+    fresh_[l] = any_fresh_ = true;
   }
 }
 
 template <Limits limits>
 template <typename ForEachBelief>
 void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief) {
+  std::array<PlaneMoments, limits.planes> moments{};
   std::array<float, limits.planes> cells{};
-  moments_.fill(PlaneMoments{});
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const int s = dem.slot(i, j);
-      if (!dem.cell(s).valid()) continue;
-      const PlaneMoments cell = dem.moments(i, j, dem.cell(s));
-      for_each_belief(i, j, [&](int label, float responsibility) {
-        PlaneMoments share = cell;
-        share.points *= responsibility;
-        share.weight *= responsibility;
-        share.zz *= responsibility;
-        moments_[static_cast<std::size_t>(label)].add(share);
-        cells[static_cast<std::size_t>(label)] += responsibility;
-      });
-    }
-  }
+  dem.for_each_valid([&](int i, int j, int s) {
+    const PlaneMoments cell = dem.moments(i, j, dem.cell(s));
+    for_each_belief(i, j, [&](int label, float responsibility) {
+      PlaneMoments share = cell;
+      share.points *= responsibility;
+      share.weight *= responsibility;
+      share.zz *= responsibility;
+      moments[static_cast<std::size_t>(label)].add_cell(share);
+      cells[static_cast<std::size_t>(label)] += responsibility;
+    });
+  });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
     if (!planes_[l].alive() || cells[l] < 3.0f) continue;
-    planes_[l] = fit_plane(moments_[l], cells[l], settings_.prior);
+    planes_[l] = fit_plane(moments[l], cells[l], settings_.prior);
   }
 }
 

@@ -1,6 +1,7 @@
 // Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best gain
-// first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes. This is
-// working memory of one call: nothing in it outlives merge().
+// first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes. Lazy: a merge leaves
+// the gains of its neighbours as they were, to be computed anew when they come up or when nothing else gains. That takes a fifth
+// of the evidences. This is working memory of one call: nothing in it outlives merge().
 #pragma once
 
 #include <array>
@@ -27,15 +28,16 @@ class RegionGraph {
   /// A new node without points, or `none` if the store is full.
   Index add_node();
   PlaneMoments& moments(Index node) { return node_[node].moments; }
+  const PlaneMoments& moments(Index node) const { return node_[node].moments; }
 
   /// Joins two nodes, once; false if the store is full. Cost: the links that `b` has.
   bool link(Index a, Index b);
 
-  /// Merges while the best gain is >= 0. Returns how many evidences it computed: at most links + sum of the degrees of
-  /// merged nodes. Cost of each: log_evidence and a heap move.
-  int merge(const PlanePrior& prior);
+  /// Merges until no gain is >= 0. Returns how many evidences it computed: nodes + links, and at most the degrees of merged nodes, a
+  /// few each as a rule. Cost of each: a PlaneEvidence and a heap move.
+  int merge(const PlaneEvidence& evidence);
 
-  /// The node that a node has become part of.
+  /// The node that a node has become part of. O(1) after merge().
   Index root(Index node) const {
     while (node_[node].parent != node) node = node_[node].parent;
     return node;
@@ -44,7 +46,7 @@ class RegionGraph {
  private:
   struct Node {
     PlaneMoments moments;
-    float score;   ///< log evidence + lnGamma(points)
+    float score;   ///< PlaneEvidence::score
     Index parent;
     Index first;   ///< an end of a link, `none` if there is none
   };
@@ -56,16 +58,21 @@ class RegionGraph {
   struct Link {
     float gain;
     Index place;   ///< in the heap
+    bool stale;    ///< a node has grown since
   };
 
-  float score(const PlaneMoments& moments, const PlanePrior& prior) const {
-    return log_evidence(moments, prior) + log_gamma(moments.cells);
+  float gain(Index link, const PlaneEvidence& evidence) const {
+    const Node& a = node_[end_[2 * link].target];
+    const Node& b = node_[end_[2 * link + 1].target];
+    PlaneMoments both = a.moments;
+    both.add(b.moments);
+    return evidence.score(both) - a.score - b.score;
   }
-  float gain(Index a, Index b, const PlanePrior& prior) const {
-    PlaneMoments both = node_[a].moments;
-    both.add(node_[b].moments);
-    return score(both, prior) - node_[a].score - node_[b].score;
+  int refresh_all(const PlaneEvidence& evidence);
+  void build_heap() {
+    for (int p = static_cast<int>(heap_size_) / 2 - 1; p >= 0; --p) sift_down(static_cast<Index>(p));
   }
+  void merge_ends(Index link);
   void insert(Index node, Index end);
   void remove(Index node, Index end);
   void absorb(Index a, Index b);
@@ -77,11 +84,11 @@ class RegionGraph {
     link_[link].place = place;
   }
 
-  std::array<Node, limits.regions> node_{};
-  std::array<End, 2 * limits.links> end_{};
-  std::array<Link, limits.links> link_{};
-  std::array<Index, limits.links> heap_{};
-  std::array<Index, limits.regions> seen_{};  ///< end of the absorbing node that leads to a neighbour
+  std::array<Node, limits.regions> node_;
+  std::array<End, 2 * limits.links> end_;
+  std::array<Link, limits.links> link_;
+  std::array<Index, limits.links> heap_;
+  std::array<Index, limits.regions> seen_;  ///< end of the absorbing node that leads to a neighbour
   int nodes_ = 0;
   int links_ = 0;
   std::size_t heap_size_ = 0;
@@ -143,42 +150,66 @@ bool RegionGraph<limits>::link(Index a, Index b) {
 }
 
 template <Limits limits>
-int RegionGraph<limits>::merge(const PlanePrior& prior) {
-  int evidences = nodes_ + links_;
+int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
   for (Index n = 0; n < static_cast<Index>(nodes_); ++n) {
-    node_[n].score = score(node_[n].moments, prior);
+    node_[n].score = evidence.score(node_[n].moments);
     seen_[n] = none;
   }
   heap_size_ = static_cast<std::size_t>(links_);
   for (Index l = 0; l < static_cast<Index>(links_); ++l) {
-    link_[l].gain = gain(end_[2 * l].target, end_[2 * l + 1].target, prior);
+    link_[l].stale = true;
     set_heap(l, l);
   }
-  for (int p = links_ / 2 - 1; p >= 0; --p) sift_down(static_cast<Index>(p));
-
-  while (heap_size_ > 0 && link_[heap_[0]].gain >= 0.0f) {
+  int evidences = nodes_ + refresh_all(evidence);
+  while (heap_size_ > 0) {
     const Index best = heap_[0];
-    const Index a = end_[2 * best + 1].target, b = end_[2 * best].target;
-    const float both = link_[best].gain + node_[a].score + node_[b].score;
-    absorb(a, b);
-    node_[a].score = both;
-    const Index first = node_[a].first;
-    if (first == none) continue;
-    Index end = first;
-    do {
-      const auto l = static_cast<Index>(end / 2);
-      const float before = link_[l].gain;
-      link_[l].gain = gain(a, end_[end].target, prior);
+    Link& link = link_[best];
+    if (link.stale) {
+      link.gain = gain(best, evidence);
+      link.stale = false;
       ++evidences;
-      if (link_[l].gain > before) {
-        sift_up(link_[l].place);
-      } else {
-        sift_down(link_[l].place);
-      }
-      end = end_[end].next;
-    } while (end != first);
+      sift_down(0);
+    } else if (link.gain >= 0.0f) {
+      merge_ends(best);
+    } else {
+      // Nothing gains that is known; what was put off may.
+      const int refreshed = refresh_all(evidence);
+      if (refreshed == 0) break;
+      evidences += refreshed;
+    }
   }
+  for (Index n = 0; n < static_cast<Index>(nodes_); ++n) node_[n].parent = root(n);
   return evidences;
+}
+
+/// Computes all stale gains. Returns how many.
+template <Limits limits>
+int RegionGraph<limits>::refresh_all(const PlaneEvidence& evidence) {
+  int refreshed = 0;
+  for (std::size_t p = 0; p < heap_size_; ++p) {
+    Link& link = link_[heap_[p]];
+    if (!link.stale) continue;
+    link.gain = gain(heap_[p], evidence);
+    link.stale = false;
+    ++refreshed;
+  }
+  if (refreshed > 0) build_heap();
+  return refreshed;
+}
+
+template <Limits limits>
+void RegionGraph<limits>::merge_ends(Index link) {
+  const Index a = end_[2 * link + 1].target, b = end_[2 * link].target;
+  const float score = link_[link].gain + node_[a].score + node_[b].score;
+  absorb(a, b);
+  node_[a].score = score;
+  const Index first = node_[a].first;
+  if (first == none) return;
+  Index end = first;
+  do {
+    link_[end / 2].stale = true;
+    end = end_[end].next;
+  } while (end != first);
 }
 
 /// b becomes part of a: its links leave from a; a second link to the same neighbour and the one between a and b go.

@@ -35,7 +35,7 @@ class Segmentation {
 
   void init(const SegmentationSettings& settings, const PlanePrior& prior) {
     settings_ = settings;
-    prior_ = prior;
+    evidence_ = PlaneEvidence(prior);
     region_.fill(none);
     mark_.fill(0);
   }
@@ -47,40 +47,56 @@ class Segmentation {
     region_[s] = none;
   }
 
-  /// Follows the cells that were touched. Cost: one pass over the window, 16 cells a touched block, and the merging.
-  void update(const Dem<limits>& dem, Counters& counters);
+  /// Working memory of one update(), for the mixture to read right after it.
+  struct Work {
+    RegionGraph<limits> graph;
+    std::array<typename RegionGraph<limits>::Index, Dem<limits>::capacity> node_of_name;  ///< of a leaf or region
+    std::array<typename RegionGraph<limits>::Index, Dem<limits>::capacity> node_of_cell;
+    std::array<Region, limits.regions> region_of_node;
+  };
+
+  /// Follows the cells that were touched, in working memory that is the caller's. Cost: passes over the window, 16 cells a touched
+  /// block, and the merging; nothing if no cell was touched.
+  void update(const Dem<limits>& dem, Work& work, Counters& counters);
 
   Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
 
+  /// Calls visit(node, moments) for the node of each region, right after an update() that had something to do.
+  template <typename Visit>
+  static void for_each_region(const Work& work, Visit&& visit) {
+    for (int n = 0; n < work.graph.nodes(); ++n) {
+      const auto node = static_cast<Node>(n);
+      if (work.graph.root(node) == node) visit(node, work.graph.moments(node));
+    }
+  }
+
  private:
-  using Graph = RegionGraph<limits>;
+  using Node = typename RegionGraph<limits>::Index;
+  static constexpr Node no_node = RegionGraph<limits>::none;
   enum Mark : std::uint8_t { standing = 0, neighbour = 1, dissolved = 2 };
 
   void cut_touched_blocks(const Dem<limits>& dem);
   void dissolve_neighbours(const Dem<limits>& dem);
-  void build_graph(const Dem<limits>& dem, Counters& counters);
-  void name_regions(const Dem<limits>& dem);
+  void build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const;
+  void name_regions(const Dem<limits>& dem, Work& work);
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
   Region representative(std::size_t s) const { return region_[s] == none || mark_[region_[s]] != standing ? leaf_[s] : region_[s]; }
 
   SegmentationSettings settings_{};
-  PlanePrior prior_{};
+  PlaneEvidence evidence_{};
   std::array<Region, Dem<limits>::capacity> leaf_{};    ///< slot of the first cell of a cell's leaf
   std::array<Region, Dem<limits>::capacity> region_{};
   std::array<std::uint8_t, Dem<limits>::capacity> mark_{};  ///< of a region, under its name
-  std::array<typename Graph::Index, Dem<limits>::capacity> node_{};  ///< of a leaf or region, under its name; of a call
-  std::array<Region, limits.regions> name_{};  ///< of a node's region; of a call
-  Graph graph_{};
 };
 
 template <Limits limits>
-void Segmentation<limits>::update(const Dem<limits>& dem, Counters& counters) {
+void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, Counters& counters) {
+  if (!dem.any_touched()) return;
   cut_touched_blocks(dem);
   dissolve_neighbours(dem);
-  graph_.clear();
-  build_graph(dem, counters);
-  counters.evidences += static_cast<std::uint32_t>(graph_.merge(prior_));
-  name_regions(dem);
+  build_graph(dem, work, counters);
+  counters.evidences += static_cast<std::uint32_t>(work.graph.merge(evidence_));
+  name_regions(dem, work);
 }
 
 template <Limits limits>
@@ -122,42 +138,37 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
 }
 
 template <Limits limits>
-void Segmentation<limits>::build_graph(const Dem<limits>& dem, Counters& counters) {
-  node_.fill(Graph::none);
-  typename Graph::Index last = Graph::none;
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const auto s = static_cast<std::size_t>(dem.slot(i, j));
-      const Cell& cell = dem.cell(static_cast<int>(s));
-      if (!cell.valid()) continue;
-      auto& node = node_[representative(s)];
-      if (node == Graph::none) node = graph_.add_node();
-      if (node == Graph::none) {
-        ++counters.regions_full;
-        node = last;  // full: the leaf joins the one before it
-      }
-      graph_.moments(node).add(dem.moments(i, j, cell));
-      last = node;
+void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const {
+  RegionGraph<limits>& graph = work.graph;
+  graph.clear();
+  work.node_of_name.fill(no_node);
+  Node last = no_node;
+  dem.for_each_valid([&](int i, int j, int s) {
+    Node& node = work.node_of_name[representative(static_cast<std::size_t>(s))];
+    if (node == no_node) node = graph.add_node();
+    if (node == no_node) {
+      ++counters.regions_full;
+      node = last;  // full: the leaf joins the one before it
     }
-  }
+    graph.moments(node).add_cell(dem.moments(i, j, dem.cell(s)));
+    work.node_of_cell[static_cast<std::size_t>(s)] = last = node;
+  });
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
-    const auto a = node_[representative(link.from)], b = node_[representative(link.to)];
-    if (a != b && !graph_.link(a, b)) ++counters.links_full;
+    const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
+    if (a != b && !graph.link(a, b)) ++counters.links_full;
   });
 }
 
 template <Limits limits>
-void Segmentation<limits>::name_regions(const Dem<limits>& dem) {
-  name_.fill(none);
-  for (int i = 0; i < dem.rows(); ++i) {
-    for (int j = 0; j < dem.cols(); ++j) {
-      const auto s = static_cast<std::size_t>(dem.slot(i, j));
-      if (!dem.cell(static_cast<int>(s)).valid()) continue;
-      Region& name = name_[graph_.root(node_[representative(s)])];
-      if (name == none) name = static_cast<Region>(s);
-      region_[s] = name;  // read above for this cell only
-    }
-  }
+void Segmentation<limits>::name_regions(const Dem<limits>& dem, Work& work) {
+  const RegionGraph<limits>& graph = work.graph;
+  work.region_of_node.fill(none);
+  dem.for_each_valid([&](int, int, int slot) {
+    const auto s = static_cast<std::size_t>(slot);
+    Region& region = work.region_of_node[graph.root(work.node_of_cell[s])];
+    if (region == none) region = static_cast<Region>(s);
+    region_[s] = region;
+  });
   mark_.fill(standing);
 }
 

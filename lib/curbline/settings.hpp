@@ -46,6 +46,7 @@ struct TiltSettings {
   bool fixed = false;                  ///< true: no servo, the angle is fixed_tilt_rad
   float fixed_tilt_rad = 0.0f;         ///< (-pi, pi)
   float latency_s = 0.0f;              ///< an angle stamped t was true at t - latency_s; may be negative
+  float latency_sd_s = 0.01f;          ///< how far it may be off, and change from sweep to sweep; 0: it is not estimated
   float angle_sd_rad = 0.001f;         ///< of one reading: resolution, play
   float time_sd_s = 0.0f;              ///< jitter of its time stamp; times the tilt rate it is an angle error
   float max_extrapolation_s = 0.05f;   ///< beams further from the nearest reading are dropped
@@ -66,7 +67,7 @@ struct PoseSettings {
 struct SegmentationSettings {
   CellPrior cell{};
   float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; > 0
-  int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to 64
+  int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to max_link_reach
 };
 
 /// Where a plane's parameters come from.

@@ -39,10 +39,15 @@ class TiltSnapshot {
  private:
   template <Limits>
   friend class TiltTrack;
+  TiltAngle find(std::int64_t time_ns);
+
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
   int cursor_ = 0;  ///< readings_[cursor_] is the first later than the last question, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
+  // Between the two readings that the last question fell between: empty if it did not.
+  std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
+  float segment_angle_rad_ = 0.0f, segment_rate_rad_s_ = 0.0f;
 };
 
 /// Ring of the newest readings. One writer, one reader, neither ever waits.
@@ -66,7 +71,8 @@ class TiltTrack {
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
-  void snapshot(TiltSnapshot<limits>& out) const;
+  /// `offset_s` is added to TiltSettings::latency_s.
+  void snapshot(TiltSnapshot<limits>& out, float offset_s = 0.0f) const;
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
@@ -101,11 +107,11 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
 }
 
 template <Limits limits>
-void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out) const {
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) const {
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
-  const auto latency_ns = static_cast<std::int64_t>(settings_.latency_s * 1e9f);
+  const auto latency_ns = static_cast<std::int64_t>((settings_.latency_s + offset_s) * 1e9f);
   for (std::uint32_t k = 0; k < count; ++k) {
     const Entry& entry = entries_[(before - count + k) % capacity];
     const std::uint64_t low = entry.time_low.load(std::memory_order_relaxed);
@@ -122,12 +128,22 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out) const {
   for (std::uint32_t k = 0; k < kept; ++k) out.readings_[k] = out.readings_[count - kept + k];
   out.size_ = static_cast<int>(kept);
   out.cursor_ = 0;
+  out.segment_from_ns_ = out.segment_to_ns_ = 0;
   out.max_gap_ns_ = static_cast<std::int64_t>(settings_.max_gap_s * 1e9f);
   out.max_extrapolation_ns_ = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
 }
 
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
+  if (time_ns < segment_from_ns_ || time_ns >= segment_to_ns_) return find(time_ns);
+  const auto since_s = static_cast<float>(static_cast<std::int32_t>(time_ns - segment_from_ns_)) * 1e-9f;
+  return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_rate_rad_s_, segment_rate_rad_s_};
+}
+
+/// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in hand.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
+  segment_from_ns_ = segment_to_ns_ = 0;
   while (cursor_ < size_ && readings_[static_cast<std::size_t>(cursor_)].time_ns <= time_ns) ++cursor_;
   if (size_ == 0) return {};
   // The pair that brackets the time, or the one at the end that it lies beyond.
@@ -135,22 +151,24 @@ TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
   const int right = before_first ? 1 : after_last ? size_ - 1 : cursor_;
   const TiltReading& a = readings_[static_cast<std::size_t>(right > 0 ? right - 1 : 0)];
   const TiltReading& b = readings_[static_cast<std::size_t>(right < size_ ? right : size_ - 1)];
-  const TiltReading& nearest = before_first ? a : b;
-  const std::int64_t beyond = time_ns - nearest.time_ns;
-  if ((before_first || after_last) && (beyond > max_extrapolation_ns_ || -beyond > max_extrapolation_ns_)) return {};
-  const std::int64_t gap = b.time_ns - a.time_ns;
-  TiltAngle out;
-  out.source = (before_first || after_last) && beyond != 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated;
-  if (gap <= 0 || gap > max_gap_ns_) {
+  const TiltReading& nearest = after_last ? b : a;
+  const std::int64_t beyond_ns = time_ns - nearest.time_ns;
+  const bool outside = (before_first || after_last) && beyond_ns != 0;
+  if (outside && (beyond_ns > max_extrapolation_ns_ || -beyond_ns > max_extrapolation_ns_)) return {};
+  const std::int64_t gap_ns = b.time_ns - a.time_ns;
+  if (gap_ns <= 0 || gap_ns > max_gap_ns_) {
     // One reading alone, or two too far apart to say anything of the time between: good at its own moment only.
-    if (beyond != 0 || !(before_first || after_last)) return {};
-    out.angle_rad = nearest.angle_rad;
-    return out;
+    return beyond_ns == 0 ? TiltAngle{TiltAngle::Source::interpolated, nearest.angle_rad, 0.0f} : TiltAngle{};
   }
-  const float share = static_cast<float>(time_ns - a.time_ns) / static_cast<float>(gap);
-  out.angle_rad = a.angle_rad + share * (b.angle_rad - a.angle_rad);
-  out.rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(gap);
-  return out;
+  const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(gap_ns);
+  if (!outside && !after_last && gap_ns <= INT32_MAX) {
+    segment_from_ns_ = a.time_ns;
+    segment_to_ns_ = b.time_ns;
+    segment_angle_rad_ = a.angle_rad;
+    segment_rate_rad_s_ = rate_rad_s;
+  }
+  const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
+  return {outside ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
 }
 
 }  // namespace curbline

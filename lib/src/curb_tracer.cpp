@@ -13,6 +13,14 @@ const char* to_string(CurbKind kind) {
   return "unknown";
 }
 
+bool is_crease(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
+  const float across = border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
+  const float steep = across < 0.0f ? -across : across, step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
+  const float cell_sd_m = square_root(0.5f * (first.variance_m2 + second.variance_m2));
+  const bool meet_near = step_m <= steep * drawn.reach_m + 2.0f * drawn.height_sd_m;
+  return meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * (drawn.height_sd_m + cell_sd_m);
+}
+
 float square_root(float x) { return std::sqrt(x); }
 
 LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {

@@ -43,15 +43,41 @@ void PlaneMoments::add(const PlaneMoments& other) {
   cells += other.cells;
 }
 
-float log_evidence(const PlaneMoments& m, const PlanePrior& prior) {
-  const float ridge = prior.noise_m2;
+void PlaneMoments::add_cell(const PlaneMoments& cell) {
+  const float sum = weight + cell.weight;
+  if (!(cell.weight > 0.0f)) return;
+  const float dx = cell.x - x, dy = cell.y - y, dz = cell.z - z;
+  const float share = cell.weight / sum;
+  const float between = weight * share;
+  x += share * dx;
+  y += share * dy;
+  z += share * dz;
+  xx += between * dx * dx;
+  xy += between * dx * dy;
+  yy += between * dy * dy;
+  xz += between * dx * dz;
+  yz += between * dy * dz;
+  zz += cell.zz + between * dz * dz;
+  weight = sum;
+  points += cell.points;
+  cells += cell.cells;
+}
+
+PlaneEvidence::PlaneEvidence(const PlanePrior& prior)
+    : noise_m2_(prior.noise_m2),
+      degrees_(prior.degrees),
+      constant_(0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees)) {
+  for (std::size_t n = 1; n < log_gamma_.size(); ++n) log_gamma_[n] = log_gamma(static_cast<float>(n));
+}
+
+float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
+  const float ridge = noise_m2_;
   const Slopes slopes = solve(m, ridge);
-  const float shape = prior.degrees + 0.5f * m.points;
-  const float rate = prior.degrees + 0.5f * slopes.residual_m2 / prior.noise_m2;  // in units of the expected noise
-  // lnG(shape) - shape ln(rate) by Stirling, with the large parts joined so that float keeps the digits.
-  const float noise_term = shape * (log(shape / rate) - 1.0f) - 0.5f * log(shape) + (1.0f / 12) / shape;
+  const float shape = degrees_ + 0.5f * m.points;
+  const float rate = degrees_ + 0.5f * slopes.residual_m2 / noise_m2_;  // in units of the expected noise
   const float volume = (m.weight + ridge) * (slopes.determinant / (ridge * ridge * ridge));
-  return noise_term - 0.5f * log(volume) + 0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees);
+  // lnG(shape) - shape ln(rate) by Stirling, with the large parts joined so that float keeps the digits.
+  return shape * (log(shape / rate) - 1.0f) + (1.0f / 12) / shape - 0.5f * log(shape * volume) + constant_;
 }
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {

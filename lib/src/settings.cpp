@@ -35,7 +35,7 @@ bool good(const LaserSettings& l) {
 }
 
 bool good(const TiltSettings& t) {
-  return good(t.T_base_tilt) && good(t.T_tilt_laser) && within(t.fixed_tilt_rad, -pi, pi) && within(t.latency_s, -10.0f, 10.0f) &&
+  return good(t.T_base_tilt) && good(t.T_tilt_laser) && within(t.fixed_tilt_rad, -pi, pi) && within(t.latency_s, -10.0f, 10.0f) && within(t.latency_sd_s, 0.0f, 1.0f) &&
          not_negative(t.angle_sd_rad) && not_negative(t.time_sd_s) && within(t.max_extrapolation_s, 0.0f, 10.0f) &&
          positive(t.max_gap_s) && t.max_gap_s <= 10.0f && not_negative(t.roll_sd_rad) && not_negative(t.pitch_sd_rad);
 }
@@ -47,11 +47,11 @@ bool good(const PoseSettings& p) {
 bool good_inference(const Settings& s) {
   const PlanePrior& prior = s.planes.prior;
   return positive(s.segmentation.cell.degrees) && positive(s.segmentation.cell.variance_m2) && positive(s.segmentation.leaf_scale) &&
-         s.segmentation.link_reach >= 1 && s.segmentation.link_reach <= 64 && positive(prior.noise_m2) && not_negative(prior.texture_m2) &&
+         s.segmentation.link_reach >= 1 && s.segmentation.link_reach <= max_link_reach && positive(prior.noise_m2) && not_negative(prior.texture_m2) &&
          within(prior.degrees, 1.0f, 1e6f) && within(prior.common_share, 0.01f, 1.0f) &&
          s.planes.min_cells >= 3.0f && within(s.labels.coupling, 0.01f, 7.9f) &&
-         s.labels.link_reach >= 1 && s.labels.link_reach <= 64 && s.labels.refresh_rows >= 0 && s.labels.max_messages >= 4 &&
-         s.curbs.link_reach >= 1 && s.curbs.link_reach <= 64 && positive(s.curbs.max_roughness_m);
+         s.labels.link_reach >= 1 && s.labels.link_reach <= max_link_reach && s.labels.refresh_rows >= 0 && s.labels.max_messages >= 4 &&
+         s.curbs.link_reach >= 1 && s.curbs.link_reach <= max_link_reach && positive(s.curbs.max_roughness_m);
 }
 
 }  // namespace

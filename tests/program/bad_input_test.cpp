@@ -111,9 +111,9 @@ TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames a
 
 TEST_CASE("program: a laser that nods wants its tilt log, a robot that drives its poses") {
   const Recording logs = standing();
-  check_refused(replay_with(logs, "can", ""), "", "expected --can");
+  check_refused(replay_with(logs, "can", ""), logs.path("robot.toml") + ": ", "expected --can");
   const Recording drive("city", "fixed_tilt", {"--duration", "0.5"});
-  check_refused(replay_with(drive, "poses", ""), "", "expected --poses");
+  check_refused(replay_with(drive, "poses", ""), drive.path("robot.toml") + ": ", "expected --poses");
 }
 
 TEST_CASE("program: a CAN log without a frame of the servo is refused, with the id that was expected") {
@@ -156,6 +156,29 @@ TEST_CASE("program: a line of 100 MB is refused and not kept") {
     long_line(dir, name, "1 2 ");
     check_bounded(map_of(path, dir), of_short_line, path + ":1: ");
   }
+}
+
+TEST_CASE("program: a robot that is larger than the host's limits is refused with its file") {
+  const Recording logs = standing();
+  const std::string many =
+      logs.directory().write("r.toml", "[laser]\nbeams = 5000\nbeam_interval_s = 0.0\nbearing_step_rad = 0.001\n");
+  check_refused(replay_with(logs, "robot", many), many + ": ", "5000 beams; expected at most 2881");
+}
+
+TEST_CASE("program: a scene file is refused with its line and key") {
+  const TemporaryDirectory dir;
+  const auto error = [&](const std::string& text, const std::string& at) {
+    const std::string scene = dir.write("s.toml", text);
+    check_refused(curbline({"simulate", "--scene", scene, "--robot", shipped_robot("utm30lx"), "--out", dir.path("o")}),
+                  scene + at, "expected");
+  };
+  error("", ":");
+  error("[ground]\nz = \"low\"\n", ":2: ground.z is 'low'");
+  error("[ground]\nz = 0\n[robot]\nat = [0, 0]\nspeed = 1\n", ":5: unknown key robot.speed");
+  error("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n", ": ");  // the robot stands on nothing
+  check_refused(curbline({"simulate", "--scene", dir.path("none.toml"), "--robot", shipped_robot("utm30lx"), "--out",
+                          dir.path("o")}),
+                dir.path("none.toml") + ": cannot be read", "");
 }
 
 TEST_CASE("program: scan lines of another laser are refused") {

@@ -10,11 +10,11 @@ namespace {
 const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/";
 
 /// V-measure of a label file against the regions drawn by hand.
-double v_of(const std::string& labels, const std::vector<Region>& regions) {
+double v_of(const std::string& labels, const std::vector<Polygon>& regions) {
   std::vector<int> region, label;
   for (const LabelledCell& cell : read_labels(labels)) {
     for (std::size_t r = 0; r < regions.size(); ++r) {
-      if (!inside(regions[r], cell.x_m, cell.y_m)) continue;
+      if (!contains(regions[r], {cell.x_m, cell.y_m})) continue;
       region.push_back(static_cast<int>(r));
       label.push_back(cell.cell.label);
       break;
@@ -36,7 +36,7 @@ void check_same_score(const std::string& scan) {
                          shipped_robot("clausius")} +
                    options + Words{of_stream})
               .status == 0);
-  const std::vector<Region> regions = read_regions(data + scan + ".gt");
+  const std::vector<Polygon> regions = read_regions(data + scan + ".gt");
   const double v_cloud = v_of(of_cloud, regions), v_stream = v_of(of_stream, regions);
   INFO(scan << ": V " << v_cloud << " of the cloud, " << v_stream << " of the stream");
   CHECK(v_stream > v_cloud - 0.02);

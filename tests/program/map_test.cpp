@@ -107,6 +107,22 @@ TEST_CASE("program: each of the paper's steps finds the two planes") {
   }
 }
 
+TEST_CASE("program: the paper's peers find the curb, and no labels") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  for (const std::string method : {"canny", "gradient"}) {
+    INFO(method);
+    check_done(curbline(Words{"map", cloud, "--method", method} + window + files.options()));
+    double length = 0;
+    for (const MapCurb& c : read_curbs(files.curbs)) {
+      if (c.kind == "step_up" && std::abs(c.x0_m - 2.0) < 0.06) length += std::abs(c.y1_m - c.y0_m);
+    }
+    CHECK(length > 3.5);
+    for (const LabelledCell& cell : read_labels(files.labels)) CHECK(cell.cell.label == -1);
+  }
+}
+
 TEST_CASE("program: map takes --edge and --segment-scale, and a larger scale gives no more planes") {
   const TemporaryDirectory dir;
   const std::string cloud = cloud_with_a_step(dir);

@@ -86,6 +86,7 @@ void check_refused(const Outcome& outcome, const std::string& start, const std::
   CHECK(outcome.out.empty());
   CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
   CHECK(outcome.err.ends_with('\n'));
+  CHECK(outcome.err.find("expected") != std::string::npos);
   CHECK(outcome.err.starts_with(start));
   CHECK(outcome.err.find(part) != std::string::npos);
 }
@@ -102,6 +103,7 @@ Recording::Recording(const std::string& scene, const std::string& robot, const W
   const Outcome outcome = curbline(simulate + more);
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);
+  REQUIRE(outcome.err.empty());  // progress is for terminals
 }
 
 Words Recording::replay(const std::string& replaced, const std::string& by) const {

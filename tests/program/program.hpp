@@ -37,8 +37,8 @@ std::string shipped_robot(const std::string& name);
 /// Names of all that lies in a directory, sorted.
 Words names_in(const std::string& directory);
 
-/// CHECKs exit status 1, nothing on standard output, and one line on standard error that begins with `start` and holds
-/// `part`.
+/// CHECKs exit status 1, nothing on standard output, and one line on standard error that begins with `start`, holds
+/// `part` and says what was expected.
 void check_refused(const Outcome& outcome, const std::string& start, const std::string& part);
 
 /// CHECKs exit status 2, nothing on standard output, and `part` on standard error.

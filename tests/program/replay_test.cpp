@@ -57,6 +57,40 @@ TEST_CASE("program: curbs of 4 cm and more of the scenes are found, within half 
   }
 }
 
+/// Labels of a recording by a robot whose description has these lines of its tilt signal.
+std::string labels_by_signal(const std::string& lines) {
+  const TemporaryDirectory dir;
+  std::string text = read_file(shipped_robot("utm30lx"));
+  text.replace(text.find("node = 1\n"), 9, lines);
+  const std::string robot = dir.write("r.toml", text);
+  const Words simulate{"simulate", "--scene", "straight_curb", "--robot", robot, "--out", dir.path("run"), "--duration", "2"};
+  REQUIRE(curbline(simulate).status == 0);
+  const Outcome outcome = curbline({"replay", "--scans", dir.path("run/scans.carmen"), "--can", dir.path("run/can.log"), "--robot",
+                                    robot, "--labels", dir.path("labels.csv"), "--json"});
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto summary = nlohmann::json::parse(outcome.out);
+  CHECK(summary.at("can_malformed") == 0);
+  CHECK(summary.at("can_without_sync") == 0);
+  CHECK(summary.at("tilt_readings") > 200);
+  return read_file(dir.path("labels.csv"));
+}
+
+TEST_CASE("program: angles sampled on SYNC and sent later, or multiplexed, give the map of those sent at once") {
+  const std::string at_once = labels_by_signal("node = 1\n");
+  CHECK(lines_of(at_once).size() > 100);
+  CHECK(labels_by_signal("node = 1\nsync_id = 0x80\n") == at_once);
+  CHECK(labels_by_signal("node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n") == at_once);
+}
+
+TEST_CASE("program: positions without their SYNC are refused with what was expected") {
+  const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
+  std::string robot = read_file(shipped_robot("clausius"));
+  robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
+  const std::string path = logs.directory().write("sync.toml", robot);
+  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ", "expected id 0x80 before each");
+}
+
 TEST_CASE("program: a curb of 3 cm is found too") {
   const Recording logs("low_curb", "utm30lx");
   replay(logs);
@@ -106,25 +140,63 @@ TEST_CASE("program: a laser at a fixed tilt maps as the robot drives, without a 
 TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind the window") {
   const Recording logs("city", "utm30lx", {"--duration", "20"});
   replay(logs);
+  const nlohmann::json figures = evaluate(logs);
+  CHECK(figures.at("position_error_median_m").get<double>() <= place_m);
+  CHECK(figures.at("height_error_median_m").get<double>() <= height_m);
+  CHECK(figures.at("steps").at(1).at("tolerance_m") == 0.1);
+  CHECK(figures.at("steps").at(1).at("precision").get<double>() > 0.95);
+
   const std::vector<MapCurb> found = read_curbs(logs.path("curbs.csv"));
-  std::vector<TrueCurb> truth;
-  for (const TruthCurb& c : read_truth(logs.folder()).curbs) {
-    if (c.kind == "step")
-      truth.push_back({{c.from.x, c.from.y, c.to.x, c.to.y}, std::abs(c.from_step_m), std::abs(c.to_step_m)});
-  }
-  const auto anywhere = [](double, double) { return true; };
-  const ErrorSummary errors = curb_errors(found, truth, cell_m, anywhere);
-  CHECK(errors.position_median_m <= place_m);
-  CHECK(errors.height_median_m <= height_m);
-
-  std::vector<Segment> lines;
-  for (const TrueCurb& curb : truth) lines.push_back(curb.line);
-  CHECK(curb_rates(found, lines, cell_m, anywhere).precision > 0.95);
-
   for (const MapCurb& c : found) CHECK(std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m) > 0.02);
+  const Segment rim{10, 25, 13, 25};
+  CHECK(curb_rates(found, std::span(&rim, 1), cell_m, [](double, double) { return true; }).recall > 0.9);
+}
 
-  const auto on_rim = [](double x, double y) { return x > 10.0 && x < 13.0 && std::abs(y - 25.0) < 1e-3; };
-  CHECK(curb_rates(found, lines, cell_m, on_rim).recall > 0.9);
+TEST_CASE("program: evaluate scores the whole way of a drive, not only what its last window saw") {
+  const Recording logs("city", "utm30lx", {"--duration", "20"});
+  nlohmann::json figures = evaluate(logs);  // the window has left the bed behind
+  CHECK(figures.at("curbs").at(0).at("found") == true);
+  CHECK(figures.at("curbs").at(0).at("distance_at_detection_m").get<double>() > 1.0);
+  replay(logs);
+  CHECK(evaluate(logs).at("curbs_visible") == figures.at("curbs_visible"));
+}
+
+TEST_CASE("program: evaluate has a list of curbs when none is visible") {
+  const Recording logs("ramp", "utm30lx");
+  const nlohmann::json figures = evaluate(logs);
+  CHECK(figures.at("curbs") == nlohmann::json::array());
+  CHECK(figures.at("curbs_visible") == 0);
+  CHECK(figures.at("height_error_median_m").is_null());
+}
+
+TEST_CASE("program: evaluate says what the reference makes of the same sweep, and the paper's figure") {
+  const Recording logs("street", "utm30lx");
+  const nlohmann::json figures = evaluate(logs);
+  CHECK(figures.at("reference").at("v").get<double>() > 0.3);
+  CHECK(figures.at("reference").at("height_rmse_m").get<double>() ==
+        Approx(figures.at("height_rmse_m").get<double>()).margin(0.01));
+  CHECK(figures.at("paper").at("v") == 0.88);
+  const Outcome of_method = curbline({"evaluate", logs.folder(), "--json", "--method", "crf-em"});
+  REQUIRE(of_method.status == 0);
+  const nlohmann::json same = nlohmann::json::parse(of_method.out);
+  CHECK(same.at("v") == figures.at("reference").at("v"));
+  CHECK(same.at("steps") == figures.at("reference").at("steps"));
+}
+
+TEST_CASE("program: evaluate draws the map with the truth and the robot") {
+  const Recording logs("street", "utm30lx");
+  const Outcome outcome = curbline({"evaluate", logs.folder(), "--picture", logs.path("p.svg")});
+  REQUIRE(outcome.status == 0);
+  const std::string with = read_file(logs.path("p.svg"));
+  replay(logs, {"--picture", logs.path("q.svg")});
+  CHECK(with.find("<desc>curbs: ") != std::string::npos);
+  CHECK(with.size() > read_file(logs.path("q.svg")).size());  // which has no truth
+}
+
+TEST_CASE("program: a method that takes a whole cloud is refused for a drive") {
+  const Recording logs("city", "utm30lx", {"--duration", "2"});
+  check_refused(curbline({"evaluate", logs.folder(), "--method", "crf-em"}), logs.folder(),
+                "the robot drove; expected");
 }
 
 TEST_CASE("program: evaluate replays the logs itself, with the poses of a drive, and finds what replay does") {

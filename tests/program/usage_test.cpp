@@ -8,7 +8,7 @@ TEST_CASE("program: --help and the help of each command exit with 0") {
   const Outcome help = curbline({"--help"});
   CHECK(help.status == 0);
   CHECK(help.err.empty());
-  for (const std::string command : {"simulate", "replay", "map", "evaluate"}) {
+  for (const std::string command : {"simulate", "replay", "map", "evaluate", "dbc"}) {
     CHECK(help.out.find(command) != std::string::npos);
     const Outcome of_command = curbline({command, "--help"});
     CHECK(of_command.status == 0);
@@ -18,7 +18,7 @@ TEST_CASE("program: --help and the help of each command exit with 0") {
 
 TEST_CASE("program: no command, an unknown command and an unknown option are wrong usage") {
   check_wrong_usage(curbline({}), "required");
-  check_wrong_usage(curbline({"mop"}), "required");
+  check_wrong_usage(curbline({"mop"}), "mop is no command; expected one of simulate");
   check_wrong_usage(curbline({"--foo"}), "required");
   check_wrong_usage(curbline({"map", "a.xyz", "--foo"}), "--foo");
 }
@@ -68,7 +68,12 @@ TEST_CASE("program: a window of more than 512 cells is refused") {
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");
   check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "51.4"}), "512");
   check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "4", "--cell", "0.001"}), "512");
+  for (const std::string size : {"51.21", "51.24", "51.2001"}) {
+    check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", size, "4"}), "512");
+  }
   CHECK(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "51.2"}).status == 0);
+  // float's 0.7 is below 0.7, so that 512 cells of it would be less than 358.4 m
+  CHECK(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "358.4", "--cell", "0.7"}).status == 0);
 }
 
 TEST_CASE("program: a speed and a duration that make no sense are wrong usage") {

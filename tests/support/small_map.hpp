@@ -8,6 +8,7 @@
 #include "curbline/label_field.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/segmentation.hpp"
+#include "curbline/workspace.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline::test {
@@ -48,13 +49,16 @@ struct Stages {
     field.init(s.labels, s.planes.prior);
     tracer.init(s.curbs);
   }
-  void segment() { segmentation.update(dem, counters); }
+  void segment() {
+    segmented = &work.segmentation();
+    segmentation.update(dem, *segmented, counters);
+  }
   void mix() {
     mixture.update(
-        dem, segmentation, [this](int slot) { return field.label(slot); }, counters);
+        dem, *segmented, [this](int slot) { return field.label(slot); }, counters);
   }
   int label(bool all = true) {
-    const int changed = field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, counters);
+    const int changed = field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, work.visits(), counters);
     dem.clear_touched();
     return changed;
   }
@@ -65,12 +69,14 @@ struct Stages {
     label(all);
   }
   void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
-    tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, counters);
+    tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, work.borders(), counters);
   }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
 
   Counters counters{};
+  Workspace<limits> work{};
+  typename Segmentation<limits>::Work* segmented = nullptr;  ///< until label()
   Dem<limits> dem{};
   Segmentation<limits> segmentation{};
   PlaneMixture<limits> mixture{};

@@ -44,33 +44,9 @@ TEST_CASE("v-measure: nothing scores 0") {
   CHECK(v_measure(Labels{}, Labels{}) == 0);
 }
 
-//   (0,2)____(1,2)
-//    |        |
-//    |      (1,1)____(2,1)
-//    |________________|
-const Region corner{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-
-TEST_CASE("inside: a notch is outside, either way round") {
-  const Region turned(corner.rbegin(), corner.rend());
-  for (const Region& region : {corner, turned}) {
-    CHECK(inside(region, 0.5, 1.5));
-    CHECK(inside(region, 1.5, 0.5));
-    CHECK_FALSE(inside(region, 1.5, 1.5));
-    CHECK_FALSE(inside(region, -0.1, 1.0));
-    CHECK_FALSE(inside(region, 2.1, 0.5));
-  }
-}
-
-TEST_CASE("inside: a line through a corner is crossed once") {
-  const Region diamond{{1, 0}, {2, 1}, {1, 2}, {0, 1}};
-  CHECK(inside(diamond, 0.5, 1));
-  CHECK_FALSE(inside(diamond, -0.5, 1));
-  CHECK_FALSE(inside(diamond, 2.5, 1));
-}
-
 TEST_CASE("regions of cells: a cell belongs by its centre, to the first region that holds it") {
   const Grid grid{0, 0, 1, 1, 3, 1};
-  const Region wide{{0, 0}, {1.6, 0}, {1.6, 1}, {0, 1}}, left{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const Polygon wide{{0, 0}, {1.6, 0}, {1.6, 1}, {0, 1}}, left{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   CHECK(regions_of_cells(grid, std::vector{wide, left}) == Labels{0, 0, -1});
   CHECK(regions_of_cells(grid, std::vector{left, wide}) == Labels{0, 1, -1});
 }
@@ -154,62 +130,6 @@ TEST_CASE("curb rates: nothing found or nothing to find scores 0") {
   const std::vector<Segment> truth{{0, 0, 2, 0}};
   CHECK(curb_rates({}, truth, 0.1, everywhere).f1 == 0);
   CHECK(curb_rates(std::vector{piece(0, 0, 1, 0)}, {}, 0.1, everywhere).f1 == 0);
-}
-
-TEST_CASE("curb matching: a curb bears the errors of the pieces nearest to it") {
-  const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.12, 0.12}, {{0, 0.3, 2, 0.3}, 0.05, 0.05}};
-  const std::vector<MapCurb> found{piece(0, 0.02, 2, 0.02, 0.11), piece(0, 0.26, 1, 0.26, -0.08)};
-  const auto matches = match_curbs(found, truth, 0.29, everywhere);
-  REQUIRE(matches.size() == 2);
-  CHECK(matches[0].covered == Approx(1));
-  CHECK(matches[0].position_error_m == Approx(0.02));
-  CHECK(matches[0].height_m == Approx(0.11));
-  CHECK(matches[0].height_error_m == Approx(0.01));
-  CHECK(matches[1].position_error_m == Approx(0.04));
-  CHECK(matches[1].height_error_m == Approx(0.03));  // a step down of 8 cm is one of 8 cm
-}
-
-TEST_CASE("curb matching: a missed curb is covered by nothing and has no errors") {
-  const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.12, 0.12}};
-  const auto matches = match_curbs(std::vector{piece(0, 1, 2, 1)}, truth, 0.2, everywhere);
-  CHECK(matches[0].visible_m == Approx(2));
-  CHECK(matches[0].covered == 0);
-  CHECK(std::isnan(matches[0].position_error_m));
-  CHECK(std::isnan(matches[0].height_error_m));
-}
-
-TEST_CASE("curb matching: what the robot did not see is neither visible nor missed") {
-  const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.1, 0.1}, {{5, 0, 6, 0}, 0.1, 0.1}};
-  const auto matches =
-      match_curbs(std::vector{piece(0, 0, 0.5, 0)}, truth, 0.01, [](double x, double) { return x < 1; });
-  CHECK(matches[0].visible_m == Approx(1));
-  CHECK(matches[0].covered == Approx(0.5));
-  CHECK(matches[1].visible_m == 0);
-  CHECK(matches[1].covered == 0);
-}
-
-TEST_CASE("curb matching: a lowered curb's step is taken where the piece lies") {
-  const std::vector<TrueCurb> truth{{{0, 0, 2, 0}, 0.12, 0.02}};
-  const std::vector<MapCurb> found{piece(0.5, 0, 0.54, 0, 0.12 - 0.05 * 0.52)};  // one sample, at x = 0.52
-  CHECK(match_curbs(found, truth, 0.1, everywhere)[0].height_error_m == Approx(0).margin(1e-12));
-}
-
-TEST_CASE("curb errors: median and 95 % over all samples that lie on a curb") {
-  const std::vector<TrueCurb> truth{{{0, 0, 10, 0}, 0.1, 0.1}};
-  // 9 m lie 1 cm off and 2 mm too high, 1 m lies 5 cm off and 3 cm too low; the last piece matches nothing.
-  const std::vector<MapCurb> found{piece(0, 0.01, 9, 0.01, 0.102), piece(9, 0.05, 10, 0.05, 0.07),
-                                   piece(0, 3, 9, 3, 0.5)};
-  const ErrorSummary errors = curb_errors(found, truth, 0.1, everywhere);
-  CHECK(errors.position_median_m == Approx(0.01));
-  CHECK(errors.position_95_m == Approx(0.05));
-  CHECK(errors.height_median_m == Approx(0.002));
-  CHECK(errors.height_95_m == Approx(0.03));
-}
-
-TEST_CASE("curb errors: no matched sample is no number") {
-  const ErrorSummary errors = curb_errors({}, std::vector<TrueCurb>{{{0, 0, 1, 0}, 0.1, 0.1}}, 0.1, everywhere);
-  CHECK(std::isnan(errors.position_median_m));
-  CHECK(std::isnan(errors.height_95_m));
 }
 
 }  // namespace

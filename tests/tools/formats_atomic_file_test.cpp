@@ -67,8 +67,10 @@ TEST_CASE("atomic file: a device is written to and not replaced") {
 
 TEST_CASE("atomic file: what cannot be written is refused by name") {
   const TemporaryDirectory dir;
-  CHECK(error_of([&] { AtomicFile(dir.path("none/a")); }) == "a: cannot be written: No such file or directory");
-  CHECK(error_of([&] { AtomicFile(dir.path(".")); }) == ".: cannot be written: it is a directory");
+  CHECK(error_of([&] { AtomicFile(dir.path("none/a")); }) ==
+        "a: cannot be written: No such file or directory; expected a file name in a folder to write to");
+  CHECK(error_of([&] { AtomicFile(dir.path(".")); }) ==
+        ".: cannot be written: it is a directory; expected a file name");
 }
 
 TEST_CASE("atomic file: a full disk is an error at commit") {

@@ -1,6 +1,7 @@
 #include <sstream>
 #include <vector>
 
+#include "can/servo_presets.hpp"
 #include "can/signal.hpp"
 #include "candump/candump.hpp"
 #include "formats/can_log.hpp"

@@ -54,7 +54,7 @@ TEST_CASE("carmen: a cut line is refused with its line number") {
     CHECK(error_in(dir, scan + scan.substr(0, length)).starts_with("s.carmen:2: "));
   }
   CHECK(error_in(dir, scan + scan.substr(0, scan.find(" 60.0 0.0"))) ==
-        "s.carmen:2: the line ends before a range (the file ends within this line)");
+        "s.carmen:2: the line ends before a range; expected one field more (the file ends within this line)");
 }
 
 TEST_CASE("carmen: a count that is not that of the ranges is refused") {
@@ -80,7 +80,7 @@ TEST_CASE("carmen: fields that are no finite numbers are refused by name") {
   CHECK(error_in(dir, with("-1.0", "left")) == "s.carmen:1: start_angle is \"left\"; expected a number");
   CHECK(error_in(dir, with("60.00", "-1")).starts_with("s.carmen:1: maximum_range is "));
   CHECK(error_in(dir, with("12.025", "now")) == "s.carmen:1: ipc_timestamp is \"now\"; expected a time in seconds");
-  CHECK(error_in(dir, with("12.030", "12.030 5")).starts_with("s.carmen:1: more fields than expected"));
+  CHECK(error_in(dir, with("12.030", "12.030 5")).starts_with("s.carmen:1: more fields, from"));
 }
 
 TEST_CASE("carmen: a time that goes back is refused, one that stays is not") {

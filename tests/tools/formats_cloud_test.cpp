@@ -51,7 +51,7 @@ TEST_CASE("cloud: text is read by blanks or commas, with a header or columns to 
 TEST_CASE("cloud: bad text is refused with line and field") {
   const TemporaryDirectory dir;
   const auto error = [&](const std::string& text) { return error_of([&] { read_cloud(dir.write("a.xyz", text)); }); };
-  CHECK(error("1 2 3\n1 2\n") == "a.xyz:2: the line ends before z");
+  CHECK(error("1 2 3\n1 2\n") == "a.xyz:2: the line ends before z; expected one field more");
   CHECK(error("1 2 3\n1 nan 3\n") == "a.xyz:2: y is \"nan\"; expected a finite number");
   CHECK(error("nan 2 3\n") == "a.xyz:1: x is \"nan\"; expected a finite number");
   CHECK(error("1 2 -inf\n") == "a.xyz:1: z is \"inf\"; expected a finite number");
@@ -60,7 +60,7 @@ TEST_CASE("cloud: bad text is refused with line and field") {
   CHECK(error("1,,3\n") == "a.xyz:1: y is \"\"; expected a number");
   CHECK(error("a,b,c\n1,2,3\n").starts_with("a.xyz:1: no such columns"));
   CHECK(error("x y z\n") == "a.xyz: no points; expected at least one");
-  CHECK(error("") == "a.xyz: the file is empty");
+  CHECK(error("") == "a.xyz: the file is empty; expected at least one line");
   CHECK(error_of([&] { read_cloud(dir.path("a.las")); }).starts_with("a.las: unknown kind of cloud"));
   CHECK(error_of([&] { read_cloud(dir.path("b.xyz")); }).starts_with("b.xyz: cannot be opened"));
 }
@@ -110,8 +110,9 @@ TEST_CASE("cloud: a PCD that is not what its header says is refused") {
             .starts_with("a.pcd:11: DATA is \"binary_compressed\"; expected ascii or binary"));
   CHECK(error(pcd_header(xyz_fields, 2, "ascii") + "1 2 3\n") == "a.pcd: the file ends after 1 points; expected 2");
   CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3\n1 2 3\n") ==
-        "a.pcd:13: more points than the 1 of the header");
-  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2\n") == "a.pcd:12: the line ends before z");
+        "a.pcd:13: more points; expected 1 as the header has it");
+  CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2\n") ==
+        "a.pcd:12: the line ends before z; expected one field more");
   CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3 4\n").starts_with("a.pcd:12: more fields"));
   CHECK(error(pcd_header(xyz_fields, 1000000000, "binary") + "abc") ==
         "a.pcd: the file ends after 0 points; expected 1000000000");
@@ -120,7 +121,8 @@ TEST_CASE("cloud: a PCD that is not what its header says is refused") {
         std::string::npos);
   CHECK(error(pcd_header("FIELDS x y z\nSIZE 4 4 2\nTYPE F F U\nCOUNT 1 1 1\n", 1, "ascii"))
             .find("field z has another type") != std::string::npos);
-  CHECK(error(pcd_header("FIELDS x y z\nSIZE 4 4\n", 1, "ascii")) == "a.pcd:4: the line ends before SIZE");
+  CHECK(error(pcd_header("FIELDS x y z\nSIZE 4 4\n", 1, "ascii")) ==
+        "a.pcd:4: the line ends before SIZE; expected one field more");
   CHECK(error("VERSION 0.5\n") == "a.pcd:1: VERSION is \"0.5\"; expected 0.7");
   CHECK(error("VERSION 0.7\nPONTS 3\n").starts_with("a.pcd:2: a key of the header is \"PONTS\""));
   CHECK(error("VERSION 0.7\n") == "a.pcd: the header has no DATA line; expected PCD 0.7");

@@ -49,8 +49,9 @@ TEST_CASE("line reader: a file without line ends is not read into memory") {
 
 TEST_CASE("line reader: missing, empty and unreadable files are refused by name") {
   const TemporaryDirectory dir;
-  CHECK(error_of([&] { lines_of(dir.path("none")); }) == "none: cannot be opened: No such file or directory");
-  CHECK(error_of([&] { lines_of(dir.write("empty", "")); }) == "empty: the file is empty");
+  CHECK(error_of([&] { lines_of(dir.path("none")); }) ==
+        "none: cannot be opened: No such file or directory; expected a file to read");
+  CHECK(error_of([&] { lines_of(dir.write("empty", "")); }) == "empty: the file is empty; expected at least one line");
   CHECK(error_of([&] { lines_of(dir.path("")); }).find("cannot be read: Is a directory") != std::string::npos);
 }
 
@@ -58,9 +59,10 @@ TEST_CASE("line reader: an error in a last line without an end says that the fil
   const TemporaryDirectory dir;
   LineReader source(dir.write("a", "one\ntwo"));
   source.next();
-  CHECK(error_of([&] { source.fail("bad"); }) == "a:1: bad");
+  CHECK(error_of([&] { source.fail("bad; expected good"); }) == "a:1: bad; expected good");
   source.next();
-  CHECK(error_of([&] { source.fail("bad"); }) == "a:2: bad (the file ends within this line)");
+  CHECK(error_of([&] { source.fail("bad; expected good"); }) ==
+        "a:2: bad; expected good (the file ends within this line)");
 }
 
 TEST_CASE("line reader: bytes behind the last line are read from where it ended") {

@@ -14,8 +14,8 @@ TEST_CASE("regions: polygons are apart by blank lines, millimetres become metres
   const auto regions = read_regions(dir.write("a.gt", "1406 1159\n11345 1859\n11979 -310\n\n\n0 0\n1 0\n1 1\n0 1"));
   REQUIRE(regions.size() == 2);
   CHECK(regions[0].size() == 3);
-  CHECK(regions[0][2].x_m == 11.979);
-  CHECK(regions[0][2].y_m == -0.310);
+  CHECK(regions[0][2].x == 11.979);
+  CHECK(regions[0][2].y == -0.310);
   CHECK(regions[1].size() == 4);
 }
 
@@ -23,7 +23,7 @@ TEST_CASE("regions: what is no polygon is refused with its line") {
   const TemporaryDirectory dir;
   const auto error = [&](const std::string& text) { return error_of([&] { read_regions(dir.write("a.gt", text)); }); };
   CHECK(error("0 0\n1 0\n\n0 0\n") == "a.gt:3: the polygon ends after 2 corners; expected at least 3");
-  CHECK(error("0 0\n1 0\n1\n") == "a.gt:3: the line ends before y");
+  CHECK(error("0 0\n1 0\n1\n") == "a.gt:3: the line ends before y; expected one field more");
   CHECK(error("0 0\n1 0\n1 1 1\n").starts_with("a.gt:3: more fields"));
   CHECK(error("0 0\nx 0\n") == "a.gt:2: x is \"x\"; expected a number");
   CHECK(error("\n").starts_with("a.gt: no region"));
@@ -35,8 +35,8 @@ TEST_CASE("regions: what is written is read back") {
   write_regions(text, {{{1.5, -2.25}, {3, 4}, {0.0005, 1}}, {{0, 0}, {1, 0}, {1, 1}}});
   const auto back = read_regions(dir.write("a.gt", text.str()));
   REQUIRE(back.size() == 2);
-  CHECK(back[0][0].y_m == -2.25);
-  CHECK(back[0][2].x_m == 0.0005);
+  CHECK(back[0][0].y == -2.25);
+  CHECK(back[0][2].x == 0.0005);
 }
 
 TEST_CASE("labels: one row a valid cell, at its centre, and back") {
@@ -91,10 +91,10 @@ TEST_CASE("labels and curbs: other columns and bad values are refused") {
   const auto label_error = [&](const std::string& text) {
     return error_of([&] { read_labels(dir.write("l.csv", text)); });
   };
-  CHECK(label_error("x,y\n").starts_with("l.csv:1: other columns than expected"));
+  CHECK(label_error("x,y\n").starts_with("l.csv:1: other columns; expected"));
   CHECK(label_error(labels + "0,0,0,0,0,1,0.5\n").starts_with("l.csv:2: points is \"0\""));
   CHECK(label_error(labels + "0,0,0,0,1,1,1.5\n") == "l.csv:2: probability is \"1.500000\"; expected 0 to 1");
-  CHECK(label_error(labels + "0,0,0,0,1,1\n") == "l.csv:2: the line ends before probability");
+  CHECK(label_error(labels + "0,0,0,0,1,1\n") == "l.csv:2: the line ends before probability; expected one field more");
   CHECK(label_error(labels + "0,0,0,0,1,1,1,1\n").starts_with("l.csv:2: more fields"));
   const std::string curbs = "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind\n";
   const auto curb_error = [&](const std::string& text) {

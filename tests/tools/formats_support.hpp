@@ -45,11 +45,16 @@ inline std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What BadInput says, without the directory; empty if nothing is thrown.
+inline bool says_what_was_expected(const BadInput& error) {
+  return std::string(error.what()).find("expected") != std::string::npos;
+}
+
+/// What BadInput says, without the directory; empty if nothing is thrown. CHECKs that it says what was expected.
 inline std::string error_of(const std::function<void()>& read) {
   try {
     read();
   } catch (const BadInput& error) {
+    CHECK(says_what_was_expected(error));
     const std::string what = error.what();
     const std::size_t name = what.substr(0, what.find(": ")).rfind('/');
     return name == std::string::npos ? what : what.substr(name + 1);
@@ -93,6 +98,7 @@ inline void survive_damage(const std::string& good, const std::string& file_name
       ++refused;
       if (std::string(error.what()).find('\n') != std::string::npos) FAIL("more than one line: " << error.what());
       if (std::string(error.what()).rfind(path, 0) != 0) FAIL("without the file's name: " << error.what());
+      if (!says_what_was_expected(error)) FAIL("without what was expected: " << error.what());
     }
   }
   CHECK(refused > 0);

@@ -50,8 +50,8 @@ TEST_CASE("trajectory: a quaternion near norm 1 is normalised, another one refus
 
 TEST_CASE("trajectory: cut lines, junk and times that go back are refused") {
   const TemporaryDirectory dir;
-  CHECK(error_in(dir, "1 0 0 0 0 0 0\n") == "p.tum:1: the line ends before qw");
-  CHECK(error_in(dir, "1 0 0 0 0 0 0 1 1\n").starts_with("p.tum:1: more fields than expected"));
+  CHECK(error_in(dir, "1 0 0 0 0 0 0\n") == "p.tum:1: the line ends before qw; expected one field more");
+  CHECK(error_in(dir, "1 0 0 0 0 0 0 1 1\n").starts_with("p.tum:1: more fields, from"));
   CHECK(error_in(dir, "1 0 nan 0 0 0 0 1\n") == "p.tum:1: ty is \"nan\"; expected a finite number");
   CHECK(error_in(dir, "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n").starts_with("p.tum:2: the time goes back"));
   CHECK(error_in(dir, "# none\n").starts_with("p.tum: no pose"));

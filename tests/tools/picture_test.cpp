@@ -145,6 +145,36 @@ TEST_CASE("picture: all parts lie on the page and none on another") {
   }
 }
 
+TEST_CASE("picture: in a wide window the panels lie one below the other and fill the page's width") {
+  const Page wide = lay_out(window(40, 512), {}), square = lay_out(window(40, 40), {});
+  CHECK(wide.heights.box.width > 1000);
+  CHECK(wide.planes.box.x == wide.heights.box.x);
+  CHECK(wide.planes.box.y > wide.heights.box.bottom() + bottom_room);
+  CHECK(square.planes.box.y == square.heights.box.y);
+}
+
+TEST_CASE("picture: in either layout a curb's height stands on both panels") {
+  for (const int cols : {40, 400}) {
+    Map map = window(40, cols);
+    for (MapCell& cell : map.cells) cell = {0, 0, 0, 1e-4, 1, 0, 1};
+    const double middle = map.grid.y0_m + 0.05 * cols;
+    map.curbs = {{2, middle - 1.9, 2, middle + 1.9, 0.12, 0.01, 1, "step_up"}};
+    const Seen with(map);
+    map.curbs[0].height_m = 0.001;  // no text
+    const Seen without(map);
+    for (const View* panel : {&with.page.heights, &with.page.planes}) {
+      int differ = 0;
+      for (double u = 0; u < panel->box.width; ++u) {
+        for (double v = 0; v < panel->box.height; ++v) {
+          const Pixel at{panel->box.x + u, panel->box.y + v};
+          differ += !same(with.at(at), without.at(at));
+        }
+      }
+      CHECK(differ > 50);
+    }
+  }
+}
+
 TEST_CASE("picture: beside a panel there is room for its numbers and the axis's name, in windows of any size") {
   const Surface scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
   const Context cr(cairo_create(scratch.get()));

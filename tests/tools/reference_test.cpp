@@ -10,6 +10,7 @@
 
 #include "evaluation/labels.hpp"
 #include "formats/cloud.hpp"
+#include "formats/regions.hpp"
 #include "reference/mixture.hpp"
 #include "reference_support.hpp"
 

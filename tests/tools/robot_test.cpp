@@ -109,6 +109,37 @@ TEST_CASE("robot: a servo is a preset, the words of a DBC file, or one changed b
   CHECK(own.order == can::ByteOrder::big);
 }
 
+TEST_CASE("robot: a drive that samples on SYNC names that frame's id") {
+  CHECK_FALSE(parsed("").tilt_sync_id);
+  CHECK(parsed("[tilt.signal]\nsync_id = 0x80\n").tilt_sync_id == 0x80);
+  CHECK(error_in("[tilt.signal]\nsync_id = 0x800\n") ==
+        "r.toml:2: tilt.signal.sync_id is 2048; expected a whole number from 0 to 2047");
+  CHECK(error_in("[tilt.signal]\nsync_id = 0x181\n") ==
+        "r.toml:2: tilt.signal.sync_id is the signal's own; expected that of the SYNC frame");
+}
+
+TEST_CASE("robot: a multiplexed tilt signal has a table for its multiplexor") {
+  CHECK_FALSE(parsed("").tilt_signal.multiplexor);
+  const std::string signal = "[tilt.signal]\nbyte_order = \"big\"\nstart_bit = 15\n[tilt.signal.multiplexor]\n";
+  const auto multiplexor = parsed(signal + "start_bit = 7\nlength = 4\nvalue = 3\n").tilt_signal.multiplexor;
+  REQUIRE(multiplexor);
+  CHECK(multiplexor->start_bit == 7);
+  CHECK(multiplexor->length == 4);
+  CHECK(multiplexor->value == 3);
+  CHECK(multiplexor->order == can::ByteOrder::big);
+  CHECK(parsed(signal + "byte_order = \"little\"\n").tilt_signal.multiplexor->order == can::ByteOrder::little);
+  CHECK(error_in(signal + "length = 4\nvalue = 16\n") ==
+        "r.toml:6: tilt.signal.multiplexor.value is 16; expected a whole number from 0 to 15");
+  CHECK(error_in(signal + "start = 4\n").starts_with("r.toml:5: unknown key tilt.signal.multiplexor.start; expected"));
+  CHECK(error_in(signal + "start_bit = 504\nlength = 16\n").starts_with("r.toml:5: tilt.signal.multiplexor.start_bit"));
+  CHECK(error_in("[tilt.signal]\nmultiplexor = 3\n") == "r.toml:2: tilt.signal.multiplexor is 3; expected a table");
+}
+
+TEST_CASE("robot: bits beyond a frame's 64 bytes are refused") {
+  CHECK(error_in("[tilt.signal]\nstart_bit = 490\n").starts_with("r.toml:2: tilt.signal.start_bit does not fit"));
+  CHECK(parsed("[tilt.signal]\nstart_bit = 480\n").tilt_signal.start_bit == 480);
+}
+
 TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands") {
   CHECK(error_in("nmae = \"x\"\n").starts_with("r.toml:1: unknown key nmae; expected one of "));
   CHECK(error_in("[laser]\n\nmodle = 1\n").starts_with("r.toml:3: unknown key laser.modle; expected one of "));
@@ -142,8 +173,9 @@ TEST_CASE("robot: values out of range are refused with the range") {
   CHECK(error_in("[laser]\nbearing_step_rad = 0\n").starts_with("r.toml:2: laser.bearing_step_rad is 0"));
   CHECK(error_in("[laser]\nbearing_step_rad = 0.1\n").starts_with("r.toml:2: laser.bearing_step_rad times the beams"));
   CHECK(error_in("[laser]\nscan_rate_hz = 100\n").starts_with("r.toml:1: laser.beam_interval_s times the beams"));
-  CHECK(error_in("[laser]\nmin_range_m = 50\n").starts_with("r.toml:1: laser.max_range_m is not above min_range_m"));
-  CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad"));
+  CHECK(error_in("[laser]\nmin_range_m = 50\n")
+            .starts_with("r.toml:1: laser.max_range_m is not above min_range_m; expected"));
+  CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad; expected"));
   CHECK(error_in("[tilt.signal]\nservo = \"esc\"\n")
             .starts_with("r.toml:2: tilt.signal.servo is \"esc\"; expected cia402, "));
   CHECK(error_in("[tilt.signal]\nnode = 128\n") ==

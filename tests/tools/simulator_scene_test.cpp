@@ -33,8 +33,9 @@ const std::string bump = "[ground]\nz = 0\n[[region]]\nname = 'bump'\nrectangle 
 
 TEST_CASE("scene: every scene that ships can be read and stood on") {
   const std::vector<std::string> names = shipped_scenes();
-  for (const char* name : {"straight_curb", "t_junction", "roundabout", "inclined_planes", "lowered_curb",
-                           "curb_above_below", "steps", "low_curb", "ramp", "city", "street"}) {
+  for (const char* name :
+       {"straight_curb", "t_junction", "roundabout", "inclined_planes", "lowered_curb", "curb_above_below",
+        "unfavourable_viewpoint", "steps", "low_curb", "ramp", "city", "street"}) {
     INFO(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);
     const Scene scene = in_map_frame(find_scene(name));
@@ -43,20 +44,46 @@ TEST_CASE("scene: every scene that ships can be read and stood on") {
   }
 }
 
+TEST_CASE("scene: a random street is one for all its seeds, can be stood on and has a curb through the window") {
+  CHECK(find_scene("random:7").source == find_scene("random:7").source);
+  CHECK(find_scene("random:7").source != find_scene("random:8").source);
+  int low = 0, bends = 0;
+  for (int seed = 0; seed < 60; ++seed) {
+    INFO("random:" << seed);
+    const Scene scene = in_map_frame(find_scene("random:" + std::to_string(seed)));
+    CHECK_NOTHROW(RobotMotion(scene));
+    for (const Obstacle& obstacle : scene.obstacles) CHECK_FALSE(contains(obstacle.outline, {0, 0}));
+    double inside_m = 0, lowest_m = 1;
+    for (const TruthCurb& curb : make_truth(scene, 0).curbs) {
+      const Point2 middle{(curb.from.x + curb.to.x) / 2, (curb.from.y + curb.to.y) / 2};
+      if (curb.kind != "step" || !crosses({0, -2, 4, 2}, curb.from, curb.to)) continue;
+      inside_m += length_m(curb);
+      if (std::hypot(middle.x - 2, middle.y) < 2) lowest_m = std::min(lowest_m, curb.height_m);
+    }
+    CHECK(inside_m > 1);
+    CHECK(lowest_m < 0.16);
+    low += lowest_m < 0.04;
+    bends += scene.source.find("bends") != std::string::npos;
+  }
+  CHECK(low > 10);
+  CHECK(bends > 10);
+}
+
 TEST_CASE("scene: a name that is not known is refused with those that are") {
   REQUIRE_THROWS_WITH(find_scene("atlantis"), Contains("atlantis") && Contains("straight_curb"));
+  REQUIRE_THROWS_WITH(find_scene("random:x"), Contains("random:x") && Contains("expected random:"));
 }
 
 TEST_CASE("scene: bad files are refused with line and key") {
   const auto refused = [](const std::string& text, const std::string& at, const std::string& what) {
     INFO(text);
     REQUIRE_THROWS_AS(scene_of(text), BadInput);
-    REQUIRE_THROWS_WITH(scene_of(text), Contains(".toml" + at) && Contains(what));
+    REQUIRE_THROWS_WITH(scene_of(text), Contains(".toml" + at) && Contains(what) && Contains("expected"));
   };
   refused("[ground]\nz = 0\nhight = 1\n", ":3:", "hight");
   refused("[ground]\nz = 'low'\n", ":2:", "z");
   refused("[ground]\nz = nan\n", ":2:", "z");
-  refused("[ground]\nslope = [0, 0]\n", ":1:", "z: missing");
+  refused("[ground]\nslope = [0, 0]\n", ":1:", "ground.z is missing");
   refused("[ground]\nz = 0\n[[region]]\nz = 1\npolygon = [[0, 0], [1, 1], [1, 0], [0, 1]]\n", ":5:", "crosses");
   refused("[[region]]\nz = 1\npolygon = [[0, 0], [1, 1]]\n", ":3:", "at least 3");
   refused("[[region]]\nz = 1\nrectangle = [0, 0, 1, 1]\ncircle = [0, 0, 1]\n", ":1:", "exactly one");
@@ -251,7 +278,7 @@ TEST_CASE("truth: it is read as it was written") {
   for (double y = -3; y < 3; y += 0.13) {
     CHECK(read.terrain_height(1, y) == truth.terrain_height(1, y));
   }
-  CHECK(read.obstacle_at(9.40, -1.36));     // the parked car
+  CHECK(read.obstacle_at(9.40, -1.36));        // the parked car
   CHECK_FALSE(read.obstacle_at(8.57, -3.45));  // the person walks away
   std::ofstream(dir / "truth.json") << "{\"start_time_s\": 1}";
   CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
@@ -261,10 +288,10 @@ TEST_CASE("truth: it is read as it was written") {
 
 TEST_CASE("truth: in regions.gt the first polygon that holds a point is its region") {
   const Truth truth = make_truth(scene_of(bump), 0);
-  const std::vector<Region> drawn = drawn_regions(truth);
+  const std::vector<Polygon> drawn = drawn_regions(truth);
   REQUIRE(drawn.size() == 2);
-  CHECK(drawn[0][0].x_m == 2);
-  CHECK(drawn[1][0].x_m == -10);
+  CHECK(drawn[0][0].x == 2);
+  CHECK(drawn[1][0].x == -10);
 }
 
 TEST_CASE(

@@ -5,7 +5,6 @@
 
 #include <unistd.h>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 namespace curbline::tools {
@@ -19,9 +18,7 @@ struct TemporaryPath {
 };
 
 inline Scene scene_of(const std::string& text) {
-  const TemporaryPath file("scene.toml");
-  std::ofstream(file.path) << text;
-  return read_scene(file.path.string());
+  return parse_scene(text, "scene.toml");
 }
 
 }  // namespace curbline::tools

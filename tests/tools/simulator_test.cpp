@@ -1,8 +1,10 @@
 // The simulated sensors, and the directory that they are written to.
 #include "can/signal.hpp"
+#include "can/tilt_decoder.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
+#include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
 #include "simulator/simulate.hpp"
 #include "simulator/simulation.hpp"
@@ -165,7 +167,8 @@ TEST_CASE("simulation: so many returns are lost as the robot's description says"
 
 TEST_CASE("simulation: a tilt frame bears the angle of its latency ago, rounded to the encoder's count") {
   Robot robot = plain_robot();
-  robot.tilt.latency_s = 0.03f;
+  robot.tilt.latency_s = 0.01f;  // what the robot knows of
+  robot.simulated.tilt_latency_s = 0.02;
   robot.tilt_signal.scale = 0.01;  // a coarse encoder
   const Samples samples = run(scene_of(flat), robot, 0.5);
   REQUIRE(samples.frames.size() == static_cast<std::size_t>(40 * (0.5 + 2 * simulated_margin_s)) + 1);
@@ -178,6 +181,23 @@ TEST_CASE("simulation: a tilt frame bears the angle of its latency ago, rounded 
     worst = std::max(worst, std::abs(error));
   }
   CHECK(worst > 0.002);
+}
+
+TEST_CASE("simulation: a drive on SYNC gives each angle behind the SYNC frame on which it was sampled") {
+  Robot robot = plain_robot();
+  robot.tilt_sync_id = can::default_sync_id;
+  const Samples samples = run(scene_of(flat), robot, 0.5);
+  const auto asked = static_cast<std::size_t>(40 * (0.5 + 2 * simulated_margin_s)) + 1;
+  REQUIRE(samples.frames.size() == 2 * asked - 1);  // the log ends before the last answer
+  can::TiltDecoder decoder;
+  REQUIRE(decoder.init(robot.tilt_signal, robot.tilt_sync_id));
+  for (const can::Frame& frame : samples.frames) {
+    const auto reading = decoder.take(frame);
+    if (!reading) continue;
+    CHECK(reading->time_ns < frame.time_ns);
+    CHECK(reading->angle_rad == Approx(sweep_angle_rad(robot.sweep, seconds_of(reading->time_ns))).margin(1e-5));
+  }
+  CHECK(decoder.counters().readings == asked - 1);
 }
 
 TEST_CASE("simulation: jitter moves the stamps, not the angles, and stamps stay in order") {

@@ -7,14 +7,15 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <numbers>
 #include <random>
 
 using namespace curbline::can;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+/// Four bytes behind a statusword.
+constexpr Signal position{.id = 0x181, .start_bit = 16, .scale = 1e-3};
+constexpr Signal turns{.id = 0x69, .is_float = true};
 
 Frame frame(std::uint32_t id, bool extended, std::initializer_list<std::uint8_t> bytes) {
   Frame f;
@@ -26,65 +27,8 @@ Frame frame(std::uint32_t id, bool extended, std::initializer_list<std::uint8_t>
 
 }  // namespace
 
-TEST_CASE("can signal: a CiA 402 position is read behind the statusword") {
-  // 0xFFFD17CC counts of 2^20 a turn.
-  const auto angle = decode(cia402_position(1), frame(0x181, false, {0x37, 0x06, 0xCC, 0x17, 0xFD, 0xFF}));
-  REQUIRE(angle);
-  CHECK(*angle == Approx(-190516.0 * 2.0 * pi / 1048576.0).epsilon(1e-15));
-}
-
-TEST_CASE("can signal: an ODrive position is a float of turns") {
-  const auto angle = decode(odrive_encoder_estimates(3), frame(0x69, false, {0, 0, 0x80, 0xBE, 1, 2, 3, 4}));
-  REQUIRE(angle);
-  CHECK(*angle == Approx(-pi / 2).epsilon(1e-15));
-}
-
-TEST_CASE("can signal: a VESC position is the last two bytes, big-endian fiftieths of a degree") {
-  const auto angle = decode(vesc_status_4(10), frame(0x100A, true, {0, 0, 0, 0, 0, 0, 0xEE, 0x6C}));  // -4500
-  REQUIRE(angle);
-  CHECK(*angle == Approx(-pi / 2).epsilon(1e-15));
-}
-
-TEST_CASE("can signal: a CubeMars position matches on the low byte of the id alone") {
-  const Signal signal = cubemars_servo(0x68);
-  const auto angle = decode(signal, frame(0x2968, true, {0x03, 0x84, 0, 0, 0, 0, 0, 0}));  // 900
-  REQUIRE(angle);
-  CHECK(*angle == Approx(pi / 2).epsilon(1e-15));
-  CHECK_FALSE(decode(signal, frame(0x2969, true, {0x03, 0x84, 0, 0, 0, 0, 0, 0})));
-}
-
-TEST_CASE("can signal: a RobStride position matches on type and motor, whatever its mode and faults") {
-  const Signal signal = robstride_feedback(0x7F);
-  CHECK(*decode(signal, frame(0x02807F00, true, {0xFF, 0xFF, 0, 0, 0, 0, 0, 0})) == Approx(4 * pi).epsilon(1e-14));
-  CHECK(*decode(signal, frame(0x02BF7FFD, true, {0, 0, 0, 0, 0, 0, 0, 0})) == Approx(-4 * pi).epsilon(1e-15));
-  CHECK_FALSE(decode(signal, frame(0x02807E00, true, {0, 0, 0, 0, 0, 0, 0, 0})));
-  CHECK_FALSE(decode(signal, frame(0x03807F00, true, {0, 0, 0, 0, 0, 0, 0, 0})));
-}
-
-TEST_CASE("can signal: a mini-cheetah position spans P_MIN to P_MAX behind the motor's number") {
-  const Signal signal = mini_cheetah_reply(0, 12.5);
-  CHECK(*decode(signal, frame(0, false, {1, 0, 0, 0, 0, 0})) == -12.5);
-  CHECK(*decode(signal, frame(0, false, {1, 0xFF, 0xFF, 0, 0, 0})) == Approx(12.5).epsilon(1e-14));
-  CHECK(std::abs(*decode(signal, frame(0, false, {1, 0x80, 0, 0, 0, 0}))) < 25.0 / 65535);
-}
-
-TEST_CASE("can signal: every preset is valid and gives back what was written, to half a count") {
-  for (const Signal& signal : {cia402_position(127), odrive_encoder_estimates(63), vesc_status_4(255),
-                               cubemars_servo(1), robstride_feedback(127), mini_cheetah_reply(0x7FF, 95.5)}) {
-    REQUIRE(valid(signal));
-    for (const double angle : {0.0, 0.7, -1.1345, 3.0}) {
-      Frame f;
-      encode(signal, angle, f);
-      const auto back = decode(signal, f);
-      REQUIRE(back);
-      const double half_count = signal.is_float ? 3.0 * 1.2e-7 : std::abs(signal.scale) / 2;
-      CHECK(std::abs(*back - angle) <= half_count * (1 + 1e-9));
-    }
-  }
-}
-
 TEST_CASE("can signal: other frames give nothing") {
-  const Signal signal = cia402_position(1);
+  const Signal signal = position;
   Frame f = frame(0x181, false, {0, 0, 1, 0, 0, 0});
   REQUIRE(decode(signal, f));
   SECTION("another id") {
@@ -110,7 +54,7 @@ TEST_CASE("can signal: a float that is not finite gives nothing") {
     Frame f = frame(0x69, false, {0, 0, 0, 0, 0, 0, 0, 0});
     const auto bits = std::bit_cast<std::uint32_t>(bad);
     for (std::size_t i = 0; i < 4; ++i) f.data[i] = static_cast<std::uint8_t>(bits >> (8 * i));
-    CHECK_FALSE(decode(odrive_encoder_estimates(3), f));
+    CHECK_FALSE(decode(turns, f));
   }
 }
 
@@ -128,7 +72,7 @@ TEST_CASE("can signal: any place, length, order and sign round-trips, and other 
   for (int trial = 0; trial < 20000; ++trial) {
     Signal signal{.id = static_cast<std::uint32_t>(random() % 0x800)};
     signal.length = static_cast<std::uint8_t>(1 + random() % 64);
-    signal.start_bit = static_cast<std::uint8_t>(random() % 256);
+    signal.start_bit = static_cast<std::uint16_t>(random() % 440);  // 64 more fit in any order
     signal.order = random() % 2 != 0 ? ByteOrder::big : ByteOrder::little;
     signal.is_signed = random() % 2 != 0;
     REQUIRE(valid(signal));
@@ -172,7 +116,7 @@ TEST_CASE("can signal: what does not fit is clamped and rounded to the nearest c
 }
 
 TEST_CASE("can signal: a description that cannot be is not valid") {
-  const Signal good = cia402_position(1);
+  const Signal good = position;
   REQUIRE(valid(good));
   Signal bad = good;
   SECTION("no bits") {
@@ -201,8 +145,53 @@ TEST_CASE("can signal: a description that cannot be is not valid") {
   SECTION("an offset that is not finite") {
     bad.offset = std::numeric_limits<double>::quiet_NaN();
   }
+  SECTION("bits beyond the 64th byte") {
+    bad.start_bit = 481;
+  }
+  SECTION("big-endian bits beyond the 64th byte") {
+    bad.order = ByteOrder::big;
+    bad.start_bit = 487;  // 32 bits from the first of byte 60
+    REQUIRE(valid(bad));
+    bad.start_bit = 486;
+  }
+  SECTION("a multiplexor of no bits") {
+    bad.multiplexor = Multiplexor{.length = 0};
+  }
+  SECTION("a multiplexor that never has its value") {
+    bad.multiplexor = Multiplexor{.length = 4, .value = 16};
+  }
   CHECK_FALSE(valid(bad));
-  CHECK_FALSE(valid(odrive_encoder_estimates(64)));
+}
+
+TEST_CASE("can signal: a multiplexed signal is there only while the multiplexor has its value") {
+  Signal signal{.id = 1, .start_bit = 8, .length = 8, .is_signed = false};
+  signal.multiplexor = Multiplexor{.start_bit = 4, .length = 4, .value = 3};
+  CHECK(decode(signal, frame(1, false, {0x3F, 42})) == 42.0);
+  CHECK(carries(signal, frame(1, false, {0x3F, 42})));
+  CHECK_FALSE(decode(signal, frame(1, false, {0x2F, 42})));
+  CHECK_FALSE(carries(signal, frame(1, false, {0x2F, 42})));
+}
+
+TEST_CASE("can signal: a frame cut before its signal or its multiplexor is one of the signal's, and damaged") {
+  Signal signal{.id = 1, .start_bit = 8, .length = 8};
+  signal.multiplexor = Multiplexor{.start_bit = 23, .length = 8, .order = ByteOrder::big, .value = 3};
+  CHECK(bytes_needed(signal) == 3);
+  CHECK(decode(signal, frame(1, false, {0, 7, 3})) == 7.0);
+  for (const Frame& cut : {frame(1, false, {0, 7}), frame(1, false, {0}), frame(1, false, {})}) {
+    CHECK(carries(signal, cut));
+    CHECK_FALSE(decode(signal, cut));
+  }
+}
+
+TEST_CASE("can signal: writing a multiplexed signal sets the multiplexor") {
+  Signal signal{.id = 1, .start_bit = 8, .length = 8};
+  signal.multiplexor = Multiplexor{.start_bit = 31, .length = 12, .order = ByteOrder::big, .value = 0xABC};
+  Frame f;
+  encode(signal, -5.0, f);
+  CHECK(f.length == 5);
+  CHECK(f.data[3] == 0xAB);
+  CHECK(f.data[4] == 0xC0);
+  CHECK(decode(signal, f) == -5.0);
 }
 
 TEST_CASE("can frame: lengths of CAN FD are those of the standard") {

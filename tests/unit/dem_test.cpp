@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/terrain.hpp"
+
 namespace curbline {
 namespace {
 
@@ -224,14 +226,43 @@ TEST_CASE("dem: the next valid cell is found across gaps, up to the reach and th
   dem.add(at(0.25, -0.45));  // (2, 3)
   dem.add(at(0.85, -0.45));  // (8, 3)
   dem.add(at(0.25, 0.75));   // (2, 15)
-  CHECK(dem.next_valid(2, 3, 1, 0, 10) == 6);
-  CHECK(dem.next_valid(8, 3, -1, 0, 10) == 6);
-  CHECK(dem.next_valid(2, 3, 1, 0, 6) == 6);
-  CHECK(dem.next_valid(2, 3, 1, 0, 5) == 0);
-  CHECK(dem.next_valid(2, 3, 0, 1, 64) == 12);
-  CHECK(dem.next_valid(2, 15, 0, 1, 64) == 0);
-  CHECK(dem.next_valid(2, 3, -1, 0, 64) == 0);
-  CHECK(dem.next_valid(0, 3, 1, 0, 10) == 2);  // asked from a cell that is not valid
+  const int near = dem.slot(2, 3), ahead = dem.slot(8, 3), left = dem.slot(2, 15);
+  constexpr int plus_x = 0, minus_x = 1, plus_y = 2, minus_y = 3;
+  CHECK(dem.next_valid(near, plus_x, 10) == 6);
+  CHECK(dem.next_valid(ahead, minus_x, 10) == 6);
+  CHECK(dem.next_valid(near, plus_x, 6) == 6);
+  CHECK(dem.next_valid(near, plus_x, 5) == 0);
+  CHECK(dem.next_valid(near, plus_y, max_link_reach) == 12);
+  CHECK(dem.next_valid(left, minus_y, max_link_reach) == 12);
+  CHECK(dem.next_valid(left, plus_y, max_link_reach) == 0);
+  CHECK(dem.next_valid(near, minus_x, max_link_reach) == 0);
+  dem.add(at(0.55, -0.45));  // (5, 3), between
+  CHECK(dem.next_valid(near, plus_x, 10) == 3);
+  CHECK(dem.next_valid(ahead, minus_x, 10) == 3);
+}
+
+TEST_CASE("dem: after any drive the distances to neighbours are those that a search finds") {
+  Map dem = make_map(moving());
+  test::Noise noise(3);
+  float x = 0.0f, y = 0.0f;
+  for (int step = 0; step < 200; ++step) {
+    for (int k = 0; k < 6; ++k) dem.add(at(x - 0.2 + 1.6 * noise.uniform(), y - 1.0 + 2.0 * noise.uniform()));
+    x += static_cast<float>(0.2 * noise.normal());
+    y += static_cast<float>(0.2 * noise.normal());
+    dem.follow(x, y, [](int) {});
+    dem.for_each_valid([&](int i, int j, int s) {
+      for (int d = 0; d < directions; ++d) {
+        int g = 0, a = i, b = j;
+        do {
+          ++g;
+          a += step_i[static_cast<std::size_t>(d)];
+          b += step_j[static_cast<std::size_t>(d)];
+        } while (a >= 0 && b >= 0 && a < dem.rows() && b < dem.cols() && !dem.cell(dem.slot(a, b)).valid());
+        const bool found = a >= 0 && b >= 0 && a < dem.rows() && b < dem.cols() && g <= max_link_reach;
+        REQUIRE(dem.next_valid(s, d, max_link_reach) == (found ? g : 0));
+      }
+    });
+  }
 }
 
 TEST_CASE("dem: each pair of neighbours is linked once, with its distance") {

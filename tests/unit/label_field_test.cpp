@@ -43,7 +43,7 @@ struct Tiny {
     }
   }
   int update(bool all = true) {
-    return field.update(dem, training.mixture, all ? FieldScope::window : FieldScope::line, counters);
+    return field.update(dem, training.mixture, all ? FieldScope::window : FieldScope::line, visits, counters);
   }
   const Plane& plane(int label) const { return training.mixture.plane(label); }
 
@@ -52,6 +52,7 @@ struct Tiny {
   Stages<> training;
   Dem<small_limits> dem{};
   LabelField<small_limits> field{};
+  LabelField<small_limits>::Visits visits{};
   Counters counters{};
 };
 

@@ -122,19 +122,19 @@ TEST_CASE("plane evidence: agrees with its definition, from one point to as many
   const double n = static_cast<double>(points.size()), V0 = prior.noise_m2;
   const double shape = 2.0 + 0.5 * n, rate = 2.0 + 0.5 * n * sd * sd / V0;
   INFO(points.size() << " points, noise " << sd);
-  CHECK(log_evidence(m, prior) ==
+  CHECK(PlaneEvidence(prior).log_evidence(m) ==
         Approx(truth).margin(1e-3 + shape / rate * 0.5e-6 * static_cast<double>(m.zz) / V0 + 1e-6 * std::abs(truth)));
 }
 
 TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a step lose") {
   Noise noise;
-  const PlanePrior prior;
+  const PlaneEvidence evidence;
   const auto gain = [&](double step_m) {
     const auto low = test::sample({0, 1, 0, 1}, 0.1, 0.01, noise, [](double x, double) { return 0.05 * x; });
     const auto high = test::sample({1, 2, 0, 1}, 0.1, 0.01, noise, [&](double x, double) { return 0.05 * x + step_m; });
     PlaneMoments both = of_points(low);
     both.add(of_points(high));
-    return log_evidence(both, prior) - log_evidence(of_points(low), prior) - log_evidence(of_points(high), prior);
+    return evidence.log_evidence(both) - evidence.log_evidence(of_points(low)) - evidence.log_evidence(of_points(high));
   };
   CHECK(gain(0.0) > 0.0f);
   CHECK(gain(0.10) < 0.0f);
@@ -206,7 +206,7 @@ TEST_CASE("plane fit: far from the origin it keeps its digits") {
   }
   const PlanePrior prior;
   const PlaneMoments a = of_points(near_by), b = of_points(far_away);
-  CHECK(log_evidence(b, prior) == Approx(log_evidence(a, prior)).margin(0.5));
+  CHECK(PlaneEvidence(prior).log_evidence(b) == Approx(PlaneEvidence(prior).log_evidence(a)).margin(0.5));
   const Plane p = fit_plane(a, 400.0f, prior), q = fit_plane(b, 400.0f, prior);
   CHECK(q.slope_x == Approx(p.slope_x).margin(1e-4));
   CHECK(q.slope_y == Approx(p.slope_y).margin(1e-4));

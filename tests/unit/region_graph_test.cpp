@@ -46,7 +46,7 @@ TEST_CASE("region graph: two halves of a plane merge, two sides of a step do not
   const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
   const auto c = add(*graph, leaf(0.8, 0.0, 0.12, noise)), d = add(*graph, leaf(1.2, 0.0, 0.12, noise));
   for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, d}}) REQUIRE(graph->link(from, to));
-  graph->merge(PlanePrior{});
+  graph->merge(PlaneEvidence{});
   CHECK(graph->root(a) == graph->root(b));
   CHECK(graph->root(c) == graph->root(d));
   CHECK(graph->root(a) != graph->root(c));
@@ -56,7 +56,7 @@ TEST_CASE("region graph: nodes without a link never merge, alike as they are") {
   const auto graph = std::make_unique<Graph>();
   test::Noise noise;
   const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
-  CHECK(graph->merge(PlanePrior{}) == 2);  // the evidence of each, nothing else
+  CHECK(graph->merge(PlaneEvidence{}) == 2);  // the evidence of each, nothing else
   CHECK(graph->root(a) != graph->root(b));
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("region graph: a merged node has the moments of both") {
   const PlaneMoments left = leaf(0.0, 0.0, 0.0, noise), right = leaf(0.4, 0.0, 0.0, noise);
   const auto a = add(*graph, left), b = add(*graph, right);
   graph->link(a, b);
-  graph->merge(PlanePrior{});
+  graph->merge(PlaneEvidence{});
   PlaneMoments both = left;
   both.add(right);
   const PlaneMoments& merged = graph->moments(graph->root(a));
@@ -126,7 +126,7 @@ std::vector<int> partition_of_street(std::uint32_t link_order) {
   }
   for (const auto& [a, b] : links)
     REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]));
-  graph->merge(PlanePrior{});
+  graph->merge(PlaneEvidence{});
   std::vector<int> first_of_root(64, -1), partition;
   for (int k = 0; k < 64; ++k) {
     int& first = first_of_root[graph->root(nodes[static_cast<std::size_t>(k)])];
@@ -154,7 +154,7 @@ double score(const std::vector<PlaneMoments>& leaves, const std::vector<int>& bl
     for (std::size_t k = 0; k < leaves.size(); ++k) {
       if (block_of[k] == block) m.add(leaves[k]);
     }
-    if (m.points > 0.0f) total += static_cast<double>(log_evidence(m, PlanePrior{}) + log_gamma(m.cells));
+    if (m.points > 0.0f) total += static_cast<double>(PlaneEvidence{}.score(m));
   }
   return total;
 }
@@ -180,7 +180,7 @@ TEST_CASE("region graph: on a short chain greedy merging finds the best partitio
   std::vector<Graph::Index> nodes;
   for (const PlaneMoments& m : leaves) nodes.push_back(add(*graph, m));
   for (std::size_t k = 1; k < nodes.size(); ++k) graph->link(nodes[k - 1], nodes[k]);
-  graph->merge(PlanePrior{});
+  graph->merge(PlaneEvidence{});
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     const bool cut = (best_cuts >> (k - 1) & 1u) != 0;
     CHECK((graph->root(nodes[k - 1]) != graph->root(nodes[k])) == cut);
@@ -189,7 +189,7 @@ TEST_CASE("region graph: on a short chain greedy merging finds the best partitio
 
 /// What merge() must come to: all gains anew for every merge, the best one taken. Numbers of the blocks.
 std::vector<int> merged_naively(std::vector<PlaneMoments> moments, std::vector<std::pair<int, int>> links) {
-  const auto one = [](const PlaneMoments& m) { return log_evidence(m, PlanePrior{}) + log_gamma(m.cells); };
+  const auto one = [](const PlaneMoments& m) { return PlaneEvidence{}.score(m); };
   std::vector<int> block_of(moments.size());
   std::iota(block_of.begin(), block_of.end(), 0);
   for (;;) {
@@ -210,8 +210,9 @@ std::vector<int> merged_naively(std::vector<PlaneMoments> moments, std::vector<s
   }
 }
 
-TEST_CASE("region graph: the heap always gives the best merge, as trying all of them does") {
-  const auto seed = GENERATE(range(1u, 31u));
+/// Merges a field of 6 x 6 leaves at random heights and slopes; checks that no merge is left that gains. Returns by how much the
+/// score of the partition is above that of merging naively.
+double gained_by_laziness(std::uint32_t seed) {
   test::Noise noise(seed);
   std::vector<PlaneMoments> leaves;
   std::vector<std::pair<int, int>> links;
@@ -224,12 +225,23 @@ TEST_CASE("region graph: the heap always gives the best merge, as trying all of 
   std::vector<Graph::Index> nodes;
   for (const PlaneMoments& m : leaves) nodes.push_back(add(*graph, m));
   for (const auto& [a, b] : links) graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]);
-  graph->merge(PlanePrior{});
-  const auto truth = merged_naively(leaves, links);
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b)
-      CHECK((graph->root(nodes[a]) == graph->root(nodes[b])) == (truth[a] == truth[b]));
+  graph->merge(PlaneEvidence{});
+  std::vector<int> block_of;
+  for (const auto node : nodes) block_of.push_back(static_cast<int>(graph->root(node)));
+  for (const auto& [a, b] : links) {
+    const auto low = graph->root(nodes[static_cast<std::size_t>(a)]), high = graph->root(nodes[static_cast<std::size_t>(b)]);
+    if (low == high) continue;
+    PlaneMoments both = graph->moments(low);
+    both.add(graph->moments(high));
+    CHECK(PlaneEvidence{}.score(both) < PlaneEvidence{}.score(graph->moments(low)) + PlaneEvidence{}.score(graph->moments(high)) + 1e-3f);
   }
+  return score(leaves, block_of) - score(leaves, merged_naively(leaves, links));
+}
+
+TEST_CASE("region graph: gains computed late end where no merge gains, as high as all gains anew for every merge, on average") {
+  double gained = 0.0;
+  for (std::uint32_t seed = 1; seed <= 30; ++seed) gained += gained_by_laziness(seed);
+  CHECK(gained / 30 > -0.1);  // nats; a merge gains some tens
 }
 
 TEST_CASE("region graph: neighbours of both merged nodes are linked once, so that no evidence is computed twice") {
@@ -240,9 +252,9 @@ TEST_CASE("region graph: neighbours of both merged nodes are linked once, so tha
   for (std::size_t a = 0; a < 8; ++a) {
     for (std::size_t b = 0; b < a; ++b) graph->link(nodes[a], nodes[b]);
   }
-  const int evidences = graph->merge(PlanePrior{});
+  const int evidences = graph->merge(PlaneEvidence{});
   for (const auto node : nodes) CHECK(graph->root(node) == graph->root(nodes[0]));
-  CHECK(evidences == 8 + 28 + (6 + 5 + 4 + 3 + 2 + 1));  // nodes, links, and the neighbours after each merge
+  CHECK(evidences < 8 + 28 + 7);  // nodes, links, and less than one a merge; 21 if all neighbours were asked after each
 }
 
 }  // namespace

@@ -84,17 +84,17 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, [](Settings& s) -> float& { return s.segmentation.cell.degrees; }, {0.0f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.segmentation.cell.variance_m2; }, {0.0f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.segmentation.leaf_scale; }, {0.0f, -1.0f, nan});
-  refuses(bad, [](Settings& s) -> int& { return s.segmentation.link_reach; }, {0, 65});
+  refuses(bad, [](Settings& s) -> int& { return s.segmentation.link_reach; }, {0, 16});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.noise_m2; }, {0.0f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.texture_m2; }, {-1e-6f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.degrees; }, {0.9f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.common_share; }, {-0.1f, 1.1f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.planes.min_cells; }, {2.0f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
-  refuses(bad, [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 65});
+  refuses(bad, [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
   refuses(bad, [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
   refuses(bad, [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 0, -1});
-  refuses(bad, [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 65});
+  refuses(bad, [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});
   refuses(bad, [](Settings& s) -> float& { return s.curbs.max_roughness_m; }, {0.0f, nan, infinity});
 }
 

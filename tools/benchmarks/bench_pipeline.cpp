@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "can/signal.hpp"
+#include "can/tilt_decoder.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "reference/reference.hpp"
 #include "robot/robot.hpp"
@@ -36,11 +36,13 @@ struct Street {
     settings.window.fixed = true;  // all 40 x 40 cells in view
     settings.window.origin_x_m = 0.8f;
     Simulation simulation(in_map_frame(find_scene("street")), robot, 1);
+    can::TiltDecoder decoder;
+    decoder.init(robot.tilt_signal, robot.tilt_sync_id);
     while (const auto event = simulation.next()) {
       if (const auto* line = std::get_if<ScanLine>(&*event)) {
         lines.emplace_back(line->time_ns, std::vector<float>(line->ranges_m.begin(), line->ranges_m.end()));
       } else if (const auto* frame = std::get_if<can::Frame>(&*event)) {
-        if (const auto angle = can::decode(robot.tilt_signal, *frame)) tilt.push_back({frame->time_ns, static_cast<float>(*angle)});
+        if (const auto reading = decoder.take(*frame)) tilt.push_back(*reading);
       }
     }
     project();
@@ -152,10 +154,13 @@ void belief_messages(benchmark::State& state) {
   dem.init(street().settings.window, street().settings.planes.prior, 0, 0);
   for (const Point& p : street().points) dem.add(p);
   segmentation.init(street().settings.segmentation, street().settings.planes.prior);
-  segmentation.update(dem, counters);
+  Workspace<board_limits> workspace;
+  auto& work = workspace.segmentation();
+  segmentation.update(dem, work, counters);
   mixture.init(street().settings.planes);
-  mixture.update(dem, segmentation, [&](int slot) { return field.label(slot); }, counters);
-  for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, counters));
+  mixture.update(dem, work, [&](int slot) { return field.label(slot); }, counters);
+  auto& visits = workspace.visits();
+  for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, visits, counters));
   state.counters["messages_per_second"] = benchmark::Counter(counters.messages, benchmark::Counter::kIsRate);
 }
 BENCHMARK(belief_messages)->Unit(benchmark::kMicrosecond);
@@ -168,6 +173,7 @@ void bytes(benchmark::State& state) {
   state.counters["segmentation_KiB"] = sizeof(Segmentation<limits>) / 1024.0;
   state.counters["labels_KiB"] = (sizeof(LabelField<limits>) + sizeof(PlaneMixture<limits>)) / 1024.0;
   state.counters["curbs_KiB"] = sizeof(CurbTracer<limits>) / 1024.0;
+  state.counters["shared_KiB"] = sizeof(Workspace<limits>) / 1024.0;
 }
 constexpr Limits small_limits{.rows = 24, .cols = 24, .planes = 8, .beams = 361, .regions = 160, .links = 480, .borders = 256, .curbs = 64};
 BENCHMARK(bytes<small_limits>)->Name("bytes/24x24_8_planes_361_beams")->Iterations(1);

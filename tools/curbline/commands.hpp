@@ -1,4 +1,4 @@
-// The program's four commands. Each adds itself to the command line and runs when it is chosen.
+// The program's commands. Each adds itself to the command line and runs when it is chosen.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,5 +9,6 @@ void add_simulate(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_map(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_dbc(CLI::App& app);
 
 }  // namespace curbline::tools

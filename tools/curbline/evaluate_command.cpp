@@ -8,18 +8,27 @@ namespace curbline::tools {
 
 void add_evaluate(CLI::App& app) {
   struct Options {
-    std::string dir, paper;
+    EvaluateOptions truth;
+    MapMethod method = MapMethod::curbline;
+    std::string paper;
     bool json = false;
   };
   auto* command = app.add_subcommand("evaluate", "Scores against truth");
   auto o = std::make_shared<Options>();
-  auto* dir = command->add_option("dir", o->dir, "directory that simulate wrote; results of replay in it are scored, or made");
+  auto* dir = command->add_option("dir", o->truth.dir,
+                                  "directory that simulate wrote; results of replay in it are scored, or made");
   auto* paper = command->add_option("--paper", o->paper, "folder of clouds with regions: the paper's tables");
   dir->excludes(paper);
+  add_method_option(*command, o->method);
+  auto* picture = command->add_option("--picture", o->truth.picture, "PNG or SVG of the map with truth and robot");
+  paper->excludes(command->get_option("--method"))->excludes(picture);
   command->add_flag("--json", o->json, "figures as JSON on stdout instead of a table");
   command->callback([o, command] {
-    if (o->dir.empty() && o->paper.empty()) throw CLI::RequiredError(command->get_name() + ": DIR or --paper DATA");
-    const nlohmann::json figures = o->paper.empty() ? evaluate_truth(o->dir, !o->json) : evaluate_paper(o->paper, !o->json);
+    if (command->count("--method") > 0) o->truth.method = o->method;
+    if (o->truth.dir.empty() && o->paper.empty())
+      throw CLI::RequiredError(command->get_name() + ": DIR or --paper DATA");
+    const nlohmann::json figures =
+        o->paper.empty() ? evaluate_truth(o->truth, !o->json) : evaluate_paper(o->paper, !o->json);
     if (o->json) std::cout << figures.dump(2) << '\n';
   });
 }

@@ -2,12 +2,17 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "curbline/evaluate.hpp"
 #include "curbline/map_cloud.hpp"
+#include "curbline/replay.hpp"
 #include "evaluation/labels.hpp"
 #include "formats/cloud.hpp"
+#include "formats/regions.hpp"
+#include "formats/shipped.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -44,7 +49,7 @@ std::vector<std::string> cloud_names(const std::string& data) {
 
 PaperCloud load(const std::string& data, const std::string& name) {
   const std::vector<Point3> points = read_cloud(data + "/" + name + ".xyz");
-  const std::vector<Region> regions = read_regions(data + "/" + name + ".gt");
+  const std::vector<Polygon> regions = read_regions(data + "/" + name + ".gt");
   PaperCloud cloud;
   cloud.name = name;
   cloud.same_place = name >= "scan-03" && name <= "scan-12";
@@ -69,17 +74,66 @@ MeanSd mean_sd(const std::vector<double>& values) {
   return out;
 }
 
-/// Mean over training clouds of the mean over the others.
-double prediction(const std::vector<PaperCloud>& clouds, Map PaperCloud::*map) {
+/// Mean over training clouds of the mean over the others; NaN if there are no two.
+double prediction(std::span<const Map> maps) {
   std::vector<double> of_training;
-  for (const PaperCloud& trained : clouds) {
+  for (const Map& trained : maps) {
     std::vector<double> of_other;
-    for (const PaperCloud& other : clouds) {
-      if (trained.same_place && other.same_place && trained.name != other.name) of_other.push_back(prediction_rmse(trained.*map, other.*map));
+    for (const Map& other : maps) {
+      if (&trained != &other) of_other.push_back(prediction_rmse(trained, other));
     }
     if (!of_other.empty()) of_training.push_back(mean_sd(of_other).mean);
   }
-  return mean_sd(of_training).mean;
+  return of_training.empty() ? std::nan("") : mean_sd(of_training).mean;
+}
+
+/// Each sweep by itself, from its points as they were when it went through a pipeline after the others: with the angle of each beam's
+/// time, and the tilt latency that the pipeline found. None if a stream is missing.
+std::vector<Map> map_streams(const std::string& data, const std::vector<PaperCloud>& clouds) {
+  const std::string robot_file = shipped_file("robots", "clausius");
+  if (robot_file.empty()) return {};
+  Robot robot = read_robot(robot_file);
+  apply_window(paper_window(MapMethod::curbline), robot.window);
+  auto pipeline = make_host_pipeline(pipeline_settings(robot));
+  std::vector<Map> maps;
+  for (const PaperCloud& cloud : clouds) {
+    if (!cloud.same_place) continue;
+    const ReplayLogs logs{data + "/" + cloud.name + ".carmen", data + "/" + cloud.name + ".candump", {}};
+    if (!std::filesystem::exists(logs.scans) || !std::filesystem::exists(logs.can)) return {};
+    Replay replay(robot, logs, std::move(pipeline));
+    std::vector<Point> points;
+    while (replay.step(&points)) continue;
+    replay.check_complete();
+    pipeline = replay.take_pipeline();
+    const auto alone = make_host_pipeline(pipeline_settings(robot));
+    alone->observe(points);
+    alone->settle();
+    maps.push_back(alone->map());
+  }
+  return maps;
+}
+
+/// Root mean square of the difference of two maps' cells, the worst pair of all.
+double worst_pair(std::span<const Map> maps) {
+  double worst = maps.size() > 1 ? 0 : std::nan("");
+  for (const Map& a : maps) {
+    for (const Map& b : maps) worst = std::max(worst, height_rms(a, b));
+  }
+  return worst;
+}
+
+struct Predictions {
+  double curbline = 0, streamed = 0, reference = 0, worst_pair = 0;  ///< NaN where there is nothing to compare
+};
+
+Predictions predictions(const std::vector<PaperCloud>& clouds, std::span<const Map> streamed) {
+  std::vector<Map> curbline, reference;
+  for (const PaperCloud& cloud : clouds) {
+    if (!cloud.same_place) continue;
+    curbline.push_back(cloud.curbline);
+    reference.push_back(cloud.reference);
+  }
+  return {prediction(curbline), prediction(streamed), prediction(reference), worst_pair(streamed)};
 }
 
 }  // namespace
@@ -100,16 +154,24 @@ nlohmann::json evaluate_paper(const std::string& data, bool print) {
     here_curbline.push_back(cloud.v_curbline);
     here_reference.push_back(cloud.v_reference);
   }
-  const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline), v_all_reference = mean_sd(all_reference);
-  const double rmse = prediction(clouds, &PaperCloud::curbline), rmse_reference = prediction(clouds, &PaperCloud::reference);
+  const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline),
+               v_all_reference = mean_sd(all_reference);
+  const Predictions rmse = predictions(clouds, map_streams(data, clouds));
   out["v_same_place"] = {{"curbline", v.mean}, {"crf-em", v_reference.mean}};
   out["v_all"] = {{"curbline", v_all.mean}, {"crf-em", v_all_reference.mean}};
-  out["rmse_m"] = {{"curbline", rmse}, {"crf-em", rmse_reference}, {"paper", 0.016}};
+  out["rmse_m"] = {{"curbline", rmse.curbline}, {"curbline, streams", rmse.streamed}, {"crf-em", rmse.reference}, {"paper", 0.016}};
+  out["worst_pair_m"] = {{"curbline, streams", rmse.worst_pair}};
   if (print) {
     std::printf("\n%-32s %-16s %-16s %s\n", "", "curbline", "crf-em", "paper");
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd, v_reference.mean, v_reference.sd);
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean, v_all_reference.sd);
-    std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, m", rmse, rmse_reference);
+    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd,
+                v_reference.mean, v_reference.sd);
+    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean,
+                v_all_reference.sd);
+    std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, clouds, m", rmse.curbline, rmse.reference);
+    if (!std::isnan(rmse.streamed)) {
+      std::printf("%-32s %-16.4f\n", "RMSE of prediction, streams, m", rmse.streamed);
+      std::printf("%-32s %-16.4f\n", "sweep against sweep, worst, m", rmse.worst_pair);
+    }
   }
   return out;
 }

@@ -2,179 +2,271 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <set>
 
 #include "curbline/evaluate.hpp"
-#include "curbline/map_options.hpp"
-#include "curbline/replay.hpp"
+#include "curbline/recorded_run.hpp"
 #include "evaluation/curbs.hpp"
-#include "evaluation/labels.hpp"
 #include "formats/csv.hpp"
-#include "robot/robot.hpp"
-#include "simulator/truth.hpp"
 
 namespace curbline::tools {
 namespace {
 
-constexpr double tolerance_m = 0.1;  ///< one cell of the usual grid: a match
-constexpr double found_share = 0.5;  ///< of a curb's visible length, for it to count as found
+constexpr double tolerance_m = 0.1;                 ///< one cell of the usual grid: a match
+constexpr double found_share = 0.5;                 ///< of a curb's visible length, for it to count as found
+constexpr double least_visible_m = 0.3;             ///< a few cells: less is nothing to judge by
+constexpr std::size_t most_reference_cells = 6400;  ///< the reference takes minutes for more
+constexpr double paper_v = 0.88;                    ///< in simulation, +- 0.05
 
-struct Result {
-  std::vector<LabelledCell> cells;
-  std::vector<MapCurb> curbs;
+/// All that is scored, and what it is scored with.
+struct Evaluation {
+  Truth truth;
+  std::optional<RecordedRun> run;  ///< of the logs, where there are logs
+  Found found;
+  Seen seen;
+  std::optional<Found> reference;  ///< what crf-em makes of the same sweep
 };
 
-/// What replay left in the directory, or a replay of its logs.
-Result load_or_replay(const std::string& dir) {
-  if (std::filesystem::exists(dir + "/labels.csv") && std::filesystem::exists(dir + "/curbs.csv")) {
-    return {read_labels(dir + "/labels.csv"), read_curbs(dir + "/curbs.csv")};
-  }
-  Robot robot = read_robot(dir + "/robot.toml");
-  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever its description says
-  const ReplayLogs logs{dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
-  Replay replay(robot, logs);
-  while (replay.step()) {
-  }
-  replay.check_complete();
-  Result result;
-  const Map map = replay.pipeline().map();
-  for (int i = 0; i < map.grid.rows; ++i) {
-    for (int j = 0; j < map.grid.cols; ++j) {
-      const MapCell& cell = map.cells[map.grid.at(i, j)];
-      if (cell.points > 0) result.cells.push_back({map.grid.x_m(i), map.grid.y_m(j), cell});
-    }
-  }
-  result.curbs = replay.all_curbs();
-  return result;
+Found found_in(const Map& map, const RecordedRun& run) {
+  return {{labelled_cells(map)}, map.curbs, run.found.robot};
 }
 
-/// Of a point, on a grid of the usual cells.
-std::pair<int, int> cell_at(double x_m, double y_m) {
-  return {static_cast<int>(std::floor(x_m / 0.1)), static_cast<int>(std::floor(y_m / 0.1))};
+/// What replay left in DIR: the labels of the last window and the curbs of the whole way. Its window may be another
+/// than the robot's, so that of one that stood the labels say what was seen.
+void take_results(const std::string& dir, Evaluation& e) {
+  if (e.found.windows.empty()) e.found.windows.emplace_back();
+  e.found.windows.back() = read_labels(dir + "/labels.csv");
+  e.found.curbs = read_curbs(dir + "/curbs.csv");
+  if (!e.run || !e.run->drove) e.seen = Seen{};
+  for (const LabelledCell& cell : e.found.windows.back()) e.seen.add(cell.x_m, cell.y_m);
 }
 
-/// Where the robot saw the ground: within a cell of a valid one.
-class Seen {
- public:
-  explicit Seen(const std::vector<LabelledCell>& cells) {
-    for (const LabelledCell& cell : cells) {
-      for (int di = -1; di <= 1; ++di) {
-        for (int dj = -1; dj <= 1; ++dj) cells_.insert(cell_at(cell.x_m + 0.1 * di, cell.y_m + 0.1 * dj));
-      }
-    }
+/// Throws BadInput if there is neither a result nor a log.
+Evaluation evaluate_recording(const EvaluateOptions& options) {
+  const std::string& dir = options.dir;
+  const bool results = std::filesystem::exists(dir + "/labels.csv") && std::filesystem::exists(dir + "/curbs.csv");
+  Evaluation e;
+  e.truth = read_truth(dir);
+  if (has_logs(dir)) e.run = replay_recording(dir, e.truth);
+  if (!e.run && !results)
+    throw BadInput(dir + ": no recording; expected scans.carmen and robot.toml, or labels.csv and curbs.csv");
+  if (e.run) {
+    e.seen = e.run->seen;
+    e.found = e.run->found;
   }
-  bool operator()(double x_m, double y_m) const { return cells_.contains(cell_at(x_m, y_m)); }
+  const bool small = e.run && !e.run->drove && e.run->map.grid.cells() <= most_reference_cells;
+  if (small) e.reference = found_in(map_recording(dir, *e.run, MapMethod::crf_em), *e.run);
+  if (options.method) {
+    if (!e.run) throw BadInput(dir + ": no logs for --method; expected scans.carmen and robot.toml");
+    if (*options.method == MapMethod::curbline) return e;
+    if (e.run->drove)
+      throw BadInput(dir + ": the robot drove; expected one that stands for a method that takes a whole cloud");
+    e.run->map = map_recording(dir, *e.run, *options.method);
+    e.run->detections.clear();
+    e.found = found_in(e.run->map, *e.run);
+  } else if (results) {
+    take_results(dir, e);
+  }
+  return e;
+}
 
- private:
-  std::set<std::pair<int, int>> cells_;
+/// One true step, as the first table and "curbs" have it.
+struct CurbRow {
+  Segment line;
+  double step_m;  ///< in the middle
+  CurbMatch match;
+  Detections::Detection detection;
+  bool found() const { return match.covered >= found_share; }
 };
 
-/// V-measure of the labels against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height
-/// on either side of a road are two.
-double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
-  struct Part {
-    int plane, label, number;
+std::vector<CurbRow> curb_rows(const Evaluation& e) {
+  const std::vector<CurbMatch> matches = match_steps(e.found, e.truth, e.seen);
+  std::vector<CurbRow> rows;
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    if (matches[k].visible_m < least_visible_m) continue;
+    const TruthCurb& c = e.truth.curbs[k];
+    const bool known = e.run && k < e.run->detections.size();
+    rows.push_back({{c.from.x, c.from.y, c.to.x, c.to.y},
+                    0.5 * std::abs(c.from_step_m + c.to_step_m),
+                    matches[k],
+                    known ? e.run->detections[k] : Detections::Detection{}});
+  }
+  return rows;
+}
+
+void print_rows(const std::vector<CurbRow>& rows) {
+  std::printf(
+      "  true curb                              step     found       position error   covered       seen to found\n");
+  for (const CurbRow& row : rows) {
+    const Segment& s = row.line;
+    std::printf("  (%6.2f %6.2f) - (%6.2f %6.2f)  %6.1f cm ", s.x0_m, s.y0_m, s.x1_m, s.y1_m, 100 * row.step_m);
+    if (!row.found()) {
+      std::printf("  missed\n");
+      continue;
+    }
+    std::printf(" %6.1f cm  %6.1f cm   %3.0f %% of %5.1f m", 100 * row.match.height_m, 100 * row.match.position_error_m,
+                100 * row.match.covered, row.match.visible_m);
+    const Detections::Detection& d = row.detection;
+    if (d.seen_s && d.found_s) std::printf("  %5.1f s, %.1f m off", *d.found_s - *d.seen_s, d.distance_m);
+    std::printf("\n");
+  }
+}
+
+nlohmann::json rows_json(const std::vector<CurbRow>& rows) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const CurbRow& row : rows) {
+    nlohmann::json json{{"step_m", row.step_m},
+                        {"found", row.found()},
+                        {"height_m", row.match.height_m},
+                        {"position_error_m", row.match.position_error_m},
+                        {"covered", row.match.covered}};
+    const Detections::Detection& d = row.detection;
+    if (d.seen_s && d.found_s) {
+      json["time_to_detection_s"] = *d.found_s - *d.seen_s;
+      json["distance_at_detection_m"] = d.distance_m;
+    }
+    out.push_back(json);
+  }
+  return out;
+}
+
+/// Over all true steps that were told of at some time.
+struct DetectionSummary {
+  Errors time_s, distance_m;
+};
+
+DetectionSummary summary_of(const std::vector<CurbRow>& rows) {
+  std::vector<double> time, distance;
+  for (const CurbRow& row : rows) {
+    if (!row.detection.seen_s || !row.detection.found_s) continue;
+    time.push_back(*row.detection.found_s - *row.detection.seen_s);
+    distance.push_back(row.detection.distance_m);
+  }
+  return {errors_of(time), errors_of(distance)};
+}
+
+/// A line of the table: a figure, the reference's and the paper's. NaN: there is none.
+void print_line(const char* name, double here, double reference, double paper, int decimals) {
+  std::printf("%-36s", name);
+  for (const double value : {here, reference, paper}) {
+    std::isnan(value) ? std::printf(" %10s", "-") : std::printf(" %10.*f", decimals, value);
+  }
+  std::printf("\n");
+}
+
+struct Scored {
+  PlaneScores planes;
+  CurbScores curbs;
+};
+
+void print_table(const Scored& here, const std::optional<Scored>& reference, const DetectionSummary& detection) {
+  const double none = std::nan("");
+  const auto line = [&](const char* name, auto value, double scale, int decimals, double paper) {
+    print_line(name, scale * value(here), reference ? scale * value(*reference) : none, paper, decimals);
   };
-  std::map<std::pair<int, int>, Part> parts;
-  for (const LabelledCell& cell : cells) {
-    const int plane = truth.plane_at(cell.x_m, cell.y_m);
-    if (plane >= 0 && !truth.obstacle_at(cell.x_m, cell.y_m)) parts[cell_at(cell.x_m, cell.y_m)] = {plane, cell.cell.label, -1};
+  std::printf("%-36s %10s %10s %10s\n", "", "here", "crf-em", "paper");
+  line(
+      "V-measure of labels", [](const Scored& s) { return s.planes.v; }, 1, 3, paper_v);
+  line(
+      "cell heights, RMSE, mm", [](const Scored& s) { return s.planes.cell_rmse_m; }, 1e3, 1, none);
+  line(
+      "planes, RMSE, mm", [](const Scored& s) { return s.planes.plane_rmse_m; }, 1e3, 1, none);
+  line(
+      "planes, height error, median, mm", [](const Scored& s) { return s.planes.height_m.median; }, 1e3, 1, none);
+  line(
+      "planes, slope error, median, mrad", [](const Scored& s) { return s.planes.slope_rad.median; }, 1e3, 1, none);
+  for (std::size_t k = 0; k < here.curbs.at.size(); ++k) {
+    char name[64];
+    std::snprintf(name, sizeof name, "steps at %.2f m: precision", here.curbs.at[k].tolerance_m);
+    line(
+        name, [k](const Scored& s) { return s.curbs.at[k].precision; }, 1, 3, none);
+    line(
+        "                 recall", [k](const Scored& s) { return s.curbs.at[k].recall; }, 1, 3, none);
+    line(
+        "                 F1", [k](const Scored& s) { return s.curbs.at[k].f1; }, 1, 3, none);
   }
-  int numbers = 0;
-  for (auto& [start, part] : parts) {
-    if (part.number >= 0) continue;
-    part.number = numbers++;
-    std::vector<std::pair<int, int>> open{start};
-    while (!open.empty()) {
-      const auto [i, j] = open.back();
-      open.pop_back();
-      for (const auto& next : {std::pair{i + 1, j}, std::pair{i - 1, j}, std::pair{i, j + 1}, std::pair{i, j - 1}}) {
-        const auto found = parts.find(next);
-        if (found == parts.end() || found->second.number >= 0 || found->second.plane != part.plane) continue;
-        found->second.number = part.number;
-        open.push_back(next);
-      }
-    }
-  }
-  std::vector<int> of_truth, label;
-  for (const auto& [at, part] : parts) {
-    of_truth.push_back(part.number);
-    label.push_back(part.label);
-  }
-  return v_measure(of_truth, label);
+  line(
+      "recall of 2 to 4 cm at 0.1 m", [](const Scored& s) { return s.curbs.band[0].recall; }, 1, 3, none);
+  line(
+      "recall of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].recall; }, 1, 3, none);
+  line(
+      "precision of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].precision; }, 1, 3, none);
+  line(
+      "position error, median, cm", [](const Scored& s) { return s.curbs.position_m.median; }, 100, 1, none);
+  line(
+      "                95 %, cm", [](const Scored& s) { return s.curbs.position_m.most; }, 100, 1, none);
+  line(
+      "height error, median, cm", [](const Scored& s) { return s.curbs.height_m.median; }, 100, 1, none);
+  line(
+      "              95 %, cm", [](const Scored& s) { return s.curbs.height_m.most; }, 100, 1, none);
+  line(
+      "error / sd of heights, mean square", [](const Scored& s) { return s.curbs.calibration.mean_square; }, 1, 2,
+      none);
+  line(
+      "              within 1 sd (0.68)", [](const Scored& s) { return s.curbs.calibration.within_1_sd; }, 1, 2, none);
+  line(
+      "              within 2 sd (0.95)", [](const Scored& s) { return s.curbs.calibration.within_2_sd; }, 1, 2, none);
+  print_line("seen to first told of, median, s", detection.time_s.median, none, none, 1);
+  print_line("robot's distance then, median, m", detection.distance_m.median, none, none, 1);
 }
 
-/// Root mean square of cell heights about the true ground.
-double height_rmse_m(const std::vector<LabelledCell>& cells, const Truth& truth) {
-  double squares = 0;
-  int n = 0;
-  for (const LabelledCell& cell : cells) {
-    const double z = truth.terrain_height(cell.x_m, cell.y_m);
-    if (std::isnan(z) || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
-    squares += (cell.cell.height_m - z) * (cell.cell.height_m - z);
-    ++n;
+Scored scored(const Found& found, const Truth& truth, const Seen& seen) {
+  return {score_planes(found, truth), score_curbs(found, truth, seen)};
+}
+
+nlohmann::json to_json(const Scored& s) {
+  nlohmann::json out = to_json(s.planes);
+  out.update(to_json(s.curbs));
+  return out;
+}
+
+/// Of all kinds, creases too.
+Rates all_rates(const Evaluation& e) {
+  std::vector<Segment> lines;
+  for (const TruthCurb& c : e.truth.curbs) lines.push_back({c.from.x, c.from.y, c.to.x, c.to.y});
+  return curb_rates(e.found.curbs, lines, tolerance_m, std::cref(e.seen));
+}
+
+void draw(const Evaluation& e, const EvaluateOptions& options) {
+  if (!e.run) throw BadInput(options.dir + ": no logs to draw; expected scans.carmen and robot.toml");
+  PictureExtras extras{.title = options.dir, .truth = {}, .robot = e.run->robot};
+  for (const TruthCurb& c : e.truth.curbs) {
+    extras.truth.push_back({c.from.x, c.from.y, c.to.x, c.to.y, c.height_m, 0, 1, c.kind});
   }
-  return n > 0 ? std::sqrt(squares / n) : std::nan("");
+  Map map = e.run->map;
+  if (!e.run->drove) map.curbs = e.found.curbs;
+  draw_picture(map, options.picture, extras);
 }
 
 }  // namespace
 
-nlohmann::json evaluate_truth(const std::string& dir, bool print) {
-  const Truth truth = read_truth(dir);
-  const Result result = load_or_replay(dir);
-  const Seen seen(result.cells);
-
-  std::vector<TrueCurb> curbs;
-  std::vector<Segment> lines;
-  for (const TruthCurb& c : truth.curbs) {
-    const Segment line{c.from.x, c.from.y, c.to.x, c.to.y};
-    lines.push_back(line);
-    if (c.kind == "step") curbs.push_back({line, std::abs(c.from_step_m), std::abs(c.to_step_m)});
+nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
+  const Evaluation e = evaluate_recording(options);
+  const Scored here = scored(e.found, e.truth, e.seen);
+  std::optional<Scored> reference;
+  if (e.reference) reference = scored(*e.reference, e.truth, e.seen);
+  const std::vector<CurbRow> rows = curb_rows(e);
+  const DetectionSummary detection = summary_of(rows);
+  const auto found = std::count_if(rows.begin(), rows.end(), [](const CurbRow& row) { return row.found(); });
+  if (print) {
+    print_rows(rows);
+    std::printf("\ncurbs found: %d of %zu\n\n", static_cast<int>(found), rows.size());
+    print_table(here, reference, detection);
   }
-  const std::vector<CurbMatch> matches = match_curbs(result.curbs, curbs, tolerance_m, std::ref(seen));
-  const Rates rates = curb_rates(result.curbs, lines, tolerance_m, std::ref(seen));
-  const ErrorSummary errors = curb_errors(result.curbs, curbs, tolerance_m, std::ref(seen));
+  if (!options.picture.empty()) draw(e, options);
 
-  nlohmann::json out;
-  int visible = 0, found = 0;
-  if (print) std::printf("  true curb                              step     found       position error\n");
-  for (std::size_t k = 0; k < curbs.size(); ++k) {
-    if (matches[k].visible_m < 0.3) continue;  // a few cells of it: nothing to judge
-    ++visible;
-    const bool is_found = matches[k].covered >= found_share;
-    found += is_found;
-    const Segment& s = curbs[k].line;
-    const double step = 0.5 * (curbs[k].step0_m + curbs[k].step1_m);
-    if (print) {
-      std::printf("  (%6.2f %6.2f) - (%6.2f %6.2f)  %6.1f cm ", s.x0_m, s.y0_m, s.x1_m, s.y1_m, 100 * step);
-      is_found ? std::printf(" %6.1f cm  %6.1f cm   %3.0f %% of %.1f m\n", 100 * matches[k].height_m, 100 * matches[k].position_error_m,
-                             100 * matches[k].covered, matches[k].visible_m)
-               : std::printf("  missed\n");
-    }
-    out["curbs"].push_back({{"step_m", step}, {"found", is_found}, {"height_m", matches[k].height_m}, {"position_error_m", matches[k].position_error_m},
-                            {"covered", matches[k].covered}});
-  }
-  const double v = v_of(result.cells, truth), rmse = height_rmse_m(result.cells, truth);
-  out["curbs_visible"] = visible;
+  nlohmann::json out = to_json(here);
+  out["curbs"] = rows_json(rows);
+  out["curbs_visible"] = rows.size();
   out["curbs_found"] = found;
-  out["position_error_median_m"] = errors.position_median_m;
-  out["position_error_95_m"] = errors.position_95_m;
-  out["height_error_median_m"] = errors.height_median_m;
-  out["height_error_95_m"] = errors.height_95_m;
+  const Rates rates = all_rates(e);
   out["precision"] = rates.precision;
   out["recall"] = rates.recall;
   out["f1"] = rates.f1;
-  out["v"] = v;
-  out["height_rmse_m"] = rmse;
-  if (print) {
-    std::printf("\ncurbs found           %d of %d\n", found, visible);
-    std::printf("position error        median %.1f cm, 95 %% %.1f cm\n", 100 * errors.position_median_m, 100 * errors.position_95_m);
-    std::printf("height error          median %.1f cm, 95 %% %.1f cm\n", 100 * errors.height_median_m, 100 * errors.height_95_m);
-    std::printf("at %.2f m, creases too  precision %.3f  recall %.3f  F1 %.3f\n", tolerance_m, rates.precision, rates.recall, rates.f1);
-    std::printf("V-measure of labels   %.3f\n", v);
-    std::printf("cell heights          RMSE %.1f mm\n", 1000 * rmse);
-  }
+  out["time_to_detection_median_s"] = detection.time_s.median;
+  out["time_to_detection_95_s"] = detection.time_s.most;
+  out["distance_at_detection_median_m"] = detection.distance_m.median;
+  if (reference) out["reference"] = to_json(*reference);
+  out["paper"] = {{"v", paper_v}};
   return out;
 }
 

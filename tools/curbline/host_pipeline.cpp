@@ -13,21 +13,26 @@ class PipelineOf final : public HostPipeline {
  public:
   explicit PipelineOf(const Settings& settings) {
     if (const Status status = pipeline_.init(settings); status != Status::ok) {
-      throw BadInput(std::string("the pipeline refuses the robot's description: ") + to_string(status));
+      throw BadInput(std::string("the pipeline refuses its settings: ") + to_string(status) +
+                     "; expected those of a robot's description");
     }
   }
   bool add_tilt(const TiltReading& reading) override { return pipeline_.add_tilt(reading); }
   bool add_pose(const Pose& pose) override { return pipeline_.add_pose(pose); }
   Status take(const ScanLine& line) override { return pipeline_.take(line); }
-  Status project(const ScanLine& line, std::vector<Point3>& out) override {
-    return pipeline_.project(line, [&](const Point& p) {
-      out.push_back({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
-    });
+  Status take(const ScanLine& line, std::vector<Point>& out) override {
+    const std::size_t before = out.size();
+    const Status status = pipeline_.project(line, [&](const Point& p) { out.push_back(p); });
+    if (status != Status::ok) return status;
+    pipeline_.observe(std::span(out).subspan(before));
+    pipeline_.infer();
+    return status;
   }
   void observe(std::span<const Point> points) override { pipeline_.observe(points); }
   int settle() override { return pipeline_.settle(); }
   std::span<const Curb> curbs() const override { return pipeline_.curbs(); }
   const Counters& counters() const override { return pipeline_.counters(); }
+  const TiltLatency& tilt_latency() const override { return pipeline_.tilt_latency(); }
 
   Grid grid() const override {
     const Dem<limits>& dem = pipeline_.dem();
@@ -68,8 +73,8 @@ class PipelineOf final : public HostPipeline {
     const Plane& plane = pipeline_.plane(label);
     if (!plane.alive()) return;
     const double at_corner = plane.height_m(0.0f, 0.0f);
-    map.planes.push_back({at_corner - plane.slope_x * map.grid.x0_m - plane.slope_y * map.grid.y0_m, plane.slope_x, plane.slope_y,
-                          std::sqrt(plane.variance_m2), label});
+    map.planes.push_back({at_corner - plane.slope_x * map.grid.x0_m - plane.slope_y * map.grid.y0_m, plane.slope_x,
+                          plane.slope_y, std::sqrt(plane.variance_m2), label});
   }
 
   Pipeline<limits> pipeline_;
@@ -77,7 +82,8 @@ class PipelineOf final : public HostPipeline {
 
 template <Limits limits>
 bool fits(const Settings& settings) {
-  return settings.window.rows <= limits.rows && settings.window.cols <= limits.cols && settings.laser.beams <= limits.beams;
+  return settings.window.rows <= limits.rows && settings.window.cols <= limits.cols &&
+         settings.laser.beams <= limits.beams;
 }
 
 }  // namespace
@@ -86,12 +92,17 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
   if (fits<board_limits>(settings)) return std::make_unique<PipelineOf<board_limits>>(settings);
   if (fits<wide_limits>(settings)) return std::make_unique<PipelineOf<wide_limits>>(settings);
   if (fits<largest_limits>(settings)) return std::make_unique<PipelineOf<largest_limits>>(settings);
+  if (settings.laser.beams > largest_limits.beams) {
+    throw BadInput("a laser of " + std::to_string(settings.laser.beams) + " beams; expected at most " +
+                   std::to_string(largest_limits.beams));
+  }
   throw BadInput("a window of " + std::to_string(settings.window.rows) + " x " + std::to_string(settings.window.cols) +
                  " cells; expected at most 512 x 512");
 }
 
 MapCurb to_map_curb(const Curb& curb) {
-  return {curb.x0_m, curb.y0_m, curb.x1_m, curb.y1_m, curb.height_m, curb.height_sd_m, curb.probability, to_string(curb.kind)};
+  return {curb.x0_m,     curb.y0_m,        curb.x1_m,        curb.y1_m,
+          curb.height_m, curb.height_sd_m, curb.probability, to_string(curb.kind)};
 }
 
 }  // namespace curbline::tools

@@ -1,4 +1,5 @@
-// The pipeline of the firmware on the host: the same template, with limits chosen at run time by the size of the window.
+// The pipeline of the firmware on the host: the same template, with limits chosen at run time by the size of the
+// window.
 #pragma once
 
 #include <memory>
@@ -15,10 +16,26 @@ namespace curbline::tools {
 /// Limits of the firmware boards: 40 x 40 cells, 16 planes, 1081 beams.
 inline constexpr Limits board_limits{};
 /// For larger windows on the host. A leaf a cell is the worst case; one in three is more than streets need.
-inline constexpr Limits wide_limits{.rows = 128, .cols = 128, .planes = 64, .beams = 2881, .tilt_samples = 1024, .poses = 256,
-                                    .regions = 6000, .links = 16000, .borders = 8192, .curbs = 2048};
-inline constexpr Limits largest_limits{.rows = 512, .cols = 512, .planes = 250, .beams = 2881, .tilt_samples = 1024, .poses = 256,
-                                       .regions = 88000, .links = 260000, .borders = 65000, .curbs = 16384};
+inline constexpr Limits wide_limits{.rows = 128,
+                                    .cols = 128,
+                                    .planes = 64,
+                                    .beams = 2881,
+                                    .tilt_samples = 1024,
+                                    .poses = 256,
+                                    .regions = 6000,
+                                    .links = 16000,
+                                    .borders = 8192,
+                                    .curbs = 2048};
+inline constexpr Limits largest_limits{.rows = 512,
+                                       .cols = 512,
+                                       .planes = 250,
+                                       .beams = 2881,
+                                       .tilt_samples = 1024,
+                                       .poses = 256,
+                                       .regions = 88000,
+                                       .links = 260000,
+                                       .borders = 65000,
+                                       .curbs = 16384};
 
 class HostPipeline {
  public:
@@ -26,12 +43,13 @@ class HostPipeline {
   virtual bool add_tilt(const TiltReading& reading) = 0;
   virtual bool add_pose(const Pose& pose) = 0;
   virtual Status take(const ScanLine& line) = 0;
-  /// The points of a line instead, added to `out`.
-  virtual Status project(const ScanLine& line, std::vector<Point3>& out) = 0;
+  /// The same, its points added to `out` too.
+  virtual Status take(const ScanLine& line, std::vector<Point>& out) = 0;
   virtual void observe(std::span<const Point> points) = 0;
   virtual int settle() = 0;
   virtual std::span<const Curb> curbs() const = 0;
   virtual const Counters& counters() const = 0;
+  virtual const TiltLatency& tilt_latency() const = 0;
   /// Place of the window now, and everything in it.
   virtual Grid grid() const = 0;
   virtual Map map() const = 0;

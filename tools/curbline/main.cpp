@@ -1,10 +1,26 @@
-// curbline: simulate, replay, map, evaluate.
+// curbline: simulate, replay, map, evaluate, dbc.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
 
 #include "curbline/commands.hpp"
 #include "formats/bad_input.hpp"
+
+namespace {
+
+/// CLI11 says of an unknown command only that one is required.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == argv[1]) return;
+    commands += (commands.empty() ? "" : ", ") + command->get_name();
+  }
+  throw CLI::ParseError(std::string(argv[1]) + " is no command; expected one of " + commands,
+                        CLI::ExitCodes::ExtrasError);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace curbline::tools;
@@ -14,7 +30,9 @@ int main(int argc, char** argv) {
   add_replay(app);
   add_map(app);
   add_evaluate(app);
+  add_dbc(app);
   try {
+    check_command(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
@@ -26,7 +44,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!std::cout.flush()) {
-    std::cerr << "standard output: cannot be written\n";
+    std::cerr << "standard output: cannot be written; expected room for it\n";
     return 1;
   }
   return 0;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "curbline/map_options.hpp"
+#include "curbline/point.hpp"
 #include "map/map.hpp"
 
 namespace curbline::tools {
@@ -11,7 +13,10 @@ namespace curbline::tools {
 /// Window, cell size, height and method as the options have them; the robot stands at the origin.
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
 
-/// The same by the paper's methods (options.method is one of them) on a given grid.
+/// The same by the paper's methods or its peers' (options.method is one of them) on a given grid.
 Map map_batch(std::span<const Point3> cloud, const Grid& grid, double max_height_m, const MapOptions& options);
+
+/// Without their variances.
+std::vector<Point3> cloud_of(std::span<const Point> points);
 
 }  // namespace curbline::tools

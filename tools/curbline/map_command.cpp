@@ -20,7 +20,7 @@ void add_map(CLI::App& app) {
   command->callback([o] {
     const std::vector<Point3> cloud = read_cloud(o->cloud);
     const Map map = map_cloud(cloud, o->map);
-    give_out(o->map, map, o->cloud, {{"points", cloud.size()}});
+    give_out(o->map, map, {.title = o->cloud, .truth = {}, .robot = RobotMarker{}}, {{"points", cloud.size()}});
   });
 }
 

@@ -16,30 +16,61 @@ namespace {
 
 constexpr int most_cells = 512;
 
-int cells_along(double length_m, double cell_m) { return static_cast<int>(std::ceil(length_m / cell_m - 1e-6)); }
-int whole_blocks(int cells) { return (cells + block_side - 1) / block_side * block_side; }
+constexpr double count_slack = 1e-6;  ///< of a cell
+
+int cells_along(double length_m, double cell_m) {
+  return static_cast<int>(std::ceil(length_m / cell_m - count_slack));
+}
+/// Sides of a cell along x and y as asked for: the settings' floats, of which 0.1 is not 0.1, are too coarse to count
+/// by.
+struct CellSides {
+  double x_m, y_m;
+};
+
+CellSides cell_sides(const MapOptions& options, const WindowSettings& window) {
+  if (!options.cell.empty()) return {options.cell.front(), options.cell.back()};
+  const auto micrometres = [](float side_m) { return std::round(static_cast<double>(side_m) * 1e6) / 1e6; };
+  return {micrometres(window.cell_x_m), micrometres(window.cell_y_m)};
+}
+
+int whole_blocks(int cells) {
+  return (cells + block_side - 1) / block_side * block_side;
+}
 
 /// Throws BadInput unless the file has all that was written: asked of each before any takes its place.
 void check_written(AtomicFile* file, const std::string& path) {
-  if (file != nullptr && !file->stream().flush()) throw BadInput(path + ": cannot be written; expected room for the file");
+  if (file != nullptr && !file->stream().flush())
+    throw BadInput(path + ": cannot be written; expected room for the file");
 }
 
 }  // namespace
 
+void add_method_option(CLI::App& command, MapMethod& method) {
+  const std::map<std::string, MapMethod> methods{
+      {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em},
+      {"segment", MapMethod::segment},   {"canny", MapMethod::canny},   {"gradient", MapMethod::gradient}};
+  command
+      .add_option("--method", method,
+                  "curbline; the paper's steps: crf-em, em, segment; its peers, curbs alone: canny, gradient")
+      ->transform(CLI::CheckedTransformer(methods).description(""))
+      ->option_text("METHOD");
+}
+
 void add_map_options(CLI::App& command, MapOptions& options) {
   const CLI::Validator finite(
-      [](const std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; expected a finite number"; }, "");
-  auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")->expected(2)->check(finite);
+      [](const std::string& text) {
+        return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; expected a finite number";
+      },
+      "");
+  auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")
+                     ->expected(2)
+                     ->check(finite);
   auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
   origin->needs(size);
   size->needs(origin);
   command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
   command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(finite);
-  const std::map<std::string, MapMethod> methods{
-      {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em}, {"segment", MapMethod::segment}};
-  command.add_option("--method", options.method, "curbline, or the paper's steps: crf-em, em, segment")
-      ->transform(CLI::CheckedTransformer(methods).description(""))
-      ->option_text("METHOD");
+  add_method_option(command, options.method);
   const std::map<std::string, reference::EdgePotential> edges{{"potts", reference::EdgePotential::potts},
                                                               {"eq10", reference::EdgePotential::eq10}};
   command.add_option("--edge", options.edge, "edge potential of crf-em: potts (factor 10) or eq10")
@@ -61,34 +92,35 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
     window.cell_y_m = static_cast<float>(options.cell.back());
   }
   for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
-    if (!(cell_m > 0.0f && cell_m <= 10.0f)) throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in (0, 10]");
+    if (!(cell_m > 0.0f && cell_m <= 10.0f))
+      throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in (0, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
   for (const double length_m : options.size) {
     if (!(length_m > 0)) throw CLI::ValidationError("--size", std::to_string(length_m) + "; expected metres above 0");
   }
-  const double rows = options.size[0] / static_cast<double>(window.cell_x_m), cols = options.size[1] / static_cast<double>(window.cell_y_m);
-  if (!(std::max(rows, cols) < most_cells + 0.5)) {
-    throw CLI::ValidationError("--size", "more than 512 cells along one side; expected larger cells or a smaller window");
+  const CellSides side = cell_sides(options, window);
+  const double longest = std::max(options.size[0] / side.x_m, options.size[1] / side.y_m);
+  if (!(longest <= most_cells + count_slack)) {
+    throw CLI::ValidationError("--size",
+                               "more than 512 cells along one side; expected larger cells or a smaller window");
   }
   window.fixed = true;
   window.origin_x_m = static_cast<float>(options.origin[0]);
   window.origin_y_m = static_cast<float>(options.origin[1]);
-  window.rows = whole_blocks(cells_along(options.size[0], static_cast<double>(window.cell_x_m)));
-  window.cols = whole_blocks(cells_along(options.size[1], static_cast<double>(window.cell_y_m)));
+  window.rows = whole_blocks(cells_along(options.size[0], side.x_m));
+  window.cols = whole_blocks(cells_along(options.size[1], side.y_m));
 }
 
 Grid asked_grid(const MapOptions& options, const WindowSettings& window) {
-  Grid grid{static_cast<double>(window.origin_x_m), static_cast<double>(window.origin_y_m), static_cast<double>(window.cell_x_m),
-            static_cast<double>(window.cell_y_m), window.rows, window.cols};
-  if (!options.cell.empty()) {
-    grid.dx_m = options.cell.front();
-    grid.dy_m = options.cell.back();
-  } else {  // float's 0.1 is not 0.1
-    grid.dx_m = std::round(grid.dx_m * 1e6) / 1e6;
-    grid.dy_m = std::round(grid.dy_m * 1e6) / 1e6;
-  }
+  const CellSides side = cell_sides(options, window);
+  Grid grid{static_cast<double>(window.origin_x_m),
+            static_cast<double>(window.origin_y_m),
+            side.x_m,
+            side.y_m,
+            window.rows,
+            window.cols};
   if (!options.fixed()) return grid;
   grid.x0_m = options.origin[0];
   grid.y0_m = options.origin[1];
@@ -106,13 +138,12 @@ Map crop(const Map& map, const Grid& asked) {
     for (int j = 0; j < asked.cols; ++j) out.cells[asked.at(i, j)] = map.cells[map.grid.at(i, j)];
   }
   const double x1 = asked.x0_m + asked.rows * asked.dx_m, y1 = asked.y0_m + asked.cols * asked.dy_m;
-  std::copy_if(map.curbs.begin(), map.curbs.end(), std::back_inserter(out.curbs), [&](const MapCurb& curb) {
-    return curb.x0_m + curb.x1_m < 2 * x1 && curb.y0_m + curb.y1_m < 2 * y1;
-  });
+  std::copy_if(map.curbs.begin(), map.curbs.end(), std::back_inserter(out.curbs),
+               [&](const MapCurb& curb) { return curb.x0_m + curb.x1_m < 2 * x1 && curb.y0_m + curb.y1_m < 2 * y1; });
   return out;
 }
 
-void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary) {
+void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary) {
   // Everything is written beside its target first and takes its place only when all of it could be written.
   std::unique_ptr<AtomicFile> labels, curbs;
   if (!options.labels.empty()) {
@@ -125,14 +156,15 @@ void give_out(const MapOptions& options, const Map& map, const std::string& titl
   }
   check_written(labels.get(), options.labels);
   check_written(curbs.get(), options.curbs);
-  if (!options.picture.empty()) draw_picture(map, options.picture, {.title = title});
+  if (!options.picture.empty()) draw_picture(map, options.picture, picture);
   if (labels) labels->commit();
   if (curbs) curbs->commit();
   if (options.curbs == "-") {
     for (const MapCurb& curb : map.curbs) write_curb_json(std::cout, curb);
   }
   if (options.json) {
-    summary["cells"] = std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
+    summary["cells"] =
+        std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
     summary["planes"] = map.planes.size();
     summary["curbs"] = map.curbs.size();
     std::cout << summary.dump() << '\n';

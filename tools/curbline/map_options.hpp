@@ -10,11 +10,12 @@
 #include "curbline/settings.hpp"
 #include "formats/bad_input.hpp"
 #include "map/map.hpp"
+#include "picture/picture.hpp"
 #include "reference/reference.hpp"
 
 namespace curbline::tools {
 
-enum class MapMethod { curbline, crf_em, em, segment };
+enum class MapMethod { curbline, crf_em, em, segment, canny, gradient };
 
 struct MapOptions {
   std::vector<double> origin;  ///< x y, metres; empty: the window follows the robot
@@ -30,11 +31,14 @@ struct MapOptions {
   bool fixed() const { return !origin.empty(); }
 };
 
+/// --method alone; `method` stays as it is without it.
+void add_method_option(CLI::App& command, MapMethod& method);
+
 /// Adds the shared flags to a command.
 void add_map_options(CLI::App& command, MapOptions& options);
 
-/// Puts the window of the flags in place of the robot's: rows and columns are rounded up to whole blocks. Throws BadInput if it
-/// makes no sense.
+/// Puts the window of the flags in place of the robot's: rows and columns are rounded up to whole blocks. Throws
+/// BadInput if it makes no sense.
 void apply_window(const MapOptions& options, WindowSettings& window);
 
 /// The grid that was asked for: the window of the flags exactly, without the rounding.
@@ -44,6 +48,6 @@ Grid asked_grid(const MapOptions& options, const WindowSettings& window);
 Map crop(const Map& map, const Grid& asked);
 
 /// Writes the files that were asked for, all or none, and the summary with --json. `summary` may hold more to say.
-void give_out(const MapOptions& options, const Map& map, const std::string& title, nlohmann::json summary);
+void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary);
 
 }  // namespace curbline::tools

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "can/signal.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
@@ -50,37 +49,76 @@ std::string hexadecimal(std::uint32_t id) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
 }
 
+/// A time in the logs that go with live scan lines; nothing if there are none, or CAN is live too.
+std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
+  if (logs.can.starts_with("can:")) return std::nullopt;
+  if (!robot.tilt.fixed) {
+    const auto frame = CanLogReader(logs.can).next();
+    return frame ? std::optional(frame->time_ns) : std::nullopt;
+  }
+  if (robot.pose.still) return std::nullopt;
+  const auto pose = TrajectoryReader(logs.poses).next();
+  return pose ? std::optional(pose->time_ns) : std::nullopt;
+}
+
+std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
+  try {
+    return make_host_pipeline(pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
+/// Why a log gave no reading at all.
+std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
+  const std::string frames = std::to_string(counters.frames) + " frames";
+  if (counters.without_sync > 0) {
+    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id 0x" + hexadecimal(*robot.tilt_sync_id) +
+           " before each, as the robot's description has it";
+  }
+  if (counters.malformed > 0) {
+    return std::to_string(counters.malformed) + " of " + frames + " have the tilt signal's id and none holds an angle; expected " +
+           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
+  }
+  return "none of " + frames + " is the tilt signal; expected id 0x" + hexadecimal(robot.tilt_signal.id) +
+         " as the robot's description has it";
+}
+
 }  // namespace
 
-Replay::Replay(const Robot& robot, const ReplayLogs& logs)
-    : robot_(robot), logs_(logs), pipeline_(make_host_pipeline(pipeline_settings(robot))), scans_(logs.scans) {
-  if (logs.can.starts_with("can:")) {
-    throw BadInput(logs.can + ": live CAN interfaces are not read yet; expected a candump log");
-  }
+Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, pipeline_of(robot)) {}
+
+Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
+    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)) {
   if (!robot.tilt.fixed && logs.can.empty()) {
-    throw BadInput("no tilt log for a laser that nods; expected --can LOG, or tilt.fixed = true in the robot's description");
+    throw BadInput(robot.file + ": the laser nods and there is no tilt log; expected --can LOG, or tilt.fixed = true");
   }
   if (!robot.pose.still && logs.poses.empty()) {
-    throw BadInput("no poses for a robot that drives; expected --poses FILE, or pose.still = true in the robot's description");
+    throw BadInput(robot.file +
+                   ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
   }
-  if (!robot.tilt.fixed) can_.emplace(logs.can);
+  if (!robot.tilt.fixed) {
+    const auto bus = live_interface(logs.can);
+    can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id, is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans)) : log_frames(logs.can);
+  }
   if (!robot.pose.still) poses_.emplace(logs.poses);
+  scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
+  tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   grid_before_ = pipeline_->grid();
 }
 
-bool Replay::step(std::vector<Point3>* cloud) {
-  auto next = scans_.next();
+bool Replay::step(std::vector<Point>* points) {
+  auto next = scans_->next();
   if (!next) return false;
-  check_geometry(*next, robot_.laser, scans_.path(), scans_.line());
   line_ = std::move(*next);
-  const auto last_beam_ns =
-      line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line_.ranges_m.size()));
-  feed_tilt(last_beam_ns + static_cast<std::int64_t>(robot_.tilt.latency_s * 1e9f));
+  const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
+                                                                      static_cast<float>(line_.ranges_m.size()));
+  feed_tilt(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
   const ScanLine line{line_.time_ns, line_.ranges_m};
-  status_ = cloud == nullptr ? pipeline_->take(line) : pipeline_->project(line, *cloud);
+  status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
   lines_taken_ += status_ == Status::ok;
   keep_leaving_curbs();
   return true;
@@ -89,18 +127,24 @@ bool Replay::step(std::vector<Point3>* cloud) {
 /// Frames up to the first reading at or after a time.
 void Replay::feed_tilt(std::int64_t until_ns) {
   while (can_ && tilt_until_ns_ < until_ns) {
-    const auto frame = can_->next();
+    const auto frame = can_->next(line_.time_ns);
     if (!frame) {
-      tilt_until_ns_ = log_ended;
+      if (can_->ended()) tilt_until_ns_ = log_ended;
+      if (!can_->ended() && beyond_extrapolation(line_.time_ns)) can_->fail_silent();
       return;
     }
-    ++frames_;
-    if (const auto angle = can::decode(robot_.tilt_signal, *frame)) {
+    if (const auto reading = tilt_decoder_.take(*frame)) {
       ++tilt_readings_;
-      pipeline_->add_tilt({frame->time_ns, static_cast<float>(*angle)});
-      tilt_until_ns_ = frame->time_ns;
+      pipeline_->add_tilt(*reading);
+      tilt_until_ns_ = reading->time_ns;
     }
   }
+}
+
+/// Whether the newest reading is too old to say anything of that time.
+bool Replay::beyond_extrapolation(std::int64_t time_ns) const {
+  const float allowed_s = robot_.tilt.max_extrapolation_s + robot_.tilt.latency_s;
+  return tilt_readings_ == 0 || time_ns > tilt_until_ns_ + static_cast<std::int64_t>(allowed_s * 1e9f);
 }
 
 void Replay::feed_poses(std::int64_t until_ns) {
@@ -111,12 +155,17 @@ void Replay::feed_poses(std::int64_t until_ns) {
       return;
     }
     const auto f = [](double value) { return static_cast<float>(value); };
-    pipeline_->add_pose({pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
+    pipeline_->add_pose(
+        {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
     poses_until_ns_ = pose->time_ns;
+    robot_marker_ = {pose->x_m, pose->y_m,
+                     std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
+                                1 - 2 * (pose->qy * pose->qy + pose->qz * pose->qz))};
   }
 }
 
-/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept already.
+/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept
+/// already.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;
@@ -132,11 +181,10 @@ void Replay::keep_leaving_curbs() {
   grid_before_ = grid;
 }
 
+std::string Replay::remarks() const { return can_ ? can_->remarks() : std::string(); }
+
 void Replay::check_complete() const {
-  if (can_ && tilt_readings_ == 0) {
-    throw BadInput(logs_.can + ": none of " + std::to_string(frames_) + " frames is the tilt signal; expected id 0x" +
-                   hexadecimal(robot_.tilt_signal.id) + " as the robot's description has it");
-  }
+  if (can_ && tilt_readings_ == 0) throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
   if (lines_taken_ == 0) {
     throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
                    "; expected times that agree with the tilt log and the poses");

@@ -1,5 +1,5 @@
-// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would have
-// them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
+// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would
+// have them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
 #pragma once
 
 #include <functional>
@@ -8,17 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "can/tilt_decoder.hpp"
 #include "curbline/host_pipeline.hpp"
-#include "formats/can_log.hpp"
-#include "formats/carmen.hpp"
+#include "curbline/scan_source.hpp"
+#include "curbline/tilt_frames.hpp"
 #include "formats/trajectory.hpp"
+#include "picture/picture.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {
 
-/// The logs of one drive. `can` and `poses` are empty where the robot has none.
+/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty where the robot has none.
 struct ReplayLogs {
-  std::string scans;
+  std::string scans;  ///< or a live scanner: scan_source.hpp
   std::string can;
   std::string poses;
 };
@@ -27,38 +29,48 @@ class Replay {
  public:
   /// Opens the logs. Throws BadInput if the robot needs one that is not given.
   Replay(const Robot& robot, const ReplayLogs& logs);
+  /// Goes on with a pipeline that has taken other logs before.
+  Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline);
+  std::unique_ptr<HostPipeline> take_pipeline() { return std::move(pipeline_); }
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. With `cloud` its points are added there
-  /// and the pipeline maps nothing: for the methods that take a whole cloud.
-  bool step(std::vector<Point3>* cloud = nullptr);
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. Its points are added to `points`, for the
+  /// methods that take a whole cloud.
+  bool step(std::vector<Point>* points = nullptr);
 
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;
 
+  /// What a user should know of a live bus at the end; empty if all is well.
+  std::string remarks() const;
+
   const HostPipeline& pipeline() const { return *pipeline_; }
-  const CarmenLine& line() const { return line_; }   ///< the one step() took
-  Status status() const { return status_; }          ///< what the pipeline said of it
+  RobotMarker robot() const { return robot_marker_; }  ///< where the newest pose has it; the origin if it stands
+  const CarmenLine& line() const { return line_; }     ///< the one step() took
+  Status status() const { return status_; }            ///< what the pipeline said of it
   long tilt_readings() const { return tilt_readings_; }
-  long frames() const { return frames_; }
+  can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
 
   /// Curbs of the whole way: those in the window now and those of the parts it has left, as they were last.
   std::vector<MapCurb> all_curbs() const;
 
  private:
   void feed_tilt(std::int64_t until_ns);
+  bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
   void keep_leaving_curbs();
 
   Robot robot_;
   ReplayLogs logs_;
   std::unique_ptr<HostPipeline> pipeline_;
-  CarmenReader scans_;
-  std::optional<CanLogReader> can_;
+  std::unique_ptr<ScanSource> scans_;
+  std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
+  can::TiltDecoder tilt_decoder_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
+  RobotMarker robot_marker_;
   Status status_ = Status::ok;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
-  long frames_ = 0, tilt_readings_ = 0, lines_taken_ = 0;
+  long tilt_readings_ = 0, lines_taken_ = 0;
   Grid grid_before_;
   std::vector<MapCurb> curbs_before_, left_behind_;
 };

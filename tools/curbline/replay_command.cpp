@@ -16,7 +16,7 @@ namespace {
 struct Options {
   ReplayLogs logs;
   std::string robot;
-  std::string speed = "max";
+  std::string speed;
   MapOptions map;
 };
 
@@ -27,7 +27,8 @@ class Pace {
   void wait_for(std::int64_t log_time_ns) {
     if (speed_ <= 0) return;
     if (first_ns_ == none) first_ns_ = log_time_ns;
-    const auto since_start = std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
+    const auto since_start =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
     std::this_thread::sleep_until(start_ + since_start);
   }
 
@@ -38,8 +39,12 @@ class Pace {
   std::int64_t first_ns_ = none;
 };
 
-double parse_speed(const std::string& text) {
-  if (text == "max") return 0;
+/// Speed, 0 for max. A live bus sets the pace by its frames: it runs at 1, and scan lines are not held back.
+double parse_speed(const std::string& text, bool live) {
+  if (text.empty() || text == "max" || live) {
+    if (!live || text.empty() || text == "1") return 0;
+    throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
+  }
   std::size_t used = 0;
   double speed = 0;
   try {
@@ -47,7 +52,8 @@ double parse_speed(const std::string& text) {
   } catch (const std::exception&) {
     used = 0;
   }
-  if (used != text.size() || !(speed > 0)) throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
+  if (used != text.size() || !(speed > 0))
+    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
   return speed;
 }
 
@@ -76,12 +82,18 @@ class CurbStream {
 
 nlohmann::json summary_of(const Replay& replay) {
   const Counters& c = replay.pipeline().counters();
+  const can::TiltDecoderCounters can = replay.can_counters();
   return {{"lines", c.lines},
           {"lines_dropped", c.lines_dropped},
           {"points", c.points},
           {"no_returns", c.no_returns},
+          {"can_frames", can.frames},
+          {"can_malformed", can.malformed},
+          {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
+          {"tilt_latency_offset_s", replay.pipeline().tilt_latency().offset_s()},
+          {"tilt_latency_sd_s", replay.pipeline().tilt_latency().sd_s()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},
           {"poses_dropped", c.poses_dropped},
@@ -92,23 +104,24 @@ nlohmann::json summary_of(const Replay& replay) {
 }
 
 void run(const Options& o) {
+  Pace pace(parse_speed(o.speed, live_interface(o.logs.can).has_value()));
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
   apply_window(o.map, robot.window);
   Replay replay(robot, o.logs);
-  Pace pace(parse_speed(o.speed));
   CurbStream stream;
   const bool batch = o.map.method != MapMethod::curbline;
-  std::vector<Point3> cloud;
-  while (replay.step(batch ? &cloud : nullptr)) {
+  std::vector<Point> points;
+  while (replay.step(batch ? &points : nullptr)) {
     pace.wait_for(replay.line().time_ns);
-    if (o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
+    if (!batch && o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();
+  if (const std::string remarks = replay.remarks(); !remarks.empty()) std::cerr << remarks << '\n';
   const Grid grid = o.map.fixed() ? asked_grid(o.map, robot.window) : replay.pipeline().grid();
   Map map;
   if (batch) {
-    map = map_batch(cloud, grid, static_cast<double>(robot.window.max_height_m), o.map);
+    map = map_batch(cloud_of(points), grid, static_cast<double>(robot.window.max_height_m), o.map);
   } else {
     map = replay.pipeline().map();
     if (o.map.fixed()) {
@@ -119,7 +132,7 @@ void run(const Options& o) {
   }
   MapOptions out = o.map;
   if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
-  give_out(out, map, o.logs.scans, summary_of(replay));
+  give_out(out, map, {.title = o.logs.scans, .truth = {}, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace
@@ -127,12 +140,18 @@ void run(const Options& o) {
 void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
   auto o = std::make_shared<Options>();
-  command->add_option("--scans", o->logs.scans, "scan lines, CARMEN log")->required();
-  command->add_option("--can", o->logs.can, "tilt frames, candump log");
+  command->add_option("--scans", o->logs.scans, "scan lines: a CARMEN log, or a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE")->required();
+  command->add_option("--can", o->logs.can, "tilt frames: a candump log, or can:IFACE, a live interface");
   command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory");
   command->add_option("--robot", o->robot, "robot description")->required();
-  command->add_option("--speed", o->speed, "1 keeps the log's own time, max does not")->capture_default_str();
+  command->add_option("--speed", o->speed,
+                      "1 keeps the log's own time, max does not; default: max for logs, 1 for can:IFACE");
   add_map_options(*command, o->map);
+  command->footer(
+      "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded times:\n"
+      "each frame is given the time that the recording's own CAN log has for it (NAME.candump beside NAME.carmen, or\n"
+      "can.log), else that of its arrival after the first frame, which stands for the first scan line.\n"
+      "Start replay first, then canplayer -I LOG IFACE=can0.");
   command->callback([o] { run(*o); });
 }
 

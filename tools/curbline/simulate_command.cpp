@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 
@@ -18,19 +20,22 @@ void add_simulate(CLI::App& app) {
   };
   auto* command = app.add_subcommand("simulate", "A scene to scan lines, CAN log, poses and truth");
   auto o = std::make_shared<Options>();
-  command->add_option("--scene", o->scene, "name of a scene that ships, or a scene file")->required();
+  command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, or random:SEED")->required();
   command->add_option("--robot", o->robot, "robot description")->required();
   command->add_option("--out", o->out, "directory to write to")->required();
   command->add_option("--seed", o->simulation.seed, "of the noise")->capture_default_str();
-  command->add_option("--duration", o->simulation.duration_s, "seconds; without: one nod, or the whole way of a robot that drives");
+  command->add_option("--duration", o->simulation.duration_s,
+                      "seconds; without: one nod, or the whole way of a robot that drives");
   command->callback([o] {
     const double duration_s = o->simulation.duration_s.value_or(1.0);
     if (!(duration_s > 0 && duration_s <= most_seconds)) {
-      throw CLI::ValidationError("--duration", std::to_string(duration_s) + "; expected seconds above 0, at most a day");
+      throw CLI::ValidationError("--duration",
+                                 std::to_string(duration_s) + "; expected seconds above 0, at most a day");
     }
     const SimulationSummary summary = simulate(find_scene(o->scene), o->robot, o->out, o->simulation);
-    std::cerr << o->out << ": " << summary.lines << " scan lines, " << summary.tilt_frames << " tilt frames, " << summary.poses
-              << " poses in " << summary.duration_s << " s\n";
+    if (::isatty(STDERR_FILENO) == 0) return;
+    std::cerr << o->out << ": " << summary.lines << " scan lines, " << summary.tilt_frames << " tilt frames, "
+              << summary.poses << " poses in " << summary.duration_s << " s\n";
   });
 }
 

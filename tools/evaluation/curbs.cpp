@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 namespace curbline::tools {
 namespace {
@@ -28,45 +26,6 @@ std::vector<Sample> samples(const Segment& s) {
 
 Segment line_of(const MapCurb& c) {
   return {c.x0_m, c.y0_m, c.x1_m, c.y1_m};
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
-}
-
-/// A found sample and the true curb that it lies on.
-struct Hit {
-  std::size_t curb;
-  double position_error_m, height_m, height_error_m;
-};
-
-std::optional<Hit> nearest(const Sample& p, double height_m, std::span<const TrueCurb> truth, double tolerance_m) {
-  std::optional<Hit> hit;
-  for (std::size_t k = 0; k < truth.size(); ++k) {
-    const Segment& s = truth[k].line;
-    const double d = distance_m(p.x_m, p.y_m, s);
-    if (d > tolerance_m || (hit && d >= hit->position_error_m)) continue;
-    const double dx = s.x1_m - s.x0_m, dy = s.y1_m - s.y0_m;
-    const double t =
-        std::clamp(((p.x_m - s.x0_m) * dx + (p.y_m - s.y0_m) * dy) / std::max(1e-12, dx * dx + dy * dy), 0.0, 1.0);
-    const double step = truth[k].step0_m + t * (truth[k].step1_m - truth[k].step0_m);
-    hit = Hit{k, d, std::abs(height_m), std::abs(std::abs(height_m) - step)};
-  }
-  return hit;
-}
-
-std::vector<Hit> all_hits(std::span<const MapCurb> found, std::span<const TrueCurb> truth, double tolerance_m,
-                          const std::function<bool(double, double)>& counts) {
-  std::vector<Hit> hits;
-  for (const MapCurb& curb : found) {
-    for (const Sample& p : samples(line_of(curb))) {
-      if (!counts(p.x_m, p.y_m)) continue;
-      if (const auto hit = nearest(p, curb.height_m, truth, tolerance_m)) hits.push_back(*hit);
-    }
-  }
-  return hits;
 }
 
 }  // namespace
@@ -97,46 +56,6 @@ Rates curb_rates(std::span<const MapCurb> found, std::span<const Segment> truth,
   if (rates.precision + rates.recall > 0)
     rates.f1 = 2 * rates.precision * rates.recall / (rates.precision + rates.recall);
   return rates;
-}
-
-std::vector<CurbMatch> match_curbs(std::span<const MapCurb> found, std::span<const TrueCurb> truth, double tolerance_m,
-                                   const std::function<bool(double, double)>& counts) {
-  std::vector<CurbMatch> out(truth.size());
-  const std::vector<Hit> hits = all_hits(found, truth, tolerance_m, counts);
-  for (std::size_t k = 0; k < truth.size(); ++k) {
-    const std::vector<Sample> line = samples(truth[k].line);
-    const double length = std::hypot(truth[k].line.x1_m - truth[k].line.x0_m, truth[k].line.y1_m - truth[k].line.y0_m);
-    double visible = 0, covered = 0;
-    for (const Sample& p : line) {
-      if (!counts(p.x_m, p.y_m)) continue;
-      ++visible;
-      covered += std::any_of(found.begin(), found.end(),
-                             [&](const MapCurb& c) { return distance_m(p.x_m, p.y_m, line_of(c)) <= tolerance_m; });
-    }
-    out[k].visible_m = visible / static_cast<double>(line.size()) * length;
-    out[k].covered = visible > 0 ? covered / visible : 0;
-    std::vector<double> position, height, height_error;
-    for (const Hit& hit : hits) {
-      if (hit.curb != k) continue;
-      position.push_back(hit.position_error_m);
-      height.push_back(hit.height_m);
-      height_error.push_back(hit.height_error_m);
-    }
-    out[k].position_error_m = quantile(position, 0.5);
-    out[k].height_m = quantile(height, 0.5);
-    out[k].height_error_m = quantile(height_error, 0.5);
-  }
-  return out;
-}
-
-ErrorSummary curb_errors(std::span<const MapCurb> found, std::span<const TrueCurb> truth, double tolerance_m,
-                         const std::function<bool(double, double)>& counts) {
-  std::vector<double> position, height;
-  for (const Hit& hit : all_hits(found, truth, tolerance_m, counts)) {
-    position.push_back(hit.position_error_m);
-    height.push_back(hit.height_error_m);
-  }
-  return {quantile(position, 0.5), quantile(position, 0.95), quantile(height, 0.5), quantile(height, 0.95)};
 }
 
 }  // namespace curbline::tools

@@ -40,22 +40,12 @@ double v_measure(std::span<const int> truth, std::span<const int> label) {
   return homogeneity + completeness > 0 ? 2 * homogeneity * completeness / (homogeneity + completeness) : 0;
 }
 
-bool inside(const Region& polygon, double x_m, double y_m) {
-  bool in = false;
-  for (std::size_t n = 0; n < polygon.size(); ++n) {
-    const Corner& a = polygon[n];
-    const Corner& b = polygon[(n + 1) % polygon.size()];
-    if ((a.y_m > y_m) != (b.y_m > y_m) && x_m < a.x_m + (b.x_m - a.x_m) * (y_m - a.y_m) / (b.y_m - a.y_m)) in = !in;
-  }
-  return in;
-}
-
-std::vector<int> regions_of_cells(const Grid& grid, std::span<const Region> regions) {
+std::vector<int> regions_of_cells(const Grid& grid, std::span<const Polygon> regions) {
   std::vector<int> out(grid.cells(), -1);
   for (int i = 0; i < grid.rows; ++i) {
     for (int j = 0; j < grid.cols; ++j) {
       for (std::size_t r = 0; r < regions.size() && out[grid.at(i, j)] < 0; ++r) {
-        if (inside(regions[r], grid.x_m(i), grid.y_m(j))) out[grid.at(i, j)] = static_cast<int>(r);
+        if (contains(regions[r], {grid.x_m(i), grid.y_m(j)})) out[grid.at(i, j)] = static_cast<int>(r);
       }
     }
   }
@@ -88,6 +78,18 @@ double prediction_rmse(const Map& trained, const Map& other) {
     }
   }
   return cells > 0 ? std::sqrt(squares / cells) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double height_rms(const Map& a, const Map& b) {
+  double squares = 0;
+  int cells = 0;
+  for (std::size_t c = 0; c < a.cells.size(); ++c) {
+    if (a.cells[c].points == 0 || b.cells[c].points == 0) continue;
+    const double difference = a.cells[c].height_m - b.cells[c].height_m;
+    squares += difference * difference;
+    ++cells;
+  }
+  return cells > 0 ? std::sqrt(squares / cells) : 0;
 }
 
 }  // namespace curbline::tools

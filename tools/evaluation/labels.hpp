@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/regions.hpp"
 #include "map/map.hpp"
+#include "map/polygon.hpp"
 
 namespace curbline::tools {
 
@@ -13,11 +13,8 @@ namespace curbline::tools {
 /// same things, in [0, 1]. Labels are any numbers. 0 for none.
 double v_measure(std::span<const int> truth, std::span<const int> label);
 
-/// True if a point lies in a closed polygon; on its border either.
-bool inside(const Region& polygon, double x_m, double y_m);
-
 /// Region of each cell of a grid by its centre, -1 outside all: the first that holds it.
-std::vector<int> regions_of_cells(const Grid& grid, std::span<const Region> regions);
+std::vector<int> regions_of_cells(const Grid& grid, std::span<const Polygon> regions);
 
 /// V-measure over the valid cells that lie in a region; a cell without a label counts as one label of its own.
 double v_measure(const Map& map, std::span<const int> region_of_cell);
@@ -26,5 +23,8 @@ double v_measure(const Map& map, std::span<const int> region_of_cell);
 /// map's labels, over the cells that are valid in both and bear a label with a plane. NaN if there are none. Both maps
 /// on one grid.
 double prediction_rmse(const Map& trained, const Map& other);
+
+/// Root mean square of the difference of the cells' heights, over the cells that are valid in both. 0 if there are none.
+double height_rms(const Map& a, const Map& b);
 
 }  // namespace curbline::tools

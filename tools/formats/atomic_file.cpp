@@ -18,7 +18,7 @@ std::string temporary_beside(const std::string& target) {
 }
 
 std::string reason() {
-  return std::string(": cannot be written: ") + std::strerror(errno);
+  return std::string(": cannot be written: ") + std::strerror(errno) + "; expected a file name in a folder to write to";
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ std::string reason() {
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
-  if (fs::is_directory(status)) throw BadInput(path_ + ": cannot be written: it is a directory");
+  if (fs::is_directory(status)) throw BadInput(path_ + ": cannot be written: it is a directory; expected a file name");
   if (fs::is_symlink(path, none) && fs::is_regular_file(status)) target_ = fs::canonical(path, none).string();
   if (!fs::exists(status) || fs::is_regular_file(status)) temporary_ = temporary_beside(target_);
   errno = 0;
@@ -47,7 +47,9 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   std::error_code error;
   fs::rename(temporary_, target_, error);
-  if (error) throw BadInput(path_ + ": cannot be written: " + error.message());
+  if (error)
+    throw BadInput(path_ + ": cannot be written: " + error.message() +
+                   "; expected a file name in a folder to write to");
   temporary_.clear();
 }
 

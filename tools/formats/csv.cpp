@@ -17,7 +17,7 @@ constexpr int places = 6;
 
 void expect_header(LineReader& source, std::string_view columns) {
   const auto header = source.next();
-  if (header != columns) source.fail("other columns than expected, " + std::string(columns));
+  if (header != columns) source.fail("other columns; expected " + std::string(columns));
 }
 
 double read_probability(Fields& fields) {

@@ -33,7 +33,7 @@ Fields::Fields(const LineReader& source, std::string_view line, Apart apart)
     : source_(source), rest_(trim(line)), apart_(apart), more_(!rest_.empty()) {}
 
 std::string_view Fields::word(std::string_view name) {
-  if (!more_) source_.fail("the line ends before " + std::string(name));
+  if (!more_) source_.fail("the line ends before " + std::string(name) + "; expected one field more");
   const std::size_t end = apart_ == Apart::commas ? rest_.find(',') : rest_.find_first_of(blanks);
   const std::string_view field = rest_.substr(0, end);
   if (end == std::string_view::npos) {
@@ -84,7 +84,7 @@ std::int64_t Fields::time_ns(std::string_view name) {
 }
 
 void Fields::expect_end() const {
-  if (more_) source_.fail("more fields than expected, from \"" + shown(rest_) + "\" on");
+  if (more_) source_.fail("more fields, from \"" + shown(rest_) + "\" on; expected the line to end before");
 }
 
 void Fields::fail(std::string_view name, std::string_view got, const std::string& expected) const {

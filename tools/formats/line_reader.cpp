@@ -11,7 +11,7 @@ namespace curbline::tools {
 
 LineReader::LineReader(std::string path, std::size_t max_line)
     : path_(std::move(path)), max_line_(max_line), file_(std::fopen(path_.c_str(), "rb")), buffer_(max_line + 1) {
-  if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno));
+  if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno) + "; expected a file to read");
 }
 
 std::optional<std::string_view> LineReader::next() {
@@ -29,7 +29,7 @@ std::optional<std::string_view> LineReader::next() {
     fill();
   }
   if (begin_ == end_) {
-    if (line_ == 0) throw BadInput(path_ + ": the file is empty");
+    if (line_ == 0) throw BadInput(path_ + ": the file is empty; expected at least one line");
     return std::nullopt;
   }
   unterminated_ = true;
@@ -55,7 +55,7 @@ void LineReader::fill() {
   do {
     got = ::read(::fileno(file_.get()), buffer_.data() + end_, std::min(chunk, buffer_.size() - end_));
   } while (got < 0 && errno == EINTR);
-  if (got < 0) throw BadInput(path_ + ": cannot be read: " + std::strerror(errno));
+  if (got < 0) throw BadInput(path_ + ": cannot be read: " + std::strerror(errno) + "; expected a file of text");
   if (got == 0) at_end_ = true;
   end_ += static_cast<std::size_t>(got);
 }

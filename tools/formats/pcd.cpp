@@ -121,8 +121,10 @@ Layout lay_out(const LineReader& source, const Header& header) {
   }
   if (!seen[0] || !seen[1] || !seen[2]) source.fail("the header lacks a field; expected x, y and z");
   if (layout.bytes > std::int64_t{1} << 20) source.fail("a point is too long; expected at most 1 MiB");
-  if (header.width < 0 || header.height < 0) source.fail("the header lacks WIDTH or HEIGHT");
-  if (header.height > 0 && header.width > most_points / header.height) source.fail("WIDTH x HEIGHT is too large");
+  if (header.width < 0 || header.height < 0) source.fail("the header lacks WIDTH or HEIGHT; expected both");
+  if (header.height > 0 && header.width > most_points / header.height) {
+    source.fail("WIDTH x HEIGHT is too large; expected at most 2^32 points");
+  }
   if (header.points >= 0 && header.points != header.width * header.height) {
     source.fail("POINTS is " + std::to_string(header.points) + "; expected WIDTH x HEIGHT, " +
                 std::to_string(header.width * header.height));
@@ -190,7 +192,7 @@ std::vector<Point3> read_pcd(const std::string& path) {
     if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) points.push_back({x, y, z});
   }
   if (!header.binary && read_ascii_point(source, layout)) {
-    source.fail("more points than the " + std::to_string(promised) + " of the header");
+    source.fail("more points; expected " + std::to_string(promised) + " as the header has it");
   }
   return points;
 }

@@ -6,10 +6,10 @@
 
 namespace curbline::tools {
 
-std::vector<Region> read_regions(const std::string& path) {
+std::vector<Polygon> read_regions(const std::string& path) {
   LineReader source(path);
-  std::vector<Region> regions;
-  Region region;
+  std::vector<Polygon> regions;
+  Polygon region;
   const auto finish = [&] {
     if (region.empty()) return;
     if (region.size() < 3) {
@@ -34,11 +34,11 @@ std::vector<Region> read_regions(const std::string& path) {
   return regions;
 }
 
-void write_regions(std::ostream& out, const std::vector<Region>& regions) {
+void write_regions(std::ostream& out, const std::vector<Polygon>& regions) {
   std::string text;
-  for (const Region& region : regions) {
-    for (const Corner& corner : region) {
-      text += decimals(corner.x_m * 1000.0, 1) + " " + decimals(corner.y_m * 1000.0, 1) + "\n";
+  for (const Polygon& region : regions) {
+    for (const Point2 corner : region) {
+      text += decimals(corner.x * 1000.0, 1) + " " + decimals(corner.y * 1000.0, 1) + "\n";
     }
     text += "\n";
   }

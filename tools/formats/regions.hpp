@@ -6,17 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "map/polygon.hpp"
+
 namespace curbline::tools {
 
-struct Corner {
-  double x_m = 0, y_m = 0;
-};
-using Region = std::vector<Corner>;  ///< closed: the last corner is joined to the first
-
 /// Throws BadInput for anything but two numbers a line, for a polygon of less than three corners, and for none.
-std::vector<Region> read_regions(const std::string& path);
+std::vector<Polygon> read_regions(const std::string& path);
 
 /// To 0.1 mm.
-void write_regions(std::ostream& out, const std::vector<Region>& regions);
+void write_regions(std::ostream& out, const std::vector<Polygon>& regions);
 
 }  // namespace curbline::tools

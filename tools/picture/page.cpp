@@ -86,18 +86,26 @@ Page lay_out(const Map& map, const PictureExtras& extras) {
   const double bar = bar_gap + colour_bar_width + colour_bar_room(cr.get(), page.range);
   const double top = extras.title.empty() ? margin : margin + page_title_room, panel_top = top + title_room;
   const double beside = std::ceil(2 * margin + 2 * left + bar + column_gap + right + legend_width);
-  const Box box =
-      scaled(window, std::min(0.5 * (max_width - beside) / (window.y1_m - window.y0_m),
-                              (max_height - panel_top - bottom_room - margin) / (window.x1_m - window.x0_m)));
+  const double about_one = std::ceil(2 * margin + left + std::max(bar, right) + column_gap + legend_width);
+  const double length = window.x1_m - window.x0_m, breadth = window.y1_m - window.y0_m;
+  const double room = max_height - panel_top - bottom_room - margin;
+  const double in_row = std::min(0.5 * (max_width - beside) / breadth, room / length);
+  const double stacked =
+      std::min((max_width - about_one) / breadth, (0.5 * (room - bottom_room - title_room)) / length);
+  const bool one_below = stacked > in_row;
+  const Box box = scaled(window, std::max(stacked, in_row));
   const double column = std::max(least_column, box.width);
+  const double below = std::max(box.height, one_below ? least_bar : 0.0) + bottom_room + title_room;
 
   page.heights = put(window, box, margin + left, column, panel_top);
-  page.planes = put(window, box, margin + left + column + bar + column_gap + left, column, panel_top);
+  page.planes = one_below ? put(window, box, margin + left, column, panel_top + below)
+                          : put(window, box, margin + left + column + bar + column_gap + left, column, panel_top);
   page.bar = {page.heights.box.right() + bar_gap, panel_top, colour_bar_width,
               std::clamp(box.height, least_bar, most_bar)};
-  page.width = beside + 2 * column;
+  page.width = one_below ? about_one + column : beside + 2 * column;
   const double legend_room = std::min(legend_height(map, extras), most_for_legend);
-  const double body = std::max(title_room + std::max(box.height + bottom_room, least_height), legend_room);
+  const double panels = (one_below ? below : 0) + box.height + bottom_room;
+  const double body = std::max(title_room + std::max(panels, least_height), legend_room);
   page.height = std::ceil(top + body + margin);
   page.legend = {page.width - margin - legend_width, top, legend_width, body};
   page.title = {margin, margin + 14};
@@ -119,12 +127,17 @@ std::vector<std::string> draw(cairo_t* cr, const Page& page, const Map& map, con
   draw_legend(cr, map, extras, !taken.empty(), page.legend);
 
   const auto width = [&](const std::string& words) { return text_width(cr, words); };
+  const auto on_planes = [&](Box box) {
+    box.x += page.planes.box.x - page.heights.box.x;
+    box.y += page.planes.box.y - page.heights.box.y;
+    return box;
+  };
   const std::vector<MapCurb> pieces = joined(map.curbs, 1.5 * std::max(map.grid.dx_m, map.grid.dy_m));
   std::vector<PlacedText> texts = place_heights(pieces, map.curbs, page.heights, taken, width);
   write(cr, texts);
-  for (PlacedText& text : texts) text.box.x += page.planes.box.x - page.heights.box.x;
+  for (PlacedText& text : texts) text.box = on_planes(text.box);
   write(cr, texts);
-  for (Box& box : taken) box.x += page.planes.box.x - page.heights.box.x;
+  for (Box& box : taken) box = on_planes(box);
   for (const PlacedText& text : texts) taken.push_back(text.box);
   write(cr, place_labels(map, page.planes, taken, width));
 

@@ -6,6 +6,8 @@
 //          |          |               |          |
 //          +----------+               +----------+
 //             y (m)                      y (m)
+//
+// or, where the window is so wide that the cells are larger that way, with the panels one below the other.
 #pragma once
 
 #include <string>

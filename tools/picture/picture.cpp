@@ -23,7 +23,8 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 }
 
 void check(cairo_status_t status, const std::string& path) {
-  if (status != CAIRO_STATUS_SUCCESS) throw BadInput(path + ": cannot be drawn: " + cairo_status_to_string(status));
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw BadInput(path + ": cannot be drawn: " + cairo_status_to_string(status) + "; expected memory and room for it");
 }
 
 std::string escaped(std::string_view words) {

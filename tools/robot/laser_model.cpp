@@ -50,7 +50,7 @@ bool set_model(const std::string& name, Robot& robot) {
 }
 
 /// What each key's range cannot say.
-void check_scan(const RobotTable& table, const Robot& robot) {
+void check_scan(const TomlTable& table, const Robot& robot) {
   const LaserSettings& laser = robot.laser;
   if (laser.bearing_step_rad == 0.0f) table.refuse("bearing_step_rad", "is 0; expected another number");
   const double steps = laser.beams - 1;
@@ -60,12 +60,13 @@ void check_scan(const RobotTable& table, const Robot& robot) {
   if (steps * static_cast<double>(laser.beam_interval_s) > 1.0 / robot.scan_rate_hz) {
     table.refuse("beam_interval_s", "times the beams is longer than a scan; expected 1 / scan_rate_hz at most");
   }
-  if (!(laser.min_range_m < laser.max_range_m)) table.refuse("max_range_m", "is not above min_range_m");
+  if (!(laser.min_range_m < laser.max_range_m))
+    table.refuse("max_range_m", "is not above min_range_m; expected a longer range");
 }
 
 }  // namespace
 
-void read_laser(RobotTable table, Robot& robot) {
+void read_laser(TomlTable table, Robot& robot) {
   table.read("model", robot.laser_model);
   if (!set_model(robot.laser_model, robot)) {
     table.refuse("model", "is \"" + robot.laser_model + "\"; expected utm-30lx, lms-151 or lms-200");

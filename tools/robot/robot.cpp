@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-void read_mount(RobotTable table, MountSettings& mount) {
+void read_mount(TomlTable table, MountSettings& mount) {
   for (const auto& [key, value] : {std::pair{"x_m", &mount.x_m}, {"y_m", &mount.y_m}, {"z_m", &mount.z_m}}) {
     table.read(key, *value, {-100.0, 100.0});
   }
@@ -20,11 +20,12 @@ void read_mount(RobotTable table, MountSettings& mount) {
   table.done();
 }
 
-void read_tilt(RobotTable table, Robot& robot) {
+void read_tilt(TomlTable table, Robot& robot) {
   TiltSettings& tilt = robot.tilt;
   table.read("fixed", tilt.fixed);
   table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, {-3.14, 3.14});
   table.read("latency_s", tilt.latency_s, {-1.0, 1.0});
+  table.read("latency_sd_s", tilt.latency_sd_s, {0.0, 1.0});
   table.read("angle_sd_rad", tilt.angle_sd_rad, {0.0, 0.1});
   table.read("time_sd_s", tilt.time_sd_s, {0.0, 1.0});
   table.read("max_extrapolation_s", tilt.max_extrapolation_s, {1e-4, 10.0});
@@ -37,7 +38,7 @@ void read_tilt(RobotTable table, Robot& robot) {
   table.done();
 }
 
-void read_pose(RobotTable table, PoseSettings& pose) {
+void read_pose(TomlTable table, PoseSettings& pose) {
   table.read("still", pose.still);
   table.read("height_sd_m", pose.height_sd_m, {0.0, 1.0});
   table.read("attitude_sd_rad", pose.attitude_sd_rad, {0.0, 0.1});
@@ -45,7 +46,7 @@ void read_pose(RobotTable table, PoseSettings& pose) {
   table.done();
 }
 
-void read_window(RobotTable table, WindowSettings& window) {
+void read_window(TomlTable table, WindowSettings& window) {
   for (const auto& [key, value] : {std::pair{"rows", &window.rows}, {"cols", &window.cols}}) {
     table.read_whole(key, *value, 4, 512);
     if (*value % 4 != 0) table.refuse(key, "is " + std::to_string(*value) + "; expected a multiple of 4");
@@ -59,18 +60,19 @@ void read_window(RobotTable table, WindowSettings& window) {
   table.done();
 }
 
-void read_sweep(RobotTable table, Sweep& sweep) {
+void read_sweep(TomlTable table, Sweep& sweep) {
   table.read("from_rad", sweep.from_rad, {-3.14, 3.14});
   table.read("to_rad", sweep.to_rad, {-3.14, 3.14});
   table.read("period_s", sweep.period_s, {0.01, 1000.0});
   table.done();
-  if (!(sweep.from_rad < sweep.to_rad)) table.refuse("to_rad", "is not above from_rad");
+  if (!(sweep.from_rad < sweep.to_rad)) table.refuse("to_rad", "is not above from_rad; expected a larger angle");
 }
 
-void read_simulated(RobotTable table, SimulatedErrors& errors) {
+void read_simulated(TomlTable table, SimulatedErrors& errors) {
   table.read("dropout", errors.dropout, {0.0, 1.0});
   table.read("beam_divergence_rad", errors.beam_divergence_rad, {0.0, 0.1});
   table.read("tilt_rate_hz", errors.tilt_rate_hz, {0.1, 10'000.0});
+  table.read("tilt_latency_s", errors.tilt_latency_s, {-1.0, 1.0});
   table.read("tilt_jitter_s", errors.tilt_jitter_s, {0.0, 1.0});
   table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, 10'000.0});
   table.read("pose_position_sd_m", errors.pose_position_sd_m, {0.0, 1.0});
@@ -81,9 +83,10 @@ void read_simulated(RobotTable table, SimulatedErrors& errors) {
 }  // namespace
 
 Robot read_robot(const std::string& path) {
-  const toml::table parsed = RobotTable::parse(path);
-  RobotTable file(parsed, "", path);
+  const toml::table parsed = parse_toml(read_toml_text(path, "a robot file"), path);
+  TomlTable file(parsed, "", path);
   Robot robot;
+  robot.file = path;
   file.read("name", robot.name);
   read_laser(file.table("laser"), robot);
   read_tilt(file.table("tilt"), robot);
@@ -94,7 +97,9 @@ Robot read_robot(const std::string& path) {
   read_tuning(file.table("tuning"), robot);
   file.done();
   const Status status = check(pipeline_settings(robot));
-  if (status != Status::ok) throw BadInput(path + ": " + to_string(status));
+  if (status != Status::ok)
+    throw BadInput(path + ": " + to_string(status) +
+                   "; expected settings within the ranges of lib/curbline/settings.hpp");
   return robot;
 }
 

@@ -2,9 +2,12 @@
 // need to know of the machine.
 #pragma once
 
+#include "can/servo_presets.hpp"
 #include "can/signal.hpp"
 #include "curbline/settings.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace curbline::tools {
@@ -14,6 +17,7 @@ struct SimulatedErrors {
   double dropout = 0.0;              ///< share of returns that are lost
   double beam_divergence_rad = 0.0;  ///< full angle; a beam across an edge gives a mixed pixel
   double tilt_rate_hz = 40.0;        ///< tilt frames a second
+  double tilt_latency_s = 0.0;       ///< of tilt frames, beyond the TiltSettings::latency_s that the robot knows of
   double tilt_jitter_s = 0.0;        ///< standard deviation of a frame's time stamp
   double pose_rate_hz = 20.0;
   double pose_position_sd_m = 0.0;
@@ -27,6 +31,7 @@ struct Sweep {
 };
 
 struct Robot {
+  std::string file;  ///< where it was read from, for messages
   std::string name = "robot";
   std::string laser_model = "utm-30lx";  ///< utm-30lx, lms-151, lms-200: presets of `laser` (and of scan_rate_hz)
   double scan_rate_hz = 40.0;
@@ -39,6 +44,7 @@ struct Robot {
   LabelSettings labels{};
   CurbSettings curbs{};
   can::Signal tilt_signal = can::cia402_position(1);
+  std::optional<std::uint16_t> tilt_sync_id{};  ///< angles are sampled on this frame (can/tilt_decoder.hpp)
   Sweep sweep{};
   SimulatedErrors simulated{};
 };

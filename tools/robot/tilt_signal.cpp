@@ -1,12 +1,15 @@
 #include "robot/parts.hpp"
 
+#include "can/servo_presets.hpp"
+#include "can/tilt_decoder.hpp"
+
 namespace curbline::tools {
 namespace {
 
 constexpr double farthest_rad = 1e6;
 
 /// The preset of a servo, with the keys that only presets have.
-can::Signal read_servo(RobotTable& table) {
+can::Signal read_servo(TomlTable& table) {
   std::string servo = "cia402";
   table.read("servo", servo);
   const auto node = [&](int lowest, int highest) {
@@ -27,31 +30,65 @@ can::Signal read_servo(RobotTable& table) {
   table.refuse("servo", "is \"" + servo + "\"; expected cia402, odrive, vesc, cubemars, robstride or mini-cheetah");
 }
 
-can::ByteOrder read_byte_order(RobotTable& table, can::ByteOrder otherwise) {
+can::ByteOrder read_byte_order(TomlTable& table, can::ByteOrder otherwise) {
   std::string word = otherwise == can::ByteOrder::little ? "little" : "big";
   table.read("byte_order", word);
   if (word != "little" && word != "big") table.refuse("byte_order", "is \"" + word + "\"; expected little or big");
   return word == "little" ? can::ByteOrder::little : can::ByteOrder::big;
 }
 
+void read_multiplexor(TomlTable& signal_table, can::Signal& signal) {
+  if (!signal_table.has("multiplexor")) return;
+  TomlTable table = signal_table.table("multiplexor");
+  can::Multiplexor multiplexor{.order = signal.order};
+  table.read_whole("start_bit", multiplexor.start_bit, 0, 511);
+  table.read_whole("length", multiplexor.length, 1, 63);
+  multiplexor.order = read_byte_order(table, multiplexor.order);
+  table.read_whole("value", multiplexor.value, 0, (std::int64_t{1} << multiplexor.length) - 1);
+  table.done();
+  signal.multiplexor = multiplexor;
+  if (can::Signal alone{.start_bit = multiplexor.start_bit, .length = multiplexor.length, .order = multiplexor.order};
+      !can::valid(alone)) {
+    table.refuse("start_bit", "does not fit; expected bits within the 64 bytes of a frame");
+  }
+}
+
+std::optional<std::uint16_t> read_sync_id(TomlTable& table, const can::Signal& signal) {
+  if (!table.has("sync_id")) return std::nullopt;
+  std::uint16_t id = can::default_sync_id;
+  table.read_whole("sync_id", id, 0, 0x7FF);
+  if (!can::TiltDecoder().init(signal, id))
+    table.refuse("sync_id", "is the signal's own; expected that of the SYNC frame");
+  return id;
+}
+
+void check_signal(const TomlTable& table, const can::Signal& signal) {
+  if (signal.scale == 0.0) table.refuse("scale", "is 0; expected radians a count");
+  if (signal.is_float && signal.length != 32) table.refuse("length", "does not fit; expected 32 for a float");
+  if (signal.id > (signal.extended ? 0x1FFFFFFFu : 0x7FFu)) {
+    table.refuse("id", "is too large; expected 11 bits (0x7FF), or 29 and extended = true");
+  }
+  if (!can::valid(signal)) table.refuse("start_bit", "does not fit; expected bits within the 64 bytes of a frame");
+}
+
 }  // namespace
 
-void read_tilt_signal(RobotTable table, Robot& robot) {
+void read_tilt_signal(TomlTable table, Robot& robot) {
   can::Signal signal = read_servo(table);
   table.read_whole("id", signal.id, 0, 0x1FFFFFFF);
   table.read_whole("id_mask", signal.id_mask, 0, 0x1FFFFFFF);
   table.read("extended", signal.extended);
-  table.read_whole("start_bit", signal.start_bit, 0, 255);
+  table.read_whole("start_bit", signal.start_bit, 0, 511);
   table.read_whole("length", signal.length, 1, 64);
   signal.order = read_byte_order(table, signal.order);
   table.read("signed", signal.is_signed);
   table.read("float", signal.is_float);
   table.read("scale", signal.scale, {-farthest_rad, farthest_rad});
   table.read("offset", signal.offset, {-farthest_rad, farthest_rad});
+  read_multiplexor(table, signal);
+  check_signal(table, signal);
+  robot.tilt_sync_id = read_sync_id(table, signal);
   table.done();
-  if (signal.scale == 0.0) table.refuse("scale", "is 0; expected radians a count");
-  if (signal.is_float && signal.length != 32) table.refuse("length", "does not fit; expected 32 for a float");
-  if (!can::valid(signal)) table.refuse("id", "is too large; expected 11 bits (0x7FF), or 29 and extended = true");
   robot.tilt_signal = signal;
 }
 

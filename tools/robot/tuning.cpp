@@ -1,17 +1,19 @@
 #include "robot/parts.hpp"
 
+#include "curbline/dem.hpp"
+
 namespace curbline::tools {
 namespace {
 
-void read_segmentation(RobotTable table, SegmentationSettings& segmentation) {
+void read_segmentation(TomlTable table, SegmentationSettings& segmentation) {
   table.read("cell_degrees", segmentation.cell.degrees, {0.1, 1000.0});
   table.read("cell_variance_m2", segmentation.cell.variance_m2, {1e-8, 1.0});
   table.read("leaf_scale", segmentation.leaf_scale, {1e-3, 1e6});
-  table.read_whole("link_reach", segmentation.link_reach, 1, 64);
+  table.read_whole("link_reach", segmentation.link_reach, 1, max_link_reach);
   table.done();
 }
 
-void read_planes(RobotTable table, PlaneSettings& planes) {
+void read_planes(TomlTable table, PlaneSettings& planes) {
   table.read("noise_m2", planes.prior.noise_m2, {1e-8, 1.0});
   table.read("texture_m2", planes.prior.texture_m2, {0.0, 1.0});
   table.read("common_share", planes.prior.common_share, {0.01, 1.0});
@@ -26,23 +28,23 @@ void read_planes(RobotTable table, PlaneSettings& planes) {
   table.done();
 }
 
-void read_labels(RobotTable table, LabelSettings& labels) {
+void read_labels(TomlTable table, LabelSettings& labels) {
   table.read("coupling", labels.coupling, {0.01, 7.9});
-  table.read_whole("link_reach", labels.link_reach, 1, 64);
+  table.read_whole("link_reach", labels.link_reach, 1, max_link_reach);
   table.read_whole("refresh_rows", labels.refresh_rows, 0, 512);
   table.read_whole("max_messages", labels.max_messages, 4, 100'000'000);
   table.done();
 }
 
-void read_curbs(RobotTable table, CurbSettings& curbs) {
-  table.read_whole("link_reach", curbs.link_reach, 1, 64);
+void read_curbs(TomlTable table, CurbSettings& curbs) {
+  table.read_whole("link_reach", curbs.link_reach, 1, max_link_reach);
   table.read("max_roughness_m", curbs.max_roughness_m, {1e-3, 1.0});
   table.done();
 }
 
 }  // namespace
 
-void read_tuning(RobotTable table, Robot& robot) {
+void read_tuning(TomlTable table, Robot& robot) {
   read_segmentation(table.table("segmentation"), robot.segmentation);
   read_planes(table.table("planes"), robot.planes);
   read_labels(table.table("labels"), robot.labels);

@@ -1,18 +1,18 @@
 // A scene file to a Scene: tools/scenes/README.md is the manual of its keys.
+#include "formats/bad_input.hpp"
+#include "formats/toml_table.hpp"
 #include "simulator/scene.hpp"
-#include "simulator/scene_table.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numbers>
-#include <sstream>
 
 namespace curbline::tools {
 namespace {
 
 constexpr double rad = std::numbers::pi / 180;
+constexpr Range any{-1e5, 1e5};  // metres, metres a second or degrees: beyond, it is a slip of the pen
+constexpr Range positive{1e-6, 1e5};
 
 struct Repeat {
   int count_x = 1, count_y = 1;
@@ -28,44 +28,55 @@ struct Repeat {
   }
 };
 
-Repeat read_repeat(SceneTable& owner) {
+/// (0, 0) if absent.
+Point2 read_point(TomlTable& table, const char* key) {
+  if (!table.has(key)) return {};
+  const std::vector<double> xy = table.numbers(key, 2, any);
+  return {xy[0], xy[1]};
+}
+
+/// 0 if absent.
+double read_angle_rad(TomlTable& table, const char* key) {
+  double degrees = 0;
+  table.read(key, degrees, any);
+  return degrees * rad;
+}
+
+Repeat read_repeat(TomlTable& owner) {
   Repeat repeat;
   if (!owner.has("repeat")) {
     return repeat;
   }
-  SceneTable table = owner.table("repeat");
-  const std::vector<double> count = table.numbers("count", 2), step = table.numbers("step", 2);
+  TomlTable table = owner.table("repeat");
+  const std::vector<double> count = table.numbers("count", 2, {1, 100}), step = table.numbers("step", 2, any);
   for (const double n : count) {
-    if (n != std::floor(n) || n < 1 || n > 100) {
-      table.refuse("count", "not two whole numbers from 1 to 100");
-    }
+    if (n != std::floor(n)) table.refuse("count", "has a fraction; expected two whole numbers from 1 to 100");
   }
   repeat = {static_cast<int>(count[0]), static_cast<int>(count[1]), step[0], step[1]};
   table.done();
   return repeat;
 }
 
-Polygon read_outline(SceneTable& table) {
+Polygon read_outline(TomlTable& table) {
   if (table.has("polygon") + table.has("rectangle") + table.has("circle") != 1) {
-    table.refuse("polygon", "expected exactly one of polygon, rectangle and circle");
+    table.refuse("polygon",
+                 "is one outline of several, or there is none; expected exactly one of polygon, rectangle and circle");
   }
   if (table.has("circle")) {
-    const std::vector<double> c = table.numbers("circle", 3);
-    if (!(c[2] > 0)) {
-      table.refuse("circle", "radius not above 0; expected [x, y, radius]");
-    }
+    const std::vector<double> c = table.numbers("circle", 3, any);
+    if (!(c[2] > 0)) table.refuse("circle", "has no area; expected [x, y, radius] with a radius above 0");
     return circle({c[0], c[1]}, c[2]);
   }
   if (table.has("rectangle")) {
-    const std::vector<double> r = table.numbers("rectangle", 4);
+    const std::vector<double> r = table.numbers("rectangle", 4, any);
     if (!(r[0] < r[2] && r[1] < r[3])) {
-      table.refuse("rectangle", "no area; expected [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
+      table.refuse("rectangle", "has no area; expected [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
     }
     return rectangle({r[0], r[1]}, {r[2], r[3]});
   }
-  Polygon polygon = table.points("polygon", 3);
+  Polygon polygon = table.points("polygon", 3, any);
   if (!is_simple(polygon)) {
-    table.refuse("polygon", "crosses or touches itself, or has no area");
+    table.refuse("polygon", "crosses or touches itself, or has no area; expected corners in order");
   }
   return polygon;
 }
@@ -81,28 +92,29 @@ SurfacePlane plane_through(const Polygon& corners, const std::vector<double>& z)
   return {w[0], w[1], w[2]};
 }
 
-SurfacePlane read_plane(SceneTable& table, const Polygon& corners) {
+SurfacePlane read_plane(TomlTable& table, const Polygon& corners) {
   if (table.has("corner_z")) {
     if (corners.empty() || table.has("circle") || table.has("z") || table.has("slope")) {
-      table.refuse("corner_z", "expected a polygon or a rectangle, and neither z nor slope beside it");
+      table.refuse("corner_z", "does not fit; expected a polygon or a rectangle, and neither z nor slope beside it");
     }
-    return plane_through(corners, table.numbers("corner_z", 3));
+    return plane_through(corners, table.numbers("corner_z", 3, any));
   }
-  SurfacePlane plane{table.required_number("z"), 0, 0};
+  SurfacePlane plane{table.number("z", any), 0, 0};
   if (table.has("slope")) {
-    const std::vector<double> slope = table.numbers("slope", 2);
+    const std::vector<double> slope = table.numbers("slope", 2, any);
     plane.sx = slope[0];
     plane.sy = slope[1];
   }
   return plane;
 }
 
-void read_region(SceneTable& table, Scene& scene) {
-  const std::string name = table.text("name", "region " + std::to_string(scene.regions.size()));
+void read_region(TomlTable& table, Scene& scene) {
+  std::string name = "region " + std::to_string(scene.regions.size());
+  table.read("name", name);
   Polygon outline = read_outline(table);
   const SurfacePlane plane = read_plane(table, outline);
   if (table.has("corner_radius")) {
-    outline = with_round_corners(outline, table.required_positive("corner_radius"));
+    outline = with_round_corners(outline, table.number("corner_radius", positive));
   }
   read_repeat(table).each([&](Point2 by) {
     const SurfacePlane here{plane.z0_m - plane.sx * by.x - plane.sy * by.y, plane.sx, plane.sy};
@@ -112,14 +124,15 @@ void read_region(SceneTable& table, Scene& scene) {
 }
 
 /// What boxes, cylinders and walls have in common.
-void read_obstacle(SceneTable& table, const char* kind, const Polygon& outline, Scene& scene) {
+void read_obstacle(TomlTable& table, const char* kind, const Polygon& outline, Scene& scene) {
   Obstacle obstacle;
-  obstacle.name = table.text("name", kind);
-  obstacle.height_m = table.required_positive("height");
+  obstacle.name = kind;
+  table.read("name", obstacle.name);
+  obstacle.height_m = table.number("height", positive);
   if (table.has("z")) {
-    obstacle.base_m = table.required_number("z");
+    obstacle.base_m = table.number("z", any);
   }
-  obstacle.velocity_m_s = table.point("velocity", {0, 0});
+  obstacle.velocity_m_s = read_point(table, "velocity");
   read_repeat(table).each([&](Point2 by) {
     obstacle.outline = moved(outline, by);
     scene.obstacles.push_back(obstacle);
@@ -136,93 +149,87 @@ Polygon turned_rectangle(Point2 centre, double length_m, double width_m, double 
   return out;
 }
 
-void read_box(SceneTable& table, Scene& scene) {
-  const std::vector<double> at = table.numbers("at", 2), size = table.numbers("size", 2);
-  if (!(size[0] > 0 && size[1] > 0)) {
-    table.refuse("size", "not above 0; expected [length, width]");
-  }
-  const double yaw_rad = table.number("yaw_deg", 0) * rad;
+void read_box(TomlTable& table, Scene& scene) {
+  const std::vector<double> at = table.numbers("at", 2, any), size = table.numbers("size", 2, positive);
+  const double yaw_rad = read_angle_rad(table, "yaw_deg");
   read_obstacle(table, "box", turned_rectangle({at[0], at[1]}, size[0], size[1], yaw_rad), scene);
 }
 
-void read_cylinder(SceneTable& table, Scene& scene) {
-  const std::vector<double> at = table.numbers("at", 2);
-  read_obstacle(table, "cylinder", circle({at[0], at[1]}, table.required_positive("radius")), scene);
+void read_cylinder(TomlTable& table, Scene& scene) {
+  const std::vector<double> at = table.numbers("at", 2, any);
+  read_obstacle(table, "cylinder", circle({at[0], at[1]}, table.number("radius", positive)), scene);
 }
 
-void read_wall(SceneTable& table, Scene& scene) {
-  const std::vector<double> a = table.numbers("from", 2), b = table.numbers("to", 2);
+void read_wall(TomlTable& table, Scene& scene) {
+  const std::vector<double> a = table.numbers("from", 2, any), b = table.numbers("to", 2, any);
   const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
-  if (!(length > 0)) {
-    table.refuse("to", "the same point as from");
-  }
+  if (!(length > 0)) table.refuse("to", "is the same point as from; expected another");
   const Point2 middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
   const double yaw_rad = std::atan2(b[1] - a[1], b[0] - a[0]);
-  const double thickness = table.positive("thickness", 0.2);
+  double thickness = 0.2;
+  table.read("thickness", thickness, positive);
   read_obstacle(table, "wall", turned_rectangle(middle, length, thickness, yaw_rad), scene);
 }
 
-RobotPath read_path(SceneTable table) {
+RobotPath read_path(TomlTable table) {
   RobotPath path;
   if (table.has("path")) {
-    path.waypoints = table.points("path", 2);
+    path.waypoints = table.points("path", 2, any);
     for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
       const Point2 a = path.waypoints[i - 1], b = path.waypoints[i];
       if (std::hypot(b.x - a.x, b.y - a.y) < 0.01) {
-        table.refuse("path", "two way points closer than 1 cm");
+        table.refuse("path", "has two way points in a row at one place; expected 1 cm between them or more");
       }
     }
-    path.speed_m_s = table.positive("speed", path.speed_m_s);
-    path.turn_rate_rad_s = table.positive("turn_rate_deg_s", path.turn_rate_rad_s / rad) * rad;
-    const std::string attitude = table.text("attitude", "level");
+    table.read("speed", path.speed_m_s, positive);
+    double turn_rate_deg_s = path.turn_rate_rad_s / rad;
+    table.read("turn_rate_deg_s", turn_rate_deg_s, positive);
+    path.turn_rate_rad_s = turn_rate_deg_s * rad;
+    std::string attitude = "level";
+    table.read("attitude", attitude);
     if (attitude != "level" && attitude != "terrain") {
-      table.refuse("attitude", "expected \"level\" or \"terrain\"");
+      table.refuse("attitude", "is \"" + attitude + "\"; expected level or terrain");
     }
     path.follows_terrain = attitude == "terrain";
   } else {
-    path.waypoints = {table.point("at", {0, 0})};
-    path.yaw_rad = table.number("yaw_deg", 0) * rad;
+    path.waypoints = {read_point(table, "at")};
+    path.yaw_rad = read_angle_rad(table, "yaw_deg");
   }
   table.done();
   return path;
 }
 
-Scene read_tables(SceneTable root, std::string file, std::string source) {
+Scene read_tables(TomlTable root) {
   Scene scene;
-  scene.file = std::move(file);
-  scene.source = std::move(source);
-  root.text("about", "");
+  std::string about;
+  root.read("about", about);
   if (root.has("ground")) {
-    SceneTable ground = root.table("ground");
+    TomlTable ground = root.table("ground");
     scene.regions.push_back({"ground", {}, read_plane(ground, {})});
     ground.done();
   }
-  for (SceneTable& table : root.tables("region")) read_region(table, scene);
-  for (SceneTable& table : root.tables("box")) read_box(table, scene);
-  for (SceneTable& table : root.tables("cylinder")) read_cylinder(table, scene);
-  for (SceneTable& table : root.tables("wall")) read_wall(table, scene);
+  for (TomlTable& table : root.tables("region")) read_region(table, scene);
+  for (TomlTable& table : root.tables("box")) read_box(table, scene);
+  for (TomlTable& table : root.tables("cylinder")) read_cylinder(table, scene);
+  for (TomlTable& table : root.tables("wall")) read_wall(table, scene);
   scene.path = read_path(root.table("robot"));
-  if (scene.regions.empty()) {
-    root.refuse("region", "no ground; expected [ground] or [[region]]");
-  }
   root.done();
+  if (scene.regions.empty()) root.refuse("region", "is missing: no ground; expected [ground] or [[region]]");
   return scene;
 }
 
 }  // namespace
 
+Scene parse_scene(const std::string& text, const std::string& file) {
+  const toml::table root = parse_toml(text, file);
+  Scene scene = read_tables({root, "", file});
+  scene.file = file;
+  scene.source = text;
+  return scene;
+}
+
 Scene read_scene(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string source{std::istreambuf_iterator<char>(in), {}};
-  if (!in || source.empty()) {
-    throw BadInput(path + ": cannot be read, or is empty; expected a scene in TOML");
-  }
-  try {
-    const toml::table root = toml::parse(source, path);
-    return read_tables({root, path}, path, source);
-  } catch (const toml::parse_error& error) {
-    throw BadInput(path, static_cast<long>(error.source().begin.line), std::string(error.description()));
-  }
+  return parse_scene(read_toml_text(path, "a scene"), path);
 }
 
 }  // namespace curbline::tools

@@ -35,7 +35,8 @@ Footing footing(const Scene& scene, Point2 at, double yaw_rad) {
   }
   if (n[0] == 0 || n[1] == 0) {
     std::ostringstream what;
-    what << scene.file << ": the robot stands on nothing at x " << at.x << " y " << at.y;
+    what << scene.file << ": the robot stands on nothing at x " << at.x << " y " << at.y
+         << "; expected [ground] or a [[region]] there";
     throw BadInput(what.str());
   }
   const double mean = (z[0] + z[1]) / n_all;

@@ -1,32 +1,37 @@
 #include "simulator/scene.hpp"
 
 #include "formats/bad_input.hpp"
+#include "formats/shipped.hpp"
+#include "simulator/random_street.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <set>
 
 namespace curbline::tools {
-namespace {
 
 namespace fs = std::filesystem;
 
-/// The source tree's scenes, and those that were installed beside the program.
-std::vector<fs::path> scene_folders() {
-  std::vector<fs::path> folders{CURBLINE_SCENES};
-  std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  if (!failed) {
-    folders.push_back(program.parent_path().parent_path() / "share/curbline/scenes");
+namespace {
+
+constexpr std::string_view random_prefix = "random:";
+
+Scene random_scene(const std::string& name) {
+  const std::string_view digits = std::string_view(name).substr(random_prefix.size());
+  std::uint64_t seed = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
+  if (problem != std::errc{} || end != digits.data() + digits.size()) {
+    throw BadInput("no scene '" + name + "'; expected random: and a whole number, the seed");
   }
-  return folders;
+  return parse_scene(random_street(seed), name);
 }
 
 }  // namespace
 
 std::vector<std::string> shipped_scenes() {
   std::set<std::string> names;
-  for (const fs::path& folder : scene_folders()) {
+  for (const fs::path& folder : shipped_folders("scenes")) {
     std::error_code failed;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
       if (entry.path().extension() == ".toml") {
@@ -41,17 +46,17 @@ Scene find_scene(const std::string& name_or_path) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
     return read_scene(name_or_path);
   }
-  for (const fs::path& folder : scene_folders()) {
-    const fs::path file = folder / (name_or_path + ".toml");
-    if (fs::exists(file)) {
-      return read_scene(file.string());
-    }
+  if (name_or_path.starts_with(random_prefix)) {
+    return random_scene(name_or_path);
+  }
+  if (const std::string file = shipped_file("scenes", name_or_path); !file.empty()) {
+    return read_scene(file);
   }
   std::string known;
   for (const std::string& name : shipped_scenes()) {
     known += " " + name;
   }
-  throw BadInput("no scene '" + name_or_path + "'; expected a file or one of:" + known);
+  throw BadInput("no scene '" + name_or_path + "'; expected a file, random:SEED or one of:" + known);
 }
 
 int region_at(const std::vector<GroundRegion>& regions, Point2 p) {

@@ -5,7 +5,7 @@
 // two regions meet at different heights, a vertical face joins them. Obstacles are upright prisms.
 #pragma once
 
-#include "simulator/polygon.hpp"
+#include "map/polygon.hpp"
 
 #include <optional>
 #include <string>
@@ -59,7 +59,10 @@ struct Scene {
 /// itself.
 Scene read_scene(const std::string& path);
 
-/// The same for a file (a name with '/' or ending in .toml) or the name of a scene that ships.
+/// The same for the text of a file; messages call it `file`.
+Scene parse_scene(const std::string& text, const std::string& file);
+
+/// The same for a file (a name with '/' or ending in .toml) or the name of a scene that ships, or random:SEED.
 Scene find_scene(const std::string& name_or_path);
 
 /// Names of the scenes that ship, sorted.

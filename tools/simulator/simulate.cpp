@@ -3,6 +3,7 @@
 #include "formats/atomic_file.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
+#include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"

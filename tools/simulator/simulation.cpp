@@ -9,6 +9,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr double never_s = RayCaster::nothing;
+constexpr double sync_answer_s = 300e-6;  // from a SYNC to the position: a frame at 500 kbit/s behind another
 
 std::int64_t stamp_ns(double time_s) {
   return simulated_start_ns + std::llround(time_s * 1e9);
@@ -115,12 +116,25 @@ void Simulation::stamp_next_frame() {
   frame_stamp_s_ = std::max(stamp_s, frame_stamp_s_ + 1e-6);
 }
 
+/// A drive that answers SYNC sends its position a little later; the angle is that of the SYNC.
 can::Frame Simulation::take_frame() {
+  if (!robot_.tilt_sync_id || synced_) return take_position();
+  can::Frame sync;
+  sync.id = *robot_.tilt_sync_id;
+  sync.time_ns = stamp_ns(frame_stamp_s_);
+  frame_stamp_s_ += std::min(sync_answer_s, 0.3 / robot_.simulated.tilt_rate_hz);
+  synced_ = true;
+  return sync;
+}
+
+can::Frame Simulation::take_position() {
   const double due_s = static_cast<double>(frames_) / robot_.simulated.tilt_rate_hz - simulated_margin_s;
   can::Frame frame;
-  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - static_cast<double>(robot_.tilt.latency_s)), frame);
+  const double latency_s = static_cast<double>(robot_.tilt.latency_s) + robot_.simulated.tilt_latency_s;
+  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - latency_s), frame);
   frame.time_ns = stamp_ns(frame_stamp_s_);
   ++frames_;
+  synced_ = false;
   stamp_next_frame();
   return frame;
 }

@@ -3,16 +3,16 @@
 // scene, robot, seed and duration give the same numbers.
 //
 // Servo: from `sweep.from_rad` to `sweep.to_rad` and back at constant speed, which it takes up and gives up evenly over
-// a tenth of the half period at each end. A frame stamped t bears the angle that was true at t - latency_s; jitter is
-// added to the stamp after that, and stamps stay in order. The angle is rounded as tilt_signal rounds it.
-// Poses: the true pose with white noise of position and attitude.
+// a tenth of the half period at each end. A frame stamped t bears the angle that was true at t - latency_s -
+// tilt_latency_s; jitter is added to the stamp after that, and stamps stay in order. The angle is rounded as
+// tilt_signal rounds it. Poses: the true pose with white noise of position and attitude.
 #pragma once
 
 #include "can/frame.hpp"
 #include "curbline/scan_line.hpp"
-#include "simulator/laser_model.hpp"
 #include "simulator/ray_caster.hpp"
 #include "simulator/robot_motion.hpp"
+#include "simulator/simulated_laser.hpp"
 
 #include <optional>
 #include <variant>
@@ -53,6 +53,7 @@ class Simulation {
   double line_end_s() const;
   ScanLine take_line();
   can::Frame take_frame();
+  can::Frame take_position();
   SimulatedPose take_pose();
   void stamp_next_frame();
 
@@ -60,12 +61,13 @@ class Simulation {
   Scene scene_;  // in the map frame
   RobotMotion motion_;
   RayCaster world_;
-  LaserModel laser_;
+  SimulatedLaser laser_;
   Random tilt_random_, pose_random_;
   Eigen::Isometry3d T_base_tilt_, T_tilt_laser_;
   double duration_s_;
   std::int64_t lines_ = 0, frames_ = 0, poses_ = 0;  // given out
   double frame_stamp_s_;
+  bool synced_ = false;  ///< the position whose SYNC has been given out comes next
   std::vector<float> ranges_m_;
 };
 

@@ -116,14 +116,10 @@ Truth make_truth(const Scene& scene, double start_time_s) {
   return truth;
 }
 
-std::vector<Region> drawn_regions(const Truth& truth) {
-  std::vector<Region> out;
+std::vector<Polygon> drawn_regions(const Truth& truth) {
+  std::vector<Polygon> out;
   for (auto region = truth.regions.rbegin(); region != truth.regions.rend(); ++region) {
-    Region drawn;
-    for (const Point2 p : region->outline.empty() ? about_all(truth) : region->outline) {
-      drawn.push_back({p.x, p.y});
-    }
-    out.push_back(drawn);
+    out.push_back(region->outline.empty() ? about_all(truth) : region->outline);
   }
   return out;
 }

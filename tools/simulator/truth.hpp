@@ -2,7 +2,6 @@
 // beside the data.
 #pragma once
 
-#include "formats/regions.hpp"
 #include "simulator/scene.hpp"
 
 #include <ostream>
@@ -58,7 +57,7 @@ void write_truth(std::ostream& out, const Truth& truth);
 
 /// The polygons for regions.gt, the topmost first: a point lies in the first that holds it. A region that lies
 /// everywhere is drawn 10 m beyond all others.
-std::vector<Region> drawn_regions(const Truth& truth);
+std::vector<Polygon> drawn_regions(const Truth& truth);
 
 /// Reads DIR/truth.json. Throws BadInput if it is missing or not as written.
 Truth read_truth(const std::string& dir);

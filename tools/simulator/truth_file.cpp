@@ -107,7 +107,7 @@ Truth read_truth(const std::string& dir) {
   try {
     take(Json::parse(in), truth);
   } catch (const std::exception& error) {
-    throw BadInput(path + ": " + error.what());
+    throw BadInput(path + ": " + error.what() + "; expected what simulate wrote");
   }
   return truth;
 }

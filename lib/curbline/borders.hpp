@@ -1,0 +1,116 @@
+// Border points: the middles of the gaps between two planes on the rows and columns of the window, and their chaining into
+// polylines. Working memory of one call of CurbTracer::trace().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/dem.hpp"
+#include "curbline/plane_mixture.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Borders {
+ public:
+  using LabelType = Label<limits>;
+  using Index = std::uint16_t;
+
+  struct Border {
+    float x_m, y_m;         ///< in the window's frame
+    float probability;      ///< that the cells on both sides lie on different planes
+    float half_gap_m;
+    LabelType low, high;    ///< the planes, low < high by number
+    std::int8_t axis;       ///< 0: found along x, 1: along y
+    std::int8_t sign;       ///< +1 if `high` lies in the positive direction of the axis
+    bool chained;
+    Index next_in_cell;     ///< another border in the same cell
+  };
+
+  void clear() {
+    size_ = 0;
+    in_cell_.fill(none);
+  }
+  int size() const { return size_; }
+  bool chained(int border) const { return border_[static_cast<std::size_t>(border)].chained; }
+
+  /// False if the store is full.
+  bool add(const Dem<limits>& dem, Border border);
+
+  /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each, within two
+  /// cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50 look-ups a border.
+  int chain(const Dem<limits>& dem, int border, int reach);
+  const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
+
+ private:
+  static constexpr Index none = 0xFFFF;
+
+  int walk(const Dem<limits>& dem, Index start, int reach);
+  Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
+  int cell_of(const Dem<limits>& dem, const Border& border) const {
+    return dem.slot(static_cast<int>(border.x_m / dem.cell_x_m()), static_cast<int>(border.y_m / dem.cell_y_m()));
+  }
+
+  std::array<Border, limits.borders> border_;
+  std::array<Index, Dem<limits>::capacity> in_cell_;
+  std::array<Index, limits.borders> chain_;  ///< of the polyline in hand, in order
+  int size_;
+};
+
+template <Limits limits>
+bool Borders<limits>::add(const Dem<limits>& dem, Border border) {
+  if (size_ == limits.borders) return false;
+  Index& head = in_cell_[static_cast<std::size_t>(cell_of(dem, border))];
+  border.next_in_cell = head;
+  head = static_cast<Index>(size_);
+  border_[static_cast<std::size_t>(size_++)] = border;
+  return true;
+}
+
+template <Limits limits>
+int Borders<limits>::chain(const Dem<limits>& dem, int border, int reach) {
+  // Walk to an end of the polyline, then chain it from there.
+  const int walked = walk(dem, static_cast<Index>(border), reach);
+  for (int k = 0; k < walked; ++k) border_[chain_[static_cast<std::size_t>(k)]].chained = false;
+  return walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
+}
+
+template <Limits limits>
+int Borders<limits>::walk(const Dem<limits>& dem, Index start, int reach) {
+  int length = 0;
+  for (Index b = start; b != none;) {
+    border_[b].chained = true;
+    chain_[static_cast<std::size_t>(length++)] = b;
+    const Index near = nearest(dem, border_[b], 2);
+    b = near != none ? near : nearest(dem, border_[b], reach);
+  }
+  return length;
+}
+
+/// The nearest border of the same planes that is in no chain yet.
+template <Limits limits>
+auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int reach) const -> Index {
+  const int ci = static_cast<int>(from.x_m / dem.cell_x_m()), cj = static_cast<int>(from.y_m / dem.cell_y_m());
+  const int first_i = ci > reach ? ci - reach : 0, last_i = ci + reach < dem.rows() ? ci + reach : dem.rows() - 1;
+  const int first_j = cj > reach ? cj - reach : 0, last_j = cj + reach < dem.cols() ? cj + reach : dem.cols() - 1;
+  Index best = none;
+  float best_m2 = 1e30f;
+  for (int i = first_i; i <= last_i; ++i) {
+    for (int j = first_j; j <= last_j; ++j) {
+      for (Index b = in_cell_[static_cast<std::size_t>(dem.slot(i, j))]; b != none; b = border_[b].next_in_cell) {
+        const Border& border = border_[b];
+        if (border.chained || border.low != from.low || border.high != from.high) continue;
+        const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;
+        const float m2 = dx * dx + dy * dy;
+        if (m2 < best_m2) {
+          best_m2 = m2;
+          best = b;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace curbline

@@ -1,0 +1,35 @@
+// Memory that stages use one after the other within a call: the segmentation's region graph, the cells that the label field visits,
+// the border points of curbs. None outlives the call.
+#pragma once
+
+#include <new>
+
+#include "curbline/borders.hpp"
+#include "curbline/label_field.hpp"
+#include "curbline/segmentation.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Workspace {
+ public:
+  Workspace() {}
+
+  /// Each begins anew and ends what another holds.
+  typename Segmentation<limits>::Work& segmentation() {
+    return *::new (static_cast<void*>(&segmentation_)) typename Segmentation<limits>::Work;
+  }
+  typename LabelField<limits>::Visits& visits() {
+    return *::new (static_cast<void*>(&visits_)) typename LabelField<limits>::Visits;
+  }
+  Borders<limits>& borders() { return *::new (static_cast<void*>(&borders_)) Borders<limits>; }
+
+ private:
+  union {
+    typename Segmentation<limits>::Work segmentation_;
+    typename LabelField<limits>::Visits visits_;
+    Borders<limits> borders_;
+  };
+};
+
+}  // namespace curbline

@@ -1,0 +1,61 @@
+// Bytes over TCP or a serial line, on POSIX. Made once for an address (which looks up the host's name and may
+// allocate); after that nothing is allocated, and a lost connection is opened anew by connect(). No call blocks longer
+// than the time it is given. Not thread-safe; not for interrupts. A serial line is set raw: 8 bits, no parity, no flow
+// control.
+#pragma once
+
+#include <sys/socket.h>
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace curbline::port {
+
+using Milliseconds = std::chrono::milliseconds;
+
+class ByteStream {
+ public:
+  /// A TCP server. Nothing if the host's name cannot be looked up; `error` then says why.
+  static std::optional<ByteStream> tcp(const std::string& host, std::uint16_t port, std::string& error);
+
+  /// A serial device or pty.
+  static ByteStream serial(const std::string& path);
+
+  ByteStream(ByteStream&& other) noexcept;
+  ByteStream& operator=(ByteStream&& other) noexcept;
+  ~ByteStream() { close(); }
+
+  /// Opens, or opens anew. 0, or the errno of what failed.
+  int connect(Milliseconds patience);
+  bool is_open() const { return fd_ >= 0; }
+  void close();
+
+  /// Bits a second of a serial line; a speed that the system does not know is EINVAL. Nothing for TCP.
+  int set_baud(int baud);
+
+  enum class Read : unsigned char { bytes, nothing, closed };
+
+  /// Waits for bytes; `count` tells how many came. A signal ends the wait with nothing. Closed: by the other side, or
+  /// broken.
+  Read read(std::span<std::uint8_t> bytes, std::size_t& count, Milliseconds patience);
+
+  /// Writes all of it, or closes and gives false.
+  bool write(std::span<const std::uint8_t> bytes, Milliseconds patience);
+
+  int fd() const { return fd_; }  ///< for poll(); -1 if closed
+
+ private:
+  ByteStream() = default;
+  int connect_tcp(Milliseconds patience);
+  int connect_serial();
+
+  int fd_ = -1;
+  std::string path_;  ///< of a serial line; empty: TCP
+  sockaddr_storage address_{};
+  socklen_t address_size_ = 0;
+};
+
+}  // namespace curbline::port

@@ -1,0 +1,53 @@
+// A SICK LMS151 (or another LMS1xx) as scan lines, over CoLa B: "sEN LMDscandata 1" asks for every scan, and is
+// repeated until the scanner confirms it. Nothing of its configuration is changed: resolution and field are those that
+// were set in it, and stand in every telegram. Port 2112 must be set to CoLa B (binary); a scanner that answers in CoLa
+// A is a problem() that says so.
+//
+// Time: a telegram bears the scan's start and its own transmission, microseconds of one counter of 32 bits. The
+// transmission is compared with the arrival (a lower envelope), so that the length of a scan does not matter. Source:
+// SICK 8014631.
+#pragma once
+
+#include <array>
+
+#include "cola/scan_data.hpp"
+#include "cola/telegram.hpp"
+#include "scanner/device_clock.hpp"
+#include "scanner/session.hpp"
+
+namespace curbline::cola {
+
+inline constexpr int tcp_port = 2112;
+inline constexpr std::size_t most_beams = 1441;
+
+class Session final : public scanner::Session {
+ public:
+  Session() : telegrams_(counters_) {}
+
+  void restart(const scanner::Now& now) override;
+  std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
+  bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
+  const scanner::Line& line() const override { return line_; }
+  const scanner::Counters& counters() const override { return counters_; }
+  std::int64_t log_time_ns(std::int64_t near_ns) const override { return stamps_.nearest_ns(line_.device_ns, near_ns); }
+  std::string_view problem() const override { return problem_; }
+  std::span<const std::uint8_t> farewell() const override;
+
+ private:
+  bool take_content(std::span<const std::uint8_t> content, const scanner::Now& now);
+  bool take_scan(std::span<const std::uint8_t> content, const scanner::Now& now);
+  bool take_time(const ScanData& data, const scanner::Now& now);
+  void look_for_cola_a(std::span<const std::uint8_t> bytes);
+
+  scanner::Counters counters_{};
+  TelegramBuffer telegrams_;
+  bool confirmed_ = false, due_ = true;
+  std::int64_t sent_ns_ = 0;  ///< steady
+  scanner::StampCounter stamps_{32, 1'000};
+  scanner::DeviceClock clock_{0};
+  std::array<float, most_beams> ranges_m_{};
+  scanner::Line line_{};
+  std::string_view problem_{};
+};
+
+}  // namespace curbline::cola

@@ -1,0 +1,63 @@
+// A SICK LMS200 (LMS2xx) on a serial line as scan lines. It is looked for at 500000, 38400, 9600 (as it is after
+// power-on) and 19200 baud, brought to 38400 from the lower two, asked for its measuring mode (74h), set to the field
+// and step of the robot's description (3Bh), and started (20h 24h). Nothing is written into its EEPROM.
+//
+// Its telegrams bear no time: a line's follows from its arrival and the turns of the mirror (turn_clock.hpp), less the
+// time on the wire and the part of a turn that its field takes, to a few milliseconds. At 38400 baud the line carries 9
+// of the 75 scans a second that the scanner takes; 500000 baud, RS-422, carries all. Source: SICK 8007954.
+#pragma once
+
+#include <array>
+
+#include "lms200/scan_data.hpp"
+#include "lms200/telegram.hpp"
+#include "lms200/turn_clock.hpp"
+#include "scanner/session.hpp"
+
+namespace curbline::lms200 {
+
+class Session final : public scanner::Session {
+ public:
+  /// `beams` of the robot's laser. The scanner is set to that number if it has a field and step for it, else left as it
+  /// is.
+  explicit Session(std::size_t beams) : telegrams_(counters_), variant_(variant_of(beams)) {}
+
+  void restart(const scanner::Now& now) override;
+  std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
+  bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
+  const scanner::Line& line() const override { return line_; }
+  const scanner::Counters& counters() const override { return counters_; }
+  std::int64_t log_time_ns(std::int64_t near_ns) const override { return near_ns; }
+  std::string_view problem() const override { return problem_; }
+  std::span<const std::uint8_t> farewell() const override;
+  int baud() const override;
+
+ private:
+  enum class Step : unsigned char { find, speed_up, configuration, variant, start, measuring };
+
+  void go_to(Step step);
+  std::size_t write_command();
+  bool take_content(std::span<const std::uint8_t> content, const scanner::Now& now);
+  void take_reply(std::span<const std::uint8_t> content);
+  void refuse(std::string_view problem);
+  void take_time(Variant variant, std::size_t telegram_bytes, const scanner::Now& now);
+  bool take_scan(std::span<const std::uint8_t> content, const scanner::Now& now);
+
+  scanner::Counters counters_{};
+  HostBuffer telegrams_;
+  Variant variant_;
+  Step step_ = Step::find;
+  bool due_ = true;
+  int tries_ = 0;
+  std::size_t baud_ = 0;      ///< index of those it is looked for at
+  std::int64_t sent_ns_ = 0;  ///< steady
+  std::array<std::uint8_t, 16> command_{};
+  int range_bits_ = 13;
+  TurnClock clock_{};
+  std::uint64_t lost_before_ = 0;  ///< telegrams, when the last line came
+  std::array<float, most_beams> ranges_m_{};
+  scanner::Line line_{};
+  std::string_view problem_{};
+};
+
+}  // namespace curbline::lms200

@@ -1,0 +1,64 @@
+// Telegrams of SICK's LMS2xx on a serial line: 0x02, address (0 to the scanner; 0x80 and its own from it), length u16,
+// then so many bytes (command, data and, from the scanner, its status), then a CRC u16 over all of them. Numbers are
+// little-endian. The scanner acknowledges a telegram by 0x06 before its reply, or refuses it by 0x15. Pure, reentrant.
+// Source: SICK, Telegrams for Configuring and Operating the LMS 2xx, 8007954, chapters 3 and 4.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scanner/telegram_buffer.hpp"
+
+namespace curbline::lms200 {
+
+/// The longest telegram, as chapter 3 has it.
+inline constexpr std::size_t most_bytes = 812;
+
+inline constexpr std::uint8_t stx = 0x02, acknowledged = 0x06, not_acknowledged = 0x15, from_scanner = 0x80;
+
+/// Sum of a telegram without its last two bytes. SICK's own: the register is shifted by one bit a byte (polynomial
+/// 0x8005) and takes in the byte and the one before it.
+constexpr std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
+  unsigned crc = 0;
+  std::uint8_t before = 0;
+  for (const std::uint8_t byte : bytes) {
+    crc = (crc & 0x8000) != 0 ? (crc & 0x7FFF) << 1 ^ 0x8005 : crc << 1;
+    crc ^= static_cast<unsigned>(byte) | static_cast<unsigned>(before) << 8;
+    before = byte;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+/// Telegrams whose address has the bits of `address`.
+template <std::uint8_t address>
+struct Format {
+  static constexpr std::size_t header = 4;
+  static constexpr std::size_t length_of(std::span<const std::uint8_t> bytes) {
+    return static_cast<std::size_t>(bytes[2] | bytes[3] << 8);
+  }
+  static std::size_t size_of(std::span<const std::uint8_t> bytes) {
+    return bytes[0] == stx && (bytes[1] & from_scanner) == address ? header + length_of(bytes) + 2 : 0;
+  }
+  static bool plausible(std::span<const std::uint8_t> bytes) {
+    return length_of(bytes) >= 1 && length_of(bytes) <= most_bytes - header - 2;
+  }
+  static bool check(std::span<const std::uint8_t> telegram) {
+    const std::size_t size = telegram.size() - 2;
+    return crc_of(telegram.first(size)) == static_cast<std::uint16_t>(telegram[size] | telegram[size + 1] << 8);
+  }
+  static bool filler(std::uint8_t byte) { return byte == acknowledged || byte == not_acknowledged; }
+};
+
+/// What the host reads, and what the scanner reads.
+using HostBuffer = scanner::TelegramBuffer<Format<from_scanner>, most_bytes>;
+using ScannerBuffer = scanner::TelegramBuffer<Format<0>, most_bytes>;
+
+/// Command, data and status of a telegram that passed check().
+inline std::span<const std::uint8_t> content_of(std::span<const std::uint8_t> telegram) {
+  return telegram.subspan(4, telegram.size() - 6);
+}
+
+/// Frames `content` into `telegram`, which has room for six bytes more. Returns its size.
+std::size_t frame(std::uint8_t address, std::span<const std::uint8_t> content, std::span<std::uint8_t> telegram);
+
+}  // namespace curbline::lms200

@@ -1,0 +1,110 @@
+#include "scanner/live_scanner.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <thread>
+
+namespace curbline::scanner {
+namespace {
+
+constexpr port::Milliseconds send_patience{500}, look_again{50};
+
+std::int64_t nanoseconds(port::Milliseconds time) {
+  return std::chrono::nanoseconds(time).count();
+}
+
+}  // namespace
+
+Now host_now() {
+  const auto read_clock = [](clockid_t clock) {
+    timespec t{};
+    ::clock_gettime(clock, &t);
+    return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec;
+  };
+  return {read_clock(CLOCK_REALTIME), read_clock(CLOCK_MONOTONIC)};
+}
+
+LiveScanner::~LiveScanner() {
+  if (stream_.is_open()) stream_.write(session_.farewell(), send_patience);
+}
+
+int LiveScanner::open() {
+  left_ = {};
+  more_ = false;
+  baud_ = 0;
+  last_error_ = stream_.connect(options_.connect_patience);
+  const Now now = host_now();
+  next_attempt_ns_ = now.steady_ns + nanoseconds(options_.retry_after);
+  if (last_error_ != 0) return last_error_;
+  ++connections_;
+  last_line_ns_ = now.steady_ns;
+  session_.restart(now);
+  return 0;
+}
+
+LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
+  const std::int64_t until_ns = host_now().steady_ns + nanoseconds(patience);
+  while (true) {
+    if (!stream_.is_open()) return reopen(patience);
+    if (more_) {
+      more_ = session_.take(left_, received_);
+      if (more_) {
+        last_line_ns_ = received_.steady_ns;
+        return Event::line;
+      }
+    }
+    if (!send_what_is_due()) return lose(last_error_);
+    const Now now = host_now();
+    if (now.steady_ns - last_line_ns_ > nanoseconds(options_.silence)) return lose(ETIMEDOUT);
+    const auto rest =
+        std::chrono::duration_cast<port::Milliseconds>(std::chrono::nanoseconds(until_ns - now.steady_ns));
+    std::size_t count = 0;
+    const auto got = stream_.read(buffer_, count, std::clamp(rest, port::Milliseconds{0}, look_again));
+    if (got == port::ByteStream::Read::closed) return lose(0);
+    if (got == port::ByteStream::Read::bytes) {
+      received_ = host_now();
+      left_ = std::span(buffer_).first(count);
+      more_ = true;
+    } else if (rest.count() <= 0 ||
+               (rest > look_again && host_now().steady_ns - now.steady_ns < nanoseconds(look_again) / 2)) {
+      return Event::nothing;  // the time is over, or a signal cut the wait short
+    }
+  }
+}
+
+/// Speed first: the command must leave at the one the session has chosen.
+bool LiveScanner::send_what_is_due() {
+  const auto command = session_.to_send(host_now());
+  if (session_.baud() != baud_) {
+    baud_ = session_.baud();
+    last_error_ = stream_.set_baud(baud_);
+    if (last_error_ != 0) return false;
+  }
+  if (command.empty()) return true;
+  last_error_ = 0;
+  return stream_.write(command, send_patience);
+}
+
+LiveScanner::Event LiveScanner::reopen(port::Milliseconds patience) {
+  if (!options_.reconnect && connections_ > 0) return Event::lost;
+  const std::int64_t wait_ns = next_attempt_ns_ - host_now().steady_ns;
+  if (wait_ns > 0) {
+    std::this_thread::sleep_for(std::min(std::chrono::nanoseconds(wait_ns), std::chrono::nanoseconds(patience)));
+    return Event::nothing;
+  }
+  return open() == 0 ? Event::nothing : Event::lost;
+}
+
+LiveScanner::Event LiveScanner::lose(int error) {
+  stream_.close();
+  left_ = {};
+  more_ = false;
+  last_error_ = error;
+  next_attempt_ns_ = host_now().steady_ns;
+  return Event::lost;
+}
+
+}  // namespace curbline::scanner

@@ -1,0 +1,70 @@
+// A scanner on the wire: a session (the protocol) over a byte stream, with the host's clocks. What replay and the
+// daemon read scan lines from. Nothing is allocated after it is made. One thread; not for interrupts.
+//
+//   scip2::Session session;
+//   LiveScanner scanner(session, std::move(stream), {.reconnect = true});
+//   while (running) if (scanner.read(100ms) == LiveScanner::Event::line) use(session.line());
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "byte_stream/byte_stream.hpp"
+#include "scanner/session.hpp"
+
+namespace curbline::scanner {
+
+struct LiveOptions {
+  bool reconnect = true;                       ///< false: a connection that ends is the end
+  port::Milliseconds connect_patience{2'000};  ///< for one attempt
+  port::Milliseconds retry_after{500};         ///< between attempts
+  port::Milliseconds silence{3'000};           ///< without a line: the scanner is taken as lost, and connected anew
+};
+
+class LiveScanner {
+ public:
+  enum class Event : unsigned char {
+    line,     ///< session.line() is new
+    nothing,  ///< not within the time given, or a signal came
+    lost,  ///< the connection ended, could not be made, or the scanner is silent; told once, read() goes on if it may
+           ///< reconnect
+  };
+
+  /// `session` must outlive it.
+  LiveScanner(Session& session, port::ByteStream stream, const LiveOptions& options)
+      : session_(session), stream_(std::move(stream)), options_(options) {}
+  LiveScanner(const LiveScanner&) = delete;
+  LiveScanner& operator=(const LiveScanner&) = delete;
+  ~LiveScanner();
+
+  /// Connects now. 0, or the errno of what failed. read() does it by itself where it may reconnect.
+  int open();
+
+  Event read(port::Milliseconds patience);
+
+  bool is_open() const { return stream_.is_open(); }
+  std::uint64_t connections() const { return connections_; }  ///< made so far: one more than restarts survived
+  int last_error() const { return last_error_; }  ///< errno of the last attempt that failed, 0: the other side closed
+
+ private:
+  Event reopen(port::Milliseconds patience);
+  Event lose(int error);
+  bool send_what_is_due();
+
+  Session& session_;
+  port::ByteStream stream_;
+  LiveOptions options_;
+  std::array<std::uint8_t, 4096> buffer_{};
+  std::span<const std::uint8_t> left_{};                 ///< of buffer_, not yet read by the session
+  bool more_ = false;                                    ///< the session may hold another line
+  std::int64_t last_line_ns_ = 0, next_attempt_ns_ = 0;  ///< steady
+  Now received_{};
+  std::uint64_t connections_ = 0;
+  int last_error_ = 0;
+  int baud_ = 0;
+};
+
+/// The host's clocks now.
+Now host_now();
+
+}  // namespace curbline::scanner

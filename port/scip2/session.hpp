@@ -1,0 +1,78 @@
+// A Hokuyo UTM-30LX (or another scanner of SCIP 2.0) as scan lines. It is set up by QT (stop), SCIP2.0, PP (its steps
+// and ranges), TM (its clock), BM (laser on) and MD (every scan, all steps, three characters a range: two end at 4.095
+// m), and asked again when it does not answer within half a second.
+//
+// Time: the stamp is that of the first step, in whole milliseconds, 24 bits. The scanner's clock is compared with the
+// host's by eight questions TM1 before measuring (the least delayed counts; right to the millisecond of the stamp and
+// the way there), and lines follow the drift after that. Sources: Hokuyo C-42-03320B; UTM-30LX specification C-42-3615;
+// that the stamp is that of step 0 is how the driver urg_stamped reads it.
+#pragma once
+
+#include <array>
+
+#include "scanner/device_clock.hpp"
+#include "scanner/session.hpp"
+#include "scip2/decoder.hpp"
+
+namespace curbline::scip2 {
+
+inline constexpr int tcp_port = 10940;
+
+/// What PP says.
+struct Parameters {
+  int dmin_mm = 0, dmax_mm = 0;  ///< ranges outside are no returns
+  int steps_a_turn = 0;          ///< ARES
+  int first_step = 0, last_step = 0, front_step = 0;
+};
+
+class Session final : public scanner::Session {
+ public:
+  Session() : decoder_(counters_) {}
+
+  void restart(const scanner::Now& now) override;
+  std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
+  bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
+  const scanner::Line& line() const override { return line_; }
+  const scanner::Counters& counters() const override { return counters_; }
+  std::int64_t log_time_ns(std::int64_t near_ns) const override { return stamps_.nearest_ns(line_.device_ns, near_ns); }
+  std::string_view problem() const override { return problem_; }
+  std::span<const std::uint8_t> farewell() const override;
+
+ private:
+  enum class Step : unsigned char {
+    stop,
+    scip2,
+    parameters,
+    clock_on,
+    clock_ask,
+    clock_off,
+    laser_on,
+    measure,
+    measuring
+  };
+
+  void go_to(Step step);
+  void take_reply(const Reply& reply, const scanner::Now& now);
+  void take_parameters(const Reply& reply);
+  void take_time(const Reply& reply, const scanner::Now& now);
+  bool take_scan(const Scan& scan, const scanner::Now& now);
+  void write_command();
+  std::string_view command() const { return {command_.data(), command_size_}; }
+
+  scanner::Counters counters_{};
+  Decoder decoder_;
+  Step step_ = Step::stop;
+  bool due_ = true;
+  std::int64_t sent_ns_ = 0;  ///< steady
+  std::array<char, 24> command_{};
+  std::size_t command_size_ = 0;
+  int clock_asked_ = 0;
+  Parameters parameters_{};
+  scanner::StampCounter stamps_{24, 1'000'000};
+  scanner::DeviceClock clock_{25'000'000};  ///< a turn, if the scanner refuses TM
+  std::array<float, most_steps> ranges_m_{};
+  scanner::Line line_{};
+  std::string_view problem_{};
+};
+
+}  // namespace curbline::scip2

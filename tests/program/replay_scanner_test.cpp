@@ -1,0 +1,160 @@
+// replay from simulated scanners on this machine, against replay of the log that they play.
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "formats/csv.hpp"
+#include "program.hpp"
+#include "robot/robot.hpp"
+#include "scanner/server.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+/// A simulated scanner that plays a log beside the test.
+class Playing {
+ public:
+  Playing(Protocol protocol, const std::string& scans, ServerOptions options = {.speed = 0})
+      : server_(protocol, ScanFeed::from_log(scans), scans, std::move(options)),
+        thread_([this] { server_.run(stop_); }) {}
+  ~Playing() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::string address() const { return server_.address(); }
+
+ private:
+  std::atomic<bool> stop_ = false;
+  ScannerServer server_;
+  std::thread thread_;
+};
+
+Words results(const Recording& logs, const std::string& name) {
+  return {"--labels", logs.path(name + ".labels.csv"), "--curbs", logs.path(name + ".curbs.csv"), "--json"};
+}
+
+nlohmann::json replay(const Words& arguments) {
+  const Outcome outcome = curbline(arguments);
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.err.empty());
+  return nlohmann::json::parse(outcome.out);
+}
+
+void check_same(const Recording& logs, Protocol protocol) {
+  const nlohmann::json from_log = replay(logs.replay() + results(logs, "log"));
+  const Playing scanner(protocol, logs.path("scans.carmen"));
+  const nlohmann::json live = replay(logs.replay("scans", scanner.address()) + results(logs, "live"));
+  CHECK(live == from_log);
+  CHECK(live.at("lines") > 40);
+  CHECK(read_file(logs.path("live.labels.csv")) == read_file(logs.path("log.labels.csv")));
+  CHECK(read_file(logs.path("live.curbs.csv")) == read_file(logs.path("log.curbs.csv")));
+}
+
+TEST_CASE("program: lines over SCIP 2.0, beside their CAN log, give the log's curbs byte for byte") {
+  const Recording logs("street", "utm30lx");
+  check_same(logs, Protocol::scip2);
+  CHECK(read_curbs(logs.path("live.curbs.csv")).size() >= 2);
+}
+
+TEST_CASE("program: lines over CoLa B, beside their CAN log, give the log's curbs byte for byte") {
+  const Recording logs("street", "lms151");
+  check_same(logs, Protocol::cola);
+  CHECK(read_curbs(logs.path("live.curbs.csv")).size() >= 2);
+}
+
+TEST_CASE("program: a scanner in a scene gives the lines that simulate writes") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  ScanFeed log = ScanFeed::from_log(logs.path("scans.carmen"));
+  ScanFeed scene = ScanFeed::from_scene(find_scene("street"), read_robot(shipped_robot("utm30lx")));
+  for (int i = 0; i < 40; ++i) {
+    const auto from_log = log.next(), from_scene = scene.next();
+    REQUIRE(from_log);
+    REQUIRE(from_scene);
+    CHECK(from_log->time_ns == from_scene->time_ns);
+    REQUIRE(from_log->ranges_m.size() == from_scene->ranges_m.size());
+    for (std::size_t beam = 0; beam < from_log->ranges_m.size(); ++beam) {
+      if (std::isnan(from_log->ranges_m[beam])) continue;  // out of range to the millimetre
+      REQUIRE(std::abs(from_log->ranges_m[beam] - from_scene->ranges_m[beam]) < 6e-4f);
+    }
+  }
+  CHECK(log.front() == nullptr);
+}
+
+TEST_CASE("program: curbline-scanner says what is wrong with its arguments and input") {
+  const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
+  const auto status_of = [](const std::string& arguments) {
+    return WEXITSTATUS(std::system((std::string(CURBLINE_SCANNER) + " " + arguments + " >/dev/null 2>&1").c_str()));
+  };
+  const std::string scans = logs.path("scans.carmen");
+  CHECK(status_of("") == 2);
+  CHECK(status_of("cola") == 2);
+  CHECK(status_of("udp --scans " + scans) == 2);
+  CHECK(status_of("scip2 --speed 0 --scans " + scans) == 2);
+  CHECK(status_of("scip2 --scene street") == 2);
+  CHECK(status_of("scip2 --scans /no/such/log") == 1);
+  CHECK(status_of("lms200 --scans " + scans) == 1);  // 1081 beams
+}
+
+TEST_CASE("program: live lines join poses too") {
+  const Recording logs("city", "fixed_tilt", {"--duration", "4"});
+  check_same(logs, Protocol::scip2);
+}
+
+/// Still and at a fixed tilt: a map that needs no times.
+TEST_CASE("program: lines of an LMS200 on a pty give the log's map") {
+  const TemporaryDirectory directory;
+  const std::string robot = directory.write(
+      "lms200.toml",
+      "[laser]\nmodel = \"lms-200\"\n[tilt]\nfixed = true\nfixed_tilt_rad = 0.6\n[tilt.mount]\nz_m = 1.0\n");
+  REQUIRE(
+      curbline({"simulate", "--scene", "street", "--robot", robot, "--out", directory.path("run"), "--duration", "2"})
+          .status == 0);
+  const std::string scans = directory.path("run/scans.carmen"), log_labels = directory.path("log.csv"),
+                    live_labels = directory.path("live.csv");
+  const auto from_log = replay({"replay", "--scans", scans, "--robot", robot, "--labels", log_labels, "--json"});
+  const Playing scanner(Protocol::lms200, scans);
+  CHECK(replay({"replay", "--scans", scanner.address(), "--robot", robot, "--labels", live_labels, "--json"}) ==
+        from_log);
+  CHECK(read_file(live_labels) == read_file(log_labels));
+}
+
+TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {
+  const Recording logs("street", "utm30lx");
+  const Playing scanner(Protocol::scip2, logs.path("scans.carmen"), {.speed = 1});
+  std::string line = "timeout --preserve-status -s INT 2 " CURBLINE_PROGRAM;
+  for (const std::string& word : logs.replay("scans", scanner.address()) + Words{"--json"}) line += " '" + word + "'";
+  const std::string out = logs.path("summary.json");
+  CHECK(std::system((line + " > " + out).c_str()) == 0);
+  const auto summary = nlohmann::json::parse(read_file(out));
+  CHECK(summary.at("lines") > 20);
+  CHECK(summary.at("lines") < 120);
+}
+
+TEST_CASE("program: a scanner that is not there, or has other beams than the robot, is refused") {
+  const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
+  check_refused(curbline(logs.replay("scans", "scip2:127.0.0.1:1")), "scip2:127.0.0.1:1: ", "expected a scanner there");
+  check_refused(curbline(logs.replay("scans", "cola:127.0.0.1:66000")),
+                "cola:127.0.0.1:66000: ", "expected a number from 1 to 65535");
+  check_refused(curbline(logs.replay("scans", "cola:")), "cola:: ", "expected cola:HOST");
+  check_refused(curbline(logs.replay("scans", "scip2:no.such.host.invalid")),
+                "scip2:no.such.host.invalid: ", "expected the name or address");
+  check_refused(curbline(logs.replay("scans", "lms200:/dev/null")), "lms200:/dev/null: ", "bear no time");
+  const Playing scanner(Protocol::cola, logs.path("scans.carmen"));
+  const Outcome outcome = curbline(
+      {"replay", "--scans", scanner.address(), "--can", logs.path("can.log"), "--robot", shipped_robot("lms151")});
+  check_refused(outcome, scanner.address() + ":1: ", "1081 ranges; expected 541");
+}
+
+TEST_CASE("program: a scanner that speaks another protocol is given up after some seconds, in one line") {
+  const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
+  const Playing scanner(Protocol::scip2, logs.path("scans.carmen"));
+  const std::string cola = "cola:" + scanner.address().substr(6);
+  const Outcome outcome = curbline(logs.replay("scans", cola));
+  check_refused(outcome, cola + ": ", "no scan line for 5 s");
+  CHECK(outcome.seconds < 8);
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

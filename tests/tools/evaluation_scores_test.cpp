@@ -1,0 +1,197 @@
+// Labels, planes and curbs against the truth of a scene.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "evaluation/scores.hpp"
+
+namespace curbline::tools {
+namespace {
+
+//           y
+//    ______ 2 ______
+//   | road  |  0.10 |   the step is at x = 2, all along y
+//   |_______|_______|
+//   0       2       4  x
+Truth step_of(double height_m) {
+  Truth truth;
+  truth.planes = {{"road", {0, 0, 0}}, {"pavement", {height_m, 0, 0}}};
+  truth.regions = {{"road", rectangle({0, -2}, {2, 2}), 0}, {"pavement", rectangle({2, -2}, {4, 2}), 1}};
+  TruthCurb curb;
+  curb.from = {2, -2};  // so that left is the road
+  curb.to = {2, 2};
+  curb.from_step_m = curb.to_step_m = -height_m;
+  curb.kind = "step";
+  truth.curbs = {curb};
+  return truth;
+}
+
+std::vector<LabelledCell> cells_of(const Truth& truth, double last_x_m = 4) {
+  std::vector<LabelledCell> cells;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const double x = 0.1 * i + 0.05, y = 0.1 * j - 1.95;
+      if (x > last_x_m) continue;
+      cells.push_back({x, y, {x, y, truth.terrain_height(x, y), 1e-4, 9, truth.plane_at(x, y), 1}});
+    }
+  }
+  return cells;
+}
+
+Seen seen_in(const std::vector<LabelledCell>& cells) {
+  Seen seen;
+  for (const LabelledCell& cell : cells) seen.add(cell.x_m, cell.y_m);
+  return seen;
+}
+
+MapCurb piece(double x_m, double y0_m, double y1_m, double height_m, const char* kind = "step_up") {
+  return {x_m, y0_m, x_m, y1_m, height_m, 0.01, 1, kind};
+}
+
+const Truth truth = step_of(0.1);
+const Seen everything = seen_in(cells_of(truth));
+
+CurbScores scores_of(std::vector<MapCurb> curbs, const Truth& of = truth) {
+  return score_curbs({{}, std::move(curbs), Point2{0, 0}}, of, everything);
+}
+
+}  // namespace
+
+TEST_CASE("seen: within a cell of a valid one, across 0 too") {
+  Seen seen;
+  seen.add(-0.05, 0.05);
+  CHECK(seen(0.05, 0.05));
+  CHECK(seen(-0.15, 0.15));
+  CHECK_FALSE(seen(0.15, 0.05));
+}
+
+TEST_CASE("scores: perfect labels and curbs score 1 without error") {
+  const PlaneScores planes = score_planes({{cells_of(truth)}, {}, {}}, truth);
+  CHECK(planes.v == Approx(1));
+  CHECK(planes.cell_rmse_m == Approx(0).margin(1e-9));
+  CHECK(planes.plane_rmse_m == Approx(0).margin(1e-9));
+  CHECK(planes.slope_rad.most == Approx(0).margin(1e-6));
+  const CurbScores curbs = scores_of({piece(2, -2, 2, 0.1)});
+  for (const StepRates& rates : curbs.at) CHECK(rates.f1 == Approx(1));
+  CHECK(curbs.height_m.most == Approx(0).margin(1e-9));
+  CHECK(curbs.position_m.most == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("scores: cells of half the usual size are as many parts as the planes") {
+  std::vector<LabelledCell> fine;
+  for (LabelledCell cell : cells_of(truth)) {
+    for (const double dx : {-0.025, 0.025}) {
+      for (const double dy : {-0.025, 0.025}) {
+        fine.push_back(cell);
+        fine.back().x_m += dx;
+        fine.back().y_m += dy;
+      }
+    }
+  }
+  CHECK(score_planes({{fine}, {}, {}}, truth).v == Approx(1));
+}
+
+TEST_CASE("scores: a window with one true plane says nothing of V, and does not count") {
+  const PlaneScores planes = score_planes({{cells_of(truth, 1.9), cells_of(truth)}, {}, {}}, truth);
+  CHECK(planes.v == Approx(1));
+  CHECK(std::isnan(score_planes({{cells_of(truth, 1.9)}, {}, {}}, truth).v));
+}
+
+TEST_CASE("scores: a method without labels has no V") {
+  std::vector<LabelledCell> cells = cells_of(truth);
+  for (LabelledCell& cell : cells) cell.cell.label = -1;
+  const PlaneScores planes = score_planes({{cells}, {}, {}}, truth);
+  CHECK(std::isnan(planes.v));
+  CHECK(std::isnan(planes.plane_rmse_m));
+  CHECK(planes.cell_rmse_m == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("scores: a plane that leans and lies too high has the errors that it has") {
+  std::vector<LabelledCell> cells = cells_of(truth, 1.9);
+  for (LabelledCell& cell : cells) cell.cell.height_m = 0.02 + 0.01 * (cell.x_m - 1.0);
+  const PlaneScores planes = score_planes({{cells}, {}, {}}, truth);
+  CHECK(planes.slope_rad.median == Approx(0.01).margin(1e-5));
+  CHECK(planes.height_m.median == Approx(0.0195).margin(1e-6));  // the middle of the cells is x = 0.95
+}
+
+TEST_CASE("scores: rates by tolerance follow the distance") {
+  const CurbScores curbs = scores_of({piece(2.12, -2, 2, 0.1)});
+  CHECK(curbs.at[0].precision == 0);
+  CHECK(curbs.at[1].recall == 0);
+  CHECK(curbs.at[2].f1 == Approx(1));
+  CHECK(curbs.position_m.median == Approx(0.12));
+}
+
+TEST_CASE("scores: half a curb has half the recall, and a piece in the open half the precision") {
+  const CurbScores curbs = scores_of({piece(2, -2, 0, 0.1), piece(1, -2, 0, 0.1)});
+  CHECK(curbs.at[0].recall == Approx(0.5).margin(0.02));
+  CHECK(curbs.at[0].precision == Approx(0.5));
+}
+
+TEST_CASE("scores: creases are no steps, found or true") {
+  CHECK(scores_of({piece(2, -2, 2, 0.1, "crease")}).at[1].recall == 0);
+  Truth ramp = truth;
+  ramp.curbs[0].kind = "crease";
+  const CurbScores curbs = scores_of({piece(2, -2, 2, 0.1)}, ramp);
+  CHECK(curbs.at[1].precision == 0);
+  CHECK(std::isnan(curbs.at[1].recall));
+}
+
+TEST_CASE("scores: a step that the robot sees from one side only cannot be missed") {
+  const Seen near_side = seen_in(cells_of(truth, 2.05));
+  const CurbScores curbs = score_curbs({{}, {}, Point2{0, 0}}, truth, near_side);
+  CHECK(std::isnan(curbs.at[1].recall));
+}
+
+TEST_CASE("scores: steps belong to the band of their own height") {
+  const CurbScores low = scores_of({piece(2, -2, 2, 0.03)}, step_of(0.03));
+  CHECK(low.band[0].recall == Approx(1));
+  CHECK(low.band[0].precision == Approx(1));
+  CHECK(low.band[1].truth == 0);
+  CHECK(std::isnan(low.band[1].recall));
+}
+
+TEST_CASE("scores: up told as down is an error of twice the height, for a robot that stands") {
+  const std::vector<MapCurb> down{piece(2, -2, 2, -0.1, "step_down")};
+  CHECK(scores_of(down).height_m.median == Approx(0.2));
+  CHECK(score_curbs({{}, down, {}}, truth, everything).height_m.median == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("scores: calibration is by each piece's own sd, and by length") {
+  // 3 m half an sd off, 1 m one and a half sd off
+  const Calibration c = scores_of({piece(2, -2, 1, 0.105), piece(2, 1, 2, 0.085)}).calibration;
+  CHECK(c.pieces == 2);
+  CHECK(c.mean_square == Approx((3 * 0.25 + 2.25) / 4));
+  CHECK(c.within_1_sd == Approx(0.75));
+  CHECK(c.within_2_sd == Approx(1));
+}
+
+TEST_CASE("scores: a curb's match is of what could be seen of it") {
+  const Seen half = seen_in([] {
+    std::vector<LabelledCell> cells = cells_of(truth);
+    std::erase_if(cells, [](const LabelledCell& cell) { return cell.y_m > 0; });
+    return cells;
+  }());
+  const auto matches = match_steps({{}, {piece(2.02, -2, -1, 0.09)}, {}}, truth, half);
+  REQUIRE(matches.size() == 1);
+  CHECK(matches[0].visible_m == Approx(2).margin(0.15));
+  CHECK(matches[0].covered == Approx(0.5).margin(0.06));
+  CHECK(matches[0].position_error_m == Approx(0.02));
+  CHECK(matches[0].height_m == Approx(0.09));
+}
+
+TEST_CASE("detections: a step is seen when both sides are, found when it is told of, and only its first time counts") {
+  Detections detections(truth);
+  const Bounds window{0, -2, 4, 2};
+  const std::vector<MapCurb> told{piece(2, -0.1, 0.1, 0.1)};
+  detections.observe(1, {0, 0}, window, seen_in(cells_of(truth, 2.05)), {});
+  CHECK_FALSE(detections.of_curbs()[0].seen_s);
+  detections.observe(2, {0, 0}, window, everything, {});
+  detections.observe(5, {0.5, 0}, window, everything, told);
+  detections.observe(7, {1.5, 0}, window, everything, told);
+  REQUIRE(detections.of_curbs()[0].found_s);
+  CHECK(*detections.of_curbs()[0].seen_s == 2);
+  CHECK(*detections.of_curbs()[0].found_s == 5);
+  CHECK(detections.of_curbs()[0].distance_m == Approx(1.5).margin(0.02));
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,109 @@
+// A robot's description to DBC and back, and the DBC of the curb frames that ships.
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "can/curb_frames.hpp"
+#include "formats_support.hpp"
+#include "robot/signal_dbc.hpp"
+
+using namespace curbline;
+using namespace curbline::tools;
+using namespace curbline::tools::testing;
+
+namespace {
+
+std::string text_of(const Dbc& dbc) {
+  std::ostringstream text;
+  write_dbc(text, dbc);
+  return text.str();
+}
+
+/// The robot, written as DBC and read from the TOML made of that.
+Robot through_dbc(const Robot& robot) {
+  const TemporaryDirectory dir;
+  const std::string path = dir.write("r.dbc", text_of(dbc_of(robot)));
+  const std::string toml = tilt_toml(find_signal(read_dbc(path), path, "TiltServo", "Tilt"), "TiltServo.Tilt");
+  return read_robot(dir.write("r.toml", toml));
+}
+
+Robot robot_of(const std::string& toml) {
+  const TemporaryDirectory dir;
+  return read_robot(dir.write("r.toml", toml));
+}
+
+}  // namespace
+
+TEST_CASE("robot dbc: the angle of every servo is the same after DBC and TOML, for every frame") {
+  std::mt19937 random(2);
+  for (const std::string servo : {"cia402", "odrive", "vesc", "cubemars", "robstride", "mini-cheetah"}) {
+    INFO(servo);
+    const Robot in = robot_of("[tilt.signal]\nservo = \"" + servo + "\"\n");
+    const Robot out = through_dbc(in);
+    for (int k = 0; k < 200; ++k) {
+      can::Frame frame;
+      for (auto& byte : frame.data) byte = static_cast<std::uint8_t>(random());
+      can::encode(in.tilt_signal, 0.01 * k - 1.0, frame);
+      frame.length = 8;
+      const auto angle = can::decode(in.tilt_signal, frame);
+      REQUIRE(angle);
+      REQUIRE(can::decode(out.tilt_signal, frame) == angle);
+    }
+  }
+}
+
+TEST_CASE("robot dbc: a multiplexed signal keeps its multiplexor") {
+  const Robot out =
+      through_dbc(robot_of("[tilt.signal]\nstart_bit = 8\nlength = 16\n[tilt.signal.multiplexor]\nstart_bit = "
+                           "7\nlength = 5\nbyte_order = \"big\"\nvalue = 17\n"));
+  REQUIRE(out.tilt_signal.multiplexor);
+  CHECK(out.tilt_signal.multiplexor->start_bit == 7);
+  CHECK(out.tilt_signal.multiplexor->length == 5);
+  CHECK(out.tilt_signal.multiplexor->order == can::ByteOrder::big);
+  CHECK(out.tilt_signal.multiplexor->value == 17);
+}
+
+TEST_CASE("robot dbc: what DBC has no word for is said in a comment") {
+  CHECK(text_of(dbc_of(robot_of("[tilt.signal]\nservo = \"robstride\"\n"))).find("in the bits 0x1f00ff00.") !=
+        std::string::npos);
+  const Dbc synced = dbc_of(robot_of("[tilt.signal]\nsync_id = 0x80\n"));
+  REQUIRE(synced.size() == 2);
+  CHECK(synced[1].name == "Sync");
+  CHECK(synced[1].id == 0x80);
+  CHECK(text_of(synced).find("BO_ 128 Sync: 0 ") != std::string::npos);
+}
+
+TEST_CASE("robot dbc: degrees and turns become radians, and a unit that is no angle is said") {
+  const auto toml = [](const std::string& unit) {
+    return tilt_toml({{.id = 1, .scale = 0.5, .offset = 2.0}, unit}, "A.B of a.dbc");
+  };
+  const auto scale = [&](const std::string& unit) { return robot_of(toml(unit)).tilt_signal.scale; };
+  CHECK(scale("rad") == 0.5);
+  CHECK(scale("deg") == Approx(0.5 * std::numbers::pi / 180).epsilon(1e-15));
+  CHECK(scale("\xC2\xB0") == scale("deg"));
+  CHECK(scale("turns") == Approx(std::numbers::pi).epsilon(1e-15));
+  CHECK(robot_of(toml("deg")).tilt_signal.offset == Approx(2 * std::numbers::pi / 180).epsilon(1e-15));
+  CHECK(toml("rad").find("Not known") == std::string::npos);
+  CHECK(toml("inc").find("# Not known as an angle: multiply") != std::string::npos);
+  CHECK(scale("inc\n[laser]\nbeams = 3") == 0.5);  // a unit cannot become a key
+}
+
+TEST_CASE("robot dbc: curb_ahead.dbc, which ships, is that of the code (curbline dbc --curbs)") {
+  CHECK(read_file(CURBLINE_SOURCE_DIR "/tools/robots/curb_ahead.dbc") == text_of(curb_dbc()));
+}
+
+TEST_CASE("robot dbc: a receiver that knows curb_ahead.dbc alone reads what is sent") {
+  const std::string path = CURBLINE_SOURCE_DIR "/tools/robots/curb_ahead.dbc";
+  const Dbc dbc = read_dbc(path);
+  const can::Frame frame =
+      can::curb_ahead_frame(can::CurbAhead{1.25f, -0.3f, 0.12f, 0.004f, CurbKind::step_down, 0.96f});
+  const auto value = [&](const std::string& name) {
+    return can::decode(find_signal(dbc, path, "CurbAhead", name).signal, frame).value();
+  };
+  CHECK(value("Distance") == Approx(1.25));
+  CHECK(value("Lateral") == Approx(-0.3));
+  CHECK(value("Height") == Approx(0.12));
+  CHECK(value("HeightSd") == Approx(0.004));
+  CHECK(value("Kind") == 2.0);
+  CHECK(value("Probability") == Approx(0.96));
+}

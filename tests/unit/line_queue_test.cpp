@@ -1,0 +1,163 @@
+// Lines that wait for their tilt: when each is given out, in which order, and what becomes of those for which there is
+// no room.
+#include "curbline/line_queue.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace curbline {
+namespace {
+
+constexpr Limits limits{.beams = 11};
+using Queue = LineQueue<limits, 4>;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t t0 = 1'290'682'980'025'000'000;
+constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+
+/// Lines of 11 beams, 1 ms apart.
+const LaserSettings laser{.beams = 11, .beam_interval_s = 1e-3f};
+
+Queue queue(const TiltSettings& tilt = {}) {
+  Queue out;
+  out.init(laser, tilt, 0.05f);
+  return out;
+}
+
+/// Line k, of time t0 + 25 k ms, whose ranges tell its number.
+struct Line {
+  explicit Line(int number, std::size_t beams = 11) : ranges_m(beams, static_cast<float>(number)), k(number) {}
+  ScanLine line() const { return {t0 + 25 * ms * k, ranges_m}; }
+  std::int64_t end_ns() const { return t0 + 25 * ms * k + 10 * ms; }
+  std::vector<float> ranges_m;
+  int k;
+};
+
+bool adds_up(const Queue& q) {
+  const LineQueueCounters& c = q.counters();
+  return c.pushed == c.covered + c.overdue + c.crowded + c.dropped + c.too_long + static_cast<std::uint32_t>(q.size());
+}
+
+TEST_CASE("line queue: a line is given out when a reading is at or after its last beam") {
+  Queue q = queue();
+  CHECK_FALSE(q.pop(t0, t0));
+  const Line line(0);
+  REQUIRE(q.push(line.line(), line.end_ns()));
+  CHECK_FALSE(q.pop(none, line.end_ns()));
+  CHECK_FALSE(q.pop(line.end_ns() - 1000, line.end_ns()));
+  const auto out = q.pop(line.end_ns() + 1000, line.end_ns());
+  REQUIRE(out);
+  CHECK(out->time_ns == t0);
+  CHECK(out->ranges_m.size() == 11);
+  CHECK(q.counters().covered == 1);
+  CHECK_FALSE(q.pop(line.end_ns() + 1000, line.end_ns()));
+}
+
+TEST_CASE("line queue: the reading that a line needs is later by the servo's latency") {
+  TiltSettings late;
+  late.latency_s = 0.02f;
+  Queue q = queue(late);
+  const Line line(0);
+  q.push(line.line(), line.end_ns());
+  CHECK_FALSE(q.pop(line.end_ns() + 19 * ms, line.end_ns()));
+  CHECK(q.pop(line.end_ns() + 21 * ms, line.end_ns()));
+}
+
+TEST_CASE("line queue: a laser at a fixed tilt never waits") {
+  TiltSettings fixed;
+  fixed.fixed = true;
+  Queue q = queue(fixed);
+  q.push(Line(0).line(), t0);
+  CHECK(q.pop(none, t0));
+  CHECK(q.counters().covered == 1);
+}
+
+TEST_CASE("line queue: what has waited too long is given out without its tilt, and counted") {
+  Queue q = queue();
+  const Line line(0);
+  q.push(line.line(), 7 * ms);  // arrival is of another clock than the line
+  CHECK_FALSE(q.pop(none, 56 * ms));
+  CHECK(q.pop(none, 58 * ms));
+  CHECK(q.counters().overdue == 1);
+  CHECK(q.counters().covered == 0);
+}
+
+TEST_CASE("line queue: the copy is the queue's own, and lines of any length keep theirs") {
+  Queue q = queue();
+  {
+    Line gone(1, 3);
+    q.push(gone.line(), t0);
+    gone.ranges_m.assign(3, -1.0f);
+  }
+  q.push(Line(2, 0).line(), t0);
+  const auto first = q.pop(t0 + 1000 * ms, t0);
+  REQUIRE(first);
+  CHECK(std::vector<float>(first->ranges_m.begin(), first->ranges_m.end()) == std::vector<float>(3, 1.0f));
+  CHECK(q.pop(t0 + 1000 * ms, t0)->ranges_m.empty());
+}
+
+TEST_CASE("line queue: a short line ends with its own last beam") {
+  Queue q = queue();
+  q.push(Line(0, 3).line(), t0);
+  CHECK(q.pop(t0 + 2 * ms + 1000, t0));
+}
+
+TEST_CASE("line queue: who takes after each line loses none, even without tilt") {
+  Queue q = queue();
+  int next = 0;
+  for (int k = 0; k < 10; ++k) {
+    REQUIRE(q.push(Line(k).line(), t0));
+    while (const auto out = q.pop(none, t0)) CHECK(out->time_ns == Line(next++).line().time_ns);
+  }
+  CHECK(next == 7);
+  CHECK(q.size() == 3);
+  CHECK(q.counters().crowded == 7);
+  CHECK(q.counters().dropped == 0);
+}
+
+TEST_CASE("line queue: a full queue drops its oldest line for a new one, and counts it") {
+  Queue q = queue();
+  for (int k = 0; k < 6; ++k) CHECK(q.push(Line(k).line(), t0));
+  CHECK(q.counters().dropped == 2);
+  for (int k = 2; k < 6; ++k) CHECK(q.pop(t0 + 1000 * ms, t0)->ranges_m[0] == static_cast<float>(k));
+  CHECK(q.size() == 0);
+}
+
+TEST_CASE("line queue: a line with more beams than the limits is refused and counted") {
+  Queue q = queue();
+  CHECK_FALSE(q.push(Line(0, 12).line(), t0));
+  CHECK(q.size() == 0);
+  CHECK(q.counters().too_long == 1);
+  CHECK(adds_up(q));
+}
+
+TEST_CASE("line queue: under any traffic lines stay in order, whole, and every one is accounted for") {
+  std::mt19937 random(3);
+  Queue q = queue();
+  std::int64_t now = t0, tilt = none, last = none;
+  for (int k = 0; k < 20'000; ++k) {
+    now += static_cast<std::int64_t>(random() % 30) * ms;
+    const Line line(k, random() % 13);
+    q.push(line.line(), now);
+    if (k % 1000 < 500 && random() % 3 != 0) tilt = t0 + 25 * ms * k + static_cast<std::int64_t>(random() % 60) * ms;
+    for (unsigned n = random() % 3; n > 0; --n) {
+      const auto out = q.pop(tilt, now);
+      if (!out) break;
+      REQUIRE(out->time_ns > last);
+      last = out->time_ns;
+      for (const float range_m : out->ranges_m) REQUIRE(range_m == static_cast<float>((last - t0) / (25 * ms)));
+    }
+    REQUIRE(adds_up(q));
+  }
+  const LineQueueCounters& c = q.counters();
+  CHECK(c.covered > 100);
+  CHECK(c.overdue > 100);
+  CHECK(c.crowded > 100);
+  CHECK(c.dropped > 100);
+  CHECK(c.too_long > 100);
+}
+
+}  // namespace
+}  // namespace curbline

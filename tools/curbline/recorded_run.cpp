@@ -1,0 +1,110 @@
+#include "curbline/recorded_run.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include "curbline/map_cloud.hpp"
+#include "curbline/replay.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr std::int64_t interval_ns = 100'000'000;  ///< between looks at what has been found
+
+Robot robot_of(const std::string& dir) {
+  Robot robot = read_robot(dir + "/robot.toml");
+  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever its description says
+  return robot;
+}
+
+ReplayLogs logs_of(const std::string& dir, const Robot& robot) {
+  return {dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
+}
+
+Bounds bounds_of(const Grid& grid) {
+  return {grid.x0_m, grid.y0_m, grid.x0_m + grid.rows * grid.dx_m, grid.y0_m + grid.cols * grid.dy_m};
+}
+
+/// Keeps what a run must not forget, look by look.
+class Record {
+ public:
+  Record(const Truth& truth, RecordedRun& run)
+      : truth_start_ns_(std::llround(truth.start_time_s * 1e9)), detections_(truth), run_(run) {}
+
+  void look(const Replay& replay) {
+    const Map map = replay.pipeline().map();
+    const std::vector<LabelledCell> cells = labelled_cells(map);
+    for (const LabelledCell& cell : cells) run_.seen.add(cell.x_m, cell.y_m);
+    const double time_s = static_cast<double>(replay.line().time_ns - truth_start_ns_) * 1e-9;
+    const RobotMarker robot = replay.robot();
+    detections_.observe(time_s, {robot.x_m, robot.y_m}, bounds_of(map.grid), run_.seen, map.curbs);
+    if (run_.drove && std::hypot(robot.x_m - last_.x_m, robot.y_m - last_.y_m) > 0.5 * map.grid.rows * map.grid.dx_m) {
+      run_.found.windows.push_back(cells);
+      last_ = robot;
+    }
+  }
+
+  void finish(const Replay& replay) {
+    look(replay);
+    run_.map = replay.pipeline().map();
+    run_.robot = replay.robot();
+    run_.found.windows.push_back(labelled_cells(run_.map));
+    run_.found.curbs = replay.all_curbs();
+    if (!run_.drove) run_.found.robot = Point2{run_.robot.x_m, run_.robot.y_m};
+    run_.detections.assign(detections_.of_curbs().begin(), detections_.of_curbs().end());
+  }
+
+ private:
+  std::int64_t truth_start_ns_;
+  Detections detections_;
+  RecordedRun& run_;
+  RobotMarker last_;
+};
+
+}  // namespace
+
+std::vector<LabelledCell> labelled_cells(const Map& map) {
+  std::vector<LabelledCell> out;
+  for (int i = 0; i < map.grid.rows; ++i) {
+    for (int j = 0; j < map.grid.cols; ++j) {
+      const MapCell& cell = map.cells[map.grid.at(i, j)];
+      if (cell.points > 0) out.push_back({map.grid.x_m(i), map.grid.y_m(j), cell});
+    }
+  }
+  return out;
+}
+
+bool has_logs(const std::string& dir) {
+  return std::filesystem::exists(dir + "/scans.carmen") && std::filesystem::exists(dir + "/robot.toml");
+}
+
+RecordedRun replay_recording(const std::string& dir, const Truth& truth) {
+  const Robot robot = robot_of(dir);
+  Replay replay(robot, logs_of(dir, robot));
+  RecordedRun run;
+  run.drove = !robot.pose.still;
+  run.max_height_m = static_cast<double>(robot.window.max_height_m);
+  Record record(truth, run);
+  std::int64_t next_ns = INT64_MIN;
+  while (replay.step()) {
+    if (replay.line().time_ns < next_ns) continue;
+    record.look(replay);
+    next_ns = replay.line().time_ns + interval_ns;
+  }
+  replay.check_complete();
+  record.finish(replay);
+  return run;
+}
+
+Map map_recording(const std::string& dir, const RecordedRun& run, MapMethod method) {
+  const Robot robot = robot_of(dir);
+  Replay replay(robot, logs_of(dir, robot));
+  std::vector<Point> points;
+  while (replay.step(&points)) continue;
+  replay.check_complete();
+  MapOptions options;
+  options.method = method;
+  return map_batch(cloud_of(points), run.map.grid, run.max_height_m, options);
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,38 @@
+// A recording replayed to its end, with what evaluation wants of the whole way: where the ground was seen, the window's
+// labels every half window, all curbs, and when each true step was told of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "curbline/map_options.hpp"
+#include "evaluation/scores.hpp"
+#include "picture/picture.hpp"
+#include "simulator/truth.hpp"
+
+namespace curbline::tools {
+
+struct RecordedRun {
+  Map map;      ///< the window at the end
+  Found found;  ///< of the whole way
+  Seen seen;
+  std::vector<Detections::Detection> detections;  ///< as Truth::curbs
+  RobotMarker robot;                              ///< at the end
+  bool drove = false;
+  double max_height_m = 0;
+};
+
+/// Whether DIR holds the logs that simulate writes.
+bool has_logs(const std::string& dir);
+
+/// Streams the logs of DIR through the pipeline. Throws BadInput.
+RecordedRun replay_recording(const std::string& dir, const Truth& truth);
+
+/// The same sweep by a method that takes a whole cloud, on the window of `run`. Throws BadInput.
+Map map_recording(const std::string& dir, const RecordedRun& run, MapMethod method);
+
+/// The valid cells of a map.
+std::vector<LabelledCell> labelled_cells(const Map& map);
+
+}  // namespace curbline::tools

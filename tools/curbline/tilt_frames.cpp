@@ -1,0 +1,143 @@
+#include "curbline/tilt_frames.hpp"
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <span>
+
+#include "formats/bad_input.hpp"
+#include "socketcan/socketcan.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr int first_silence_ms = 10'000, silence_ms = 2'000;
+
+class LogFrames final : public TiltFrames {
+ public:
+  explicit LogFrames(const std::string& path) : log_(path) {}
+  std::optional<can::Frame> next(std::int64_t) override {
+    auto frame = log_.next();
+    ended_ = !frame;
+    return frame;
+  }
+  bool ended() const override { return ended_; }
+  void fail_silent() const override { throw BadInput(log_.path() + ": no more frames"); }
+
+ private:
+  CanLogReader log_;
+  bool ended_ = false;
+};
+
+std::optional<std::string> recording_beside(const std::string& scans) {
+  const std::filesystem::path path(scans);
+  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(log, none)) return log.string();
+  }
+  return std::nullopt;
+}
+
+class LiveFrames final : public TiltFrames {
+ public:
+  LiveFrames(const std::string& interface_name, const can::Signal& signal, std::optional<std::uint16_t> sync_id,
+             const std::optional<std::string>& scan_log)
+      : name_("can:" + interface_name), signal_(signal) {
+    const std::array filters{socketcan::filter_of(signal), socketcan::Filter{sync_id.value_or(0), CAN_SFF_MASK, false}};
+    if (const auto status = bus_.open(interface_name.c_str(), std::span(filters).first(sync_id ? 2 : 1)); status != socketcan::Status::ok) {
+      throw BadInput(name_ + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
+    }
+    if (!scan_log) {
+      offset_ns_ = 0;
+    } else if (const auto log = recording_beside(*scan_log)) {
+      recorded_.emplace(*log, signal, sync_id);
+    }
+  }
+
+  std::optional<can::Frame> next(std::int64_t line_ns) override {
+    if (taken_ == held_) receive();
+    if (taken_ == held_) return std::nullopt;
+    can::Frame frame = frames_[taken_++];
+    set_log_time(frame, line_ns);
+    return frame;
+  }
+
+  bool ended() const override { return ended_; }
+
+  void fail_silent() const override {
+    std::array<char, 8> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), signal_.id, 16).ptr;
+    const bool down = bus_.link() != socketcan::LinkState::up;
+    throw BadInput(name_ + (down ? ": the interface is down or gone, and" : ":") + " no tilt frame for " +
+                   std::to_string((offset_ns_ ? silence_ms : first_silence_ms) / 1000) + " s; expected id 0x" +
+                   std::string(digits.data(), end) + " as the robot's description has it");
+  }
+
+  std::string remarks() const override {
+    const auto& counters = bus_.counters();
+    std::string text;
+    const auto remark = [&](auto count, const std::string& what) {
+      if (count > 0) text += (text.empty() ? name_ + ": " : ", ") + std::to_string(count) + " " + what;
+    };
+    remark(counters.frames_lost, "frames lost in this machine's receive buffer");
+    remark(counters.times_down + counters.times_gone, "times the interface was down or gone");
+    if (recorded_) {
+      remark(recorded_->missed(), "tilt frames of " + recorded_->path() + " did not come");
+      remark(not_recorded_, "came that it does not have");
+    }
+    return text;
+  }
+
+ private:
+  /// Waits for frames; a bus that has fallen silent is asked once more for each line, not waited for.
+  void receive() {
+    ended_ = offset_ns_ && recorded_ && recorded_->ended();
+    taken_ = held_ = 0;
+    int left_ms = ended_ || silent_ ? 0 : offset_ns_ ? silence_ms : first_silence_ms;
+    do {
+      const auto before = std::chrono::steady_clock::now();
+      held_ = static_cast<std::size_t>(bus_.receive(frames_, left_ms));
+      left_ms -= static_cast<int>((std::chrono::steady_clock::now() - before) / std::chrono::milliseconds(1));
+    } while (held_ == 0 && left_ms > 0);
+    silent_ = held_ == 0;
+  }
+
+  void set_log_time(can::Frame& frame, std::int64_t line_ns) {
+    std::optional<std::int64_t> due_ns;
+    if (offset_ns_) due_ns = frame.time_ns + *offset_ns_;
+    const auto recorded_ns = recorded_ ? recorded_->time_of(frame, due_ns) : std::nullopt;
+    if (recorded_ && !recorded_ns) ++not_recorded_;
+    const std::int64_t time_ns = recorded_ns ? *recorded_ns : due_ns.value_or(line_ns);
+    offset_ns_ = time_ns - frame.time_ns;
+    frame.time_ns = time_ns;
+  }
+
+  std::string name_;
+  can::Signal signal_;
+  socketcan::SocketCan bus_;
+  std::optional<RecordedTimes> recorded_;
+  std::optional<std::int64_t> offset_ns_;  ///< log time less bus time, since the first frame
+  std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
+  std::size_t taken_ = 0, held_ = 0;
+  bool silent_ = false, ended_ = false;
+  long not_recorded_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<TiltFrames> log_frames(const std::string& path) {
+  return std::make_unique<LogFrames>(path);
+}
+
+std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const can::Signal& signal,
+                                        std::optional<std::uint16_t> sync_id, const std::optional<std::string>& scan_log) {
+  return std::make_unique<LiveFrames>(interface_name, signal, sync_id, scan_log);
+}
+
+std::optional<std::string> live_interface(const std::string& can) {
+  if (!can.starts_with("can:")) return std::nullopt;
+  return can.substr(4);
+}
+
+}  // namespace curbline::tools

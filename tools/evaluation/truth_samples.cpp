@@ -1,0 +1,65 @@
+#include "evaluation/truth_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace curbline::tools {
+namespace {
+
+constexpr double spacing_m = 0.05;
+constexpr double aside_m = 0.2;
+
+}  // namespace
+
+bool is_step(const MapCurb& curb) {
+  return curb.kind.starts_with("step");
+}
+
+std::vector<TruthSample> truth_samples(const Truth& truth) {
+  std::vector<TruthSample> out;
+  for (std::size_t k = 0; k < truth.curbs.size(); ++k) {
+    const TruthCurb& curb = truth.curbs[k];
+    const double dx = curb.to.x - curb.from.x, dy = curb.to.y - curb.from.y, length = std::hypot(dx, dy);
+    if (curb.kind != "step" || length <= 0) continue;
+    const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
+    for (int i = 0; i < n; ++i) {
+      const double t = (i + 0.5) / n;
+      const Point2 at{curb.from.x + t * dx, curb.from.y + t * dy};
+      if (truth.obstacle_at(at.x, at.y)) continue;
+      out.push_back({k, at, {-dy / length, dx / length}, curb.from_step_m + t * (curb.to_step_m - curb.from_step_m)});
+    }
+  }
+  return out;
+}
+
+bool visible(const TruthSample& s, const Seen& seen) {
+  return seen(s.at.x, s.at.y) && seen(s.at.x + aside_m * s.to_left.x, s.at.y + aside_m * s.to_left.y) &&
+         seen(s.at.x - aside_m * s.to_left.x, s.at.y - aside_m * s.to_left.y);
+}
+
+double signed_step_m(const TruthSample& s, Point2 robot) {
+  const double left = (robot.x - s.at.x) * s.to_left.x + (robot.y - s.at.y) * s.to_left.y;
+  return left > 0 ? -s.step_m : s.step_m;
+}
+
+Detections::Detections(const Truth& truth) : samples_(truth_samples(truth)), of_curbs_(truth.curbs.size()) {}
+
+void Detections::observe(double time_s, Point2 robot, const Bounds& window, const Seen& seen,
+                         std::span<const MapCurb> curbs) {
+  for (const TruthSample& s : samples_) {
+    Detection& detection = of_curbs_[s.curb];
+    if (detection.found_s || s.at.x < window.x0 || s.at.x > window.x1 || s.at.y < window.y0 || s.at.y > window.y1) {
+      continue;
+    }
+    if (!detection.seen_s && visible(s, seen)) detection.seen_s = time_s;
+    const bool found = std::any_of(curbs.begin(), curbs.end(), [&](const MapCurb& c) {
+      return is_step(c) && distance_m(s.at.x, s.at.y, {c.x0_m, c.y0_m, c.x1_m, c.y1_m}) <= tolerance_m;
+    });
+    if (!found) continue;
+    if (!detection.seen_s) detection.seen_s = time_s;
+    detection.found_s = time_s;
+    detection.distance_m = std::hypot(s.at.x - robot.x, s.at.y - robot.y);
+  }
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,58 @@
+// The true steps of a scene as samples every 5 cm: what is there to be found, and when it was.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "evaluation/curbs.hpp"
+#include "evaluation/seen.hpp"
+#include "map/map.hpp"
+#include "simulator/truth.hpp"
+
+namespace curbline::tools {
+
+/// Whether a found piece is told as a step, up or down; creases and edges of ramps are none.
+bool is_step(const MapCurb& curb);
+
+/// A place on a true step.
+struct TruthSample {
+  std::size_t curb = 0;  ///< of Truth::curbs
+  Point2 at;
+  Point2 to_left;     ///< unit vector across, to the left side
+  double step_m = 0;  ///< left less right
+  double height_m() const { return step_m < 0 ? -step_m : step_m; }
+};
+
+/// Of all steps, without those under obstacles.
+std::vector<TruthSample> truth_samples(const Truth& truth);
+
+/// A step can be found where the robot saw the ground on both sides of it, 0.2 m off.
+bool visible(const TruthSample& sample, const Seen& seen);
+
+/// Far side less near side, as a robot sees it.
+double signed_step_m(const TruthSample& sample, Point2 robot);
+
+/// When each true step was first seen and first told of, along a drive.
+class Detections {
+ public:
+  static constexpr double tolerance_m = 0.1;
+
+  explicit Detections(const Truth& truth);
+
+  struct Detection {
+    std::optional<double> seen_s, found_s;  ///< since the first scan line
+    double distance_m = 0;                  ///< from the robot to the sample that was found first
+  };
+
+  /// What is so at a time; `seen` grows from call to call. Cost: samples in the window times curbs.
+  void observe(double time_s, Point2 robot, const Bounds& window, const Seen& seen, std::span<const MapCurb> curbs);
+
+  std::span<const Detection> of_curbs() const { return of_curbs_; }  ///< as Truth::curbs; creases never
+
+ private:
+  std::vector<TruthSample> samples_;
+  std::vector<Detection> of_curbs_;
+};
+
+}  // namespace curbline::tools

@@ -1,0 +1,183 @@
+#include "formats/toml_table.hpp"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include "formats/bad_input.hpp"
+
+namespace curbline::tools {
+namespace {
+
+const toml::table empty_table;
+
+long line_of(const toml::node& node) {
+  return static_cast<long>(node.source().begin.line);
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// A number or string as it is, anything else by its type.
+std::string shown(const toml::node& node) {
+  std::ostringstream text;
+  if (node.is_number()) {
+    text << shortest(node.value_or(0.0));
+  } else if (const auto* string = node.as_string(); string != nullptr && string->get().size() <= 40) {
+    text << *string;  // quoted and escaped
+  } else {
+    text << "of type " << node.type();
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string read_toml_text(const std::string& path, const std::string& kind) {
+  constexpr std::size_t most = std::size_t{1} << 20;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(most + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected " + kind + " (TOML)");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > most) throw BadInput(path + ": longer than 1 MiB; expected " + kind + " (TOML)");
+  return text;
+}
+
+toml::table parse_toml(const std::string& text, const std::string& path) {
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    std::string what(error.description());
+    for (char& c : what) c = c == '\n' ? ' ' : c;
+    throw BadInput(path, static_cast<long>(error.source().begin.line), what + "; expected TOML");
+  }
+}
+
+std::string TomlTable::full_name(std::string_view key) const {
+  return name_.empty() ? std::string(key) : name_ + "." + std::string(key);
+}
+
+const toml::node* TomlTable::find(const char* key) {
+  known_.insert(key);
+  return table_.get(key);
+}
+
+void TomlTable::refuse(const char* key, const std::string& why) const {
+  const toml::node* const node = table_.get(key);
+  throw BadInput(path_, line_of(node != nullptr ? *node : table_), full_name(key) + " " + why);
+}
+
+void TomlTable::refuse_value(const char* key, const toml::node& node, const std::string& expected) const {
+  throw BadInput(path_, line_of(node), full_name(key) + " is " + shown(node) + "; expected " + expected);
+}
+
+double TomlTable::checked(const char* key, const toml::node& node, Range range) const {
+  const auto number = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!number || !(*number >= range.lowest && *number <= range.highest)) {
+    refuse_value(key, node, "a number from " + shortest(range.lowest) + " to " + shortest(range.highest));
+  }
+  return *number;
+}
+
+void TomlTable::read(const char* key, double& value, Range range) {
+  if (const toml::node* const node = find(key); node != nullptr) value = checked(key, *node, range);
+}
+
+void TomlTable::read(const char* key, float& value, Range range) {
+  double wide = static_cast<double>(value);
+  read(key, wide, range);
+  value = static_cast<float>(wide);
+}
+
+void TomlTable::read(const char* key, bool& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_boolean()) refuse_value(key, *node, "true or false");
+  value = node->as_boolean()->get();
+}
+
+void TomlTable::read(const char* key, std::string& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_string()) refuse_value(key, *node, "a string");
+  value = node->as_string()->get();
+}
+
+std::int64_t TomlTable::whole(const char* key, std::int64_t value, std::int64_t lowest, std::int64_t highest) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return value;
+  const auto* const number = node->as_integer();
+  if (number == nullptr || number->get() < lowest || number->get() > highest) {
+    refuse_value(key, *node, "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return number->get();
+}
+
+double TomlTable::number(const char* key, Range range) {
+  if (find(key) == nullptr) refuse(key, "is missing; expected a number");
+  double value = 0;
+  read(key, value, range);
+  return value;
+}
+
+const toml::array& TomlTable::array(const char* key, const std::string& expected) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) refuse(key, "is missing; expected " + expected);
+  if (!node->is_array()) refuse_value(key, *node, expected);
+  return *node->as_array();
+}
+
+std::vector<double> TomlTable::numbers(const char* key, std::size_t count, Range range) {
+  const std::string expected = "an array of " + std::to_string(count) + " numbers";
+  const toml::array& values = array(key, expected);
+  if (values.size() != count) refuse(key, "has " + std::to_string(values.size()) + " elements; expected " + expected);
+  std::vector<double> out;
+  for (const toml::node& value : values) out.push_back(checked(key, value, range));
+  return out;
+}
+
+std::vector<Point2> TomlTable::points(const char* key, std::size_t at_least, Range range) {
+  std::vector<Point2> out;
+  for (const toml::node& value : array(key, "an array of points, [[x, y], ...]")) {
+    const toml::array* const pair = value.as_array();
+    if (pair == nullptr || pair->size() != 2) refuse_value(key, value, "points, [[x, y], ...]");
+    out.push_back({checked(key, (*pair)[0], range), checked(key, (*pair)[1], range)});
+  }
+  if (out.size() < at_least) {
+    refuse(key, "has " + std::to_string(out.size()) + " points; expected at least " + std::to_string(at_least));
+  }
+  return out;
+}
+
+TomlTable TomlTable::table(const char* key) {
+  const toml::node* const node = find(key);
+  if (node != nullptr && !node->is_table()) refuse_value(key, *node, "a table");
+  return {node != nullptr ? *node->as_table() : empty_table, full_name(key), path_};
+}
+
+std::vector<TomlTable> TomlTable::tables(const char* key) {
+  std::vector<TomlTable> out;
+  if (find(key) == nullptr) return out;
+  const std::string expected = "tables headed [[" + full_name(key) + "]]";
+  for (const toml::node& value : array(key, expected)) {
+    if (!value.is_table()) refuse_value(key, value, expected);
+    out.emplace_back(*value.as_table(), full_name(key), path_);
+  }
+  return out;
+}
+
+void TomlTable::done() const {
+  for (const auto& [key, value] : table_) {
+    if (known_.contains(key.str())) continue;
+    std::string expected;
+    for (const std::string& known : known_) expected += (expected.empty() ? "" : ", ") + known;
+    throw BadInput(path_, static_cast<long>(key.source().begin.line),
+                   "unknown key " + full_name(key.str()) + "; expected one of " + expected);
+  }
+}
+
+}  // namespace curbline::tools

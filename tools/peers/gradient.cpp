@@ -1,0 +1,47 @@
+#include <cmath>
+
+#include "peers/peers.hpp"
+
+namespace curbline::tools::peers {
+namespace {
+
+/// Height of the cell beyond a border less that of the cell before it, 0 where that is no curb.
+double step_m(const reference::Dem& dem, int i, int j, int axis) {
+  const reference::DemCell& a = dem.cells[dem.grid.at(i, j)];
+  const reference::DemCell& b = dem.cells[axis == 0 ? dem.grid.at(i + 1, j) : dem.grid.at(i, j + 1)];
+  if (a.points == 0 || b.points == 0) return 0;
+  const double step = b.height_m - a.height_m;
+  return std::abs(step) >= least_step_m && std::abs(step) <= most_step_m ? step : 0;
+}
+
+}  // namespace
+
+std::vector<MapCurb> gradient_curbs(const reference::Dem& dem) {
+  const Grid& g = dem.grid;
+  std::vector<MapCurb> out;
+  for (int axis = 0; axis < 2; ++axis) {
+    const int lines = (axis == 0 ? g.rows : g.cols) - 1, length = axis == 0 ? g.cols : g.rows;
+    for (int line = 0; line < lines; ++line) {
+      const auto at = [&](int k) { return axis == 0 ? step_m(dem, line, k, 0) : step_m(dem, k, line, 1); };
+      for (int first = 0; first < length;) {
+        const double here = at(first);
+        double sum = here;
+        int end = first + 1;
+        for (; end < length && at(end) * here > 0; ++end) sum += at(end);
+        if (here != 0) {
+          const double across = axis == 0 ? g.x0_m + (line + 1) * g.dx_m : g.y0_m + (line + 1) * g.dy_m;
+          const double from = axis == 0 ? g.y0_m + first * g.dy_m : g.x0_m + first * g.dx_m;
+          const double to = axis == 0 ? g.y0_m + end * g.dy_m : g.x0_m + end * g.dx_m;
+          const double height = (across >= 0 ? sum : -sum) / (end - first);  // the side nearer to the origin is near
+          const char* const kind = height > 0 ? "step_up" : "step_down";
+          out.push_back(axis == 0 ? MapCurb{across, from, across, to, height, 0, 1, kind}
+                                  : MapCurb{from, across, to, across, height, 0, 1, kind});
+        }
+        first = end;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace curbline::tools::peers

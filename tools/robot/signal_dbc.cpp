@@ -1,0 +1,143 @@
+#include "robot/signal_dbc.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "can/curb_frames.hpp"
+
+namespace curbline::tools {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+template <typename Number>
+std::string shortest(Number value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string hexadecimal(std::uint32_t id) {
+  std::array<char, 8> text{};
+  return "0x" + std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), id, 16).ptr);
+}
+
+DbcSignal dbc_signal(const can::Signal& signal, const std::string& name, const std::string& unit) {
+  DbcSignal out;
+  out.name = name;
+  out.start_bit = signal.start_bit;
+  out.length = signal.length;
+  out.order = signal.order;
+  out.is_signed = signal.is_signed;
+  out.type = signal.is_float ? DbcValueType::float32 : DbcValueType::whole;
+  out.scale = signal.scale;
+  out.offset = signal.offset;
+  out.unit = unit;
+  return out;
+}
+
+DbcSignal dbc_multiplexor(const can::Multiplexor& multiplexor) {
+  DbcSignal out;
+  out.name = "Multiplexor";
+  out.start_bit = multiplexor.start_bit;
+  out.length = multiplexor.length;
+  out.order = multiplexor.order;
+  out.is_multiplexor = true;
+  return out;
+}
+
+/// Radians of one of a DBC's units, in the spellings that files have.
+std::optional<double> radians_of(const std::string& unit) {
+  static const std::map<std::string, double> known{{"rad", 1.0},       {"mrad", 1e-3},         {"deg", pi / 180},
+                                                   {"Deg", pi / 180},  {"degree", pi / 180},   {"degrees", pi / 180},
+                                                   {"\xB0", pi / 180}, {"\xC2\xB0", pi / 180}, {"rev", 2 * pi},
+                                                   {"turn", 2 * pi},   {"turns", 2 * pi}};
+  const auto found = known.find(unit);
+  return found == known.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// What may stand in a TOML comment.
+std::string printable(std::string text) {
+  for (char& c : text) c = c < ' ' || c > '~' ? '?' : c;
+  return text;
+}
+
+std::string order_line(can::ByteOrder order) {
+  return std::string("byte_order = \"") + (order == can::ByteOrder::little ? "little" : "big") + "\"\n";
+}
+
+std::string flag(const char* key, bool value) {
+  return std::string(key) + " = " + (value ? "true" : "false") + "\n";
+}
+
+}  // namespace
+
+Dbc dbc_of(const Robot& robot) {
+  const can::Signal& signal = robot.tilt_signal;
+  DbcMessage message;
+  message.name = "TiltServo";
+  message.id = signal.id;
+  message.extended = signal.extended;
+  message.length = can::fd_length(static_cast<std::uint8_t>(can::bytes_needed(signal)));
+  message.comment = "Angle of the tilt servo of " + printable(robot.name) + ".";
+  const std::uint32_t all_bits = signal.extended ? 0x1FFFFFFF : 0x7FF;
+  if ((signal.id_mask & all_bits) != all_bits) {
+    message.comment += " Any id that agrees with this one in the bits " + hexadecimal(signal.id_mask & all_bits) + ".";
+  }
+  if (signal.multiplexor) message.signals.push_back(dbc_multiplexor(*signal.multiplexor));
+  message.signals.push_back(dbc_signal(signal, "Tilt", "rad"));
+  if (signal.multiplexor) message.signals.back().multiplexed = signal.multiplexor->value;
+  message.signals.back().comment = "Above 0 looks down.";
+  Dbc dbc{message};
+  if (robot.tilt_sync_id) {
+    DbcMessage sync;
+    sync.name = "Sync";
+    sync.id = *robot.tilt_sync_id;
+    sync.length = 0;
+    sync.comment = "The servo samples its angle on this frame.";
+    dbc.push_back(sync);
+  }
+  return dbc;
+}
+
+Dbc curb_dbc() {
+  Dbc dbc;
+  for (const can::CurbField& field : can::curb_fields()) {
+    if (dbc.empty() || dbc.back().name != field.message) {
+      DbcMessage message;
+      message.name = field.message;
+      message.id = field.signal.id;
+      message.length = 0;
+      dbc.push_back(message);
+    }
+    DbcMessage& message = dbc.back();
+    message.length = std::max(message.length, can::bytes_needed(field.signal));
+    message.signals.push_back(dbc_signal(field.signal, field.name, field.unit));
+    message.signals.back().comment = field.meaning;
+    message.signals.back().minimum = field.minimum;
+    message.signals.back().maximum = field.maximum;
+  }
+  return dbc;
+}
+
+std::string tilt_toml(const DbcTiltSignal& found, const std::string& source) {
+  can::Signal signal = found.signal;
+  const auto radians = radians_of(found.unit);
+  std::string text = "# " + printable(source) + ", unit \"" + printable(found.unit) + "\"\n";
+  if (!radians) text += "# Not known as an angle: multiply scale and offset by the radians of one unit.\n";
+  signal.scale *= radians.value_or(1.0);
+  signal.offset *= radians.value_or(1.0);
+  text += "[tilt.signal]\nid = " + hexadecimal(signal.id) + "\n" + flag("extended", signal.extended) +
+          "start_bit = " + shortest(signal.start_bit) + "\nlength = " + shortest(+signal.length) + "\n" +
+          order_line(signal.order) + flag("signed", signal.is_signed) + flag("float", signal.is_float) +
+          "scale = " + shortest(signal.scale) + "\noffset = " + shortest(signal.offset) + "\n";
+  if (!signal.multiplexor) return text;
+  const can::Multiplexor& m = *signal.multiplexor;
+  return text + "\n[tilt.signal.multiplexor]\nstart_bit = " + shortest(m.start_bit) +
+         "\nlength = " + shortest(+m.length) + "\n" + order_line(m.order) + "value = " + shortest(m.value) + "\n";
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,92 @@
+// curbline-scanner: a simulated laser scanner to connect to.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "formats/bad_input.hpp"
+#include "scanner/server.hpp"
+
+namespace curbline::tools {
+namespace {
+
+std::atomic<bool> stopped = false;
+
+void stop(int) {
+  stopped = true;
+}
+
+struct Options {
+  std::string protocol, scans, scene, robot, speed = "1";
+  std::optional<std::uint16_t> port;
+};
+
+Protocol protocol_of(const std::string& name) {
+  return name == "scip2" ? Protocol::scip2 : name == "cola" ? Protocol::cola : Protocol::lms200;
+}
+
+std::uint16_t port_of(const Options& o) {
+  return o.port.value_or(o.protocol == "scip2" ? 10940 : 2112);
+}
+
+double speed_of(const std::string& text) {
+  if (text == "max") return 0;
+  double speed = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), speed);
+  if (failed != std::errc{} || end != text.data() + text.size() || !(speed > 0)) {
+    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
+  }
+  return speed;
+}
+
+void run(const Options& o) {
+  const double speed = speed_of(o.speed);
+  if (o.scene.empty() == o.scans.empty()) throw CLI::ValidationError("--scene", "expected it or --scans, and not both");
+  if (o.scene.empty() != o.robot.empty())
+    throw CLI::ValidationError("--robot", "expected it with --scene, and only there");
+  ScanFeed feed =
+      o.scene.empty() ? ScanFeed::from_log(o.scans) : ScanFeed::from_scene(find_scene(o.scene), read_robot(o.robot));
+  ServerOptions options;
+  options.port = port_of(o);
+  options.speed = speed;
+  ScannerServer server(protocol_of(o.protocol), std::move(feed), o.scene.empty() ? o.scans : o.robot, options);
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  std::cout << server.address() << std::endl;
+  server.run(stopped);
+}
+
+}  // namespace
+}  // namespace curbline::tools
+
+int main(int argc, char** argv) {
+  using namespace curbline::tools;
+  CLI::App app(
+      "Plays scan lines as a laser scanner does, over its own protocol. Prints what `curbline replay --scans` takes.",
+      "curbline-scanner");
+  auto o = std::make_shared<Options>();
+  app.add_option("protocol", o->protocol, "scip2 (UTM-30LX), cola (LMS151) or lms200")
+      ->required()
+      ->check(CLI::IsMember({"scip2", "cola", "lms200"}));
+  app.add_option("--scans", o->scans, "scan lines, CARMEN log");
+  app.add_option("--scene", o->scene,
+                 "name of a scene that ships, or a scene file: its lines are those that `curbline simulate` writes");
+  app.add_option("--robot", o->robot, "robot description, for --scene");
+  app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)");
+  app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    run(*o);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

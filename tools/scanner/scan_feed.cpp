@@ -1,0 +1,44 @@
+#include "scanner/scan_feed.hpp"
+
+#include <variant>
+
+#include "simulator/simulation.hpp"
+
+namespace curbline::tools {
+namespace {
+
+std::optional<CarmenLine> next_line(Simulation& simulation, const LaserSettings& laser) {
+  while (const auto event = simulation.next()) {
+    const auto* line = std::get_if<ScanLine>(&*event);
+    if (line == nullptr) continue;
+    CarmenLine scan;
+    scan.time_ns = line->time_ns;
+    scan.start_angle_rad = static_cast<double>(laser.first_bearing_rad);
+    scan.angular_resolution_rad = static_cast<double>(laser.bearing_step_rad);
+    scan.field_of_view_rad = scan.angular_resolution_rad * (laser.beams - 1);
+    scan.maximum_range_m = static_cast<double>(laser.max_range_m);
+    scan.ranges_m.assign(line->ranges_m.begin(), line->ranges_m.end());
+    return scan;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ScanFeed ScanFeed::from_log(const std::string& path) {
+  return ScanFeed([reader = std::make_shared<CarmenReader>(path)] { return reader->next(); });
+}
+
+ScanFeed ScanFeed::from_scene(const Scene& scene, const Robot& robot) {
+  return ScanFeed([simulation = std::make_shared<Simulation>(scene, robot, 1), laser = robot.laser] {
+    return next_line(*simulation, laser);
+  });
+}
+
+std::optional<CarmenLine> ScanFeed::next() {
+  auto line = std::move(front_);
+  front_ = line ? source_() : std::nullopt;
+  return line;
+}
+
+}  // namespace curbline::tools

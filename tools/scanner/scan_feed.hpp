@@ -1,0 +1,35 @@
+// The scan lines that a simulated scanner takes: those of a CARMEN log, or of a robot in a scene (the same that
+// `curbline simulate` writes, so that its CAN log belongs to them).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/carmen.hpp"
+#include "robot/robot.hpp"
+#include "simulator/scene.hpp"
+
+namespace curbline::tools {
+
+class ScanFeed {
+ public:
+  static ScanFeed from_log(const std::string& path);
+  static ScanFeed from_scene(const Scene& scene, const Robot& robot);
+
+  /// The next line; nothing at the end. Throws BadInput for what is wrong with a log.
+  std::optional<CarmenLine> next();
+
+  /// The next line without taking it: its geometry is that of all, its time when it is due. nullptr at the end.
+  const CarmenLine* front() const { return front_ ? &*front_ : nullptr; }
+
+ private:
+  using Source = std::function<std::optional<CarmenLine>()>;
+  explicit ScanFeed(Source source) : source_(std::move(source)), front_(source_()) {}
+
+  Source source_;
+  std::optional<CarmenLine> front_;
+};
+
+}  // namespace curbline::tools

@@ -1,0 +1,82 @@
+// A simulated scanner that a driver can connect to: a device on a TCP port of the loopback interface, or on a pty for a
+// serial one. It plays a feed of scan lines from the moment the first reader asks for them, each when its last beam is
+// measured, and ends with it.
+//
+// The scanner's clock is the feed's time, modulo the width of its counter, so that a reader that knows the feed's CAN
+// log can tell the time of each line again: exactly where it is a whole number of milliseconds (SCIP 2.0) or
+// microseconds (CoLa B).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "scanner/device.hpp"
+#include "scanner/scan_feed.hpp"
+
+namespace curbline::tools {
+
+enum class Protocol { scip2, cola, lms200 };
+
+struct ServerOptions {
+  std::uint16_t port = 0;  ///< of TCP; 0: one that is free
+  double speed = 1.0;      ///< times as fast as the feed; 0: as fast as it is read
+  int baud =
+      500'000;  ///< of a serial line at power-on; a real LMS200 comes with 9600, but keeps another if it is told to
+
+  // Faults, for tests.
+  std::function<void(Bytes& telegram, long line)> damage{};  ///< may change what is sent for a line, counted from 0
+  std::set<long> restart_before{};                           ///< lines before which it is switched off and on
+};
+
+class ScannerServer {
+ public:
+  /// Throws BadInput if the feed is empty or none of this scanner, or the port cannot be had.
+  ScannerServer(Protocol protocol, ScanFeed feed, const std::string& source, ServerOptions options);
+  ScannerServer(const ScannerServer&) = delete;
+  ScannerServer& operator=(const ScannerServer&) = delete;
+  ~ScannerServer();
+
+  /// What `curbline replay --scans` takes: "scip2:127.0.0.1:10940", "lms200:/dev/pts/3".
+  std::string address() const;
+  std::uint16_t port() const { return port_; }
+  const std::string& path() const { return path_; }  ///< of the pty
+
+  /// Until the feed ends, or `stop`. Lines that fall due without a reader are lost, but not before the first has asked.
+  void run(const std::atomic<bool>& stop);
+
+  long lines_sent() const { return lines_sent_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void listen_tcp();
+  void open_pty();
+  void accept_reader();
+  void serve();
+  bool same_speed() const;
+  bool line_is_due() const;
+  std::int64_t clock_ns() const;
+  void play_line();
+  void restart_device();
+  void send(const Bytes& bytes);
+  void drop_reader();
+  void finish();
+
+  Protocol protocol_;
+  ScanFeed feed_;
+  ServerOptions options_;
+  std::unique_ptr<Device> device_;
+  std::int64_t first_ns_;  ///< of the feed
+  Clock::time_point started_{};
+  bool clock_runs_ = false, played_ = false;
+  int listener_ = -1, reader_ = -1, pty_ = -1;  ///< reader_: the connection, or the pty's own side
+  std::uint16_t port_ = 0;
+  std::string path_;
+  long next_line_ = 0, lines_sent_ = 0;
+  std::int64_t wire_free_ns_ = INT64_MIN;  ///< of the feed's time: when a serial line has carried what was sent
+};
+
+}  // namespace curbline::tools

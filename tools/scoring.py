@@ -1,0 +1,28 @@
+"""What the scripts that score many scenes share."""
+import os, subprocess, sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+CURBLINE = os.environ.get("CURBLINE", os.path.join(ROOT, "build", "bin", "curbline"))
+
+
+def run(*words):
+    """Runs curbline to its end; its standard output. Ends the script where it fails."""
+    done = subprocess.run([CURBLINE, *words], stdout=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        sys.exit(f"curbline {' '.join(words)}: exit status {done.returncode}")
+    return done.stdout
+
+
+def robot(name):
+    return os.path.join(ROOT, "tools", "robots", name + ".toml")
+
+
+def mean(values, weights=None):
+    """Of those that are there; None of none."""
+    pairs = [(v, w) for v, w in zip(values, weights or [1] * len(values)) if v is not None and w > 0]
+    return sum(v * w for v, w in pairs) / sum(w for _, w in pairs) if pairs else None
+
+
+def shown(value, scale, decimals, width=10):
+    """A figure of a table, or a dash where there is none."""
+    return f"{'-':>{width}}" if value is None else f"{scale * value:{width}.{decimals}f}"
