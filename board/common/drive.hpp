@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "can/tilt_decoder.hpp"
 #include "curbline/pipeline.hpp"
 #include "drive_log/drive_log.hpp"
 
@@ -55,7 +56,7 @@ class Drive {
 
   Stream& stream_;
   Pipeline<limits>& pipeline_;
-  can::Signal tilt_signal_{};
+  can::TiltDecoder tilt_decoder_{};
   std::array<float, limits.beams> ranges_m_{};
 };
 
@@ -83,8 +84,8 @@ DriveEnd Drive<Stream>::set_up() {
   if (header.bytes != sizeof(drive_log::Setup)) return DriveEnd::other_build;
   drive_log::Setup setup;
   if (!read(setup, header.bytes)) return DriveEnd::cut_record;
-  tilt_signal_ = setup.tilt_signal;
-  return pipeline_.init(setup.settings) == Status::ok ? DriveEnd::done : DriveEnd::setup_refused;
+  const bool servo = setup.settings.tilt.fixed || tilt_decoder_.init(setup.tilt_signal, setup.tilt_sync_id);
+  return servo && pipeline_.init(setup.settings) == Status::ok ? DriveEnd::done : DriveEnd::setup_refused;
 }
 
 template <ByteStream Stream>
@@ -93,8 +94,7 @@ DriveEnd Drive<Stream>::take(const RecordHeader& header) {
     case RecordKind::can_frame: {
       can::Frame frame;
       if (!read(frame, header.bytes)) return DriveEnd::cut_record;
-      const std::optional<double> angle_rad = can::decode(tilt_signal_, frame);
-      if (angle_rad) pipeline_.add_tilt({frame.time_ns, static_cast<float>(*angle_rad)});
+      if (const std::optional<TiltReading> reading = tilt_decoder_.take(frame)) pipeline_.add_tilt(*reading);
       return DriveEnd::done;
     }
     case RecordKind::pose: {

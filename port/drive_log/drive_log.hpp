@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -34,6 +35,7 @@ struct RecordHeader {
 struct Setup {
   Settings settings{};
   can::Signal tilt_signal{};
+  std::optional<std::uint16_t> tilt_sync_id{};
 };
 
 /// The head of a scan line; the ranges follow as floats, NaN where nothing returned.

@@ -9,10 +9,10 @@ ROOT = Path(__file__).resolve().parents[2]
 STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
 HELPER = -1
 FILES = {
-    "signal.cpp": "tilt", "frame.hpp": "tilt", "pipeline.hpp": "pipeline",
-    "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points",
-    "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes",
-    "label_field.hpp": "labels", "curb_tracer.hpp": "curbs", "curb_tracer.cpp": "curbs", "line_fit.hpp": "curbs",
+    "signal.cpp": "tilt", "frame.hpp": "tilt", "tilt_decoder.hpp": "tilt", "tilt_decoder.cpp": "tilt", "pipeline.hpp": "pipeline",
+    "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "tilt_latency.cpp": "points",
+    "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes", "plane_set.hpp": "planes",
+    "label_field.hpp": "labels", "curb_tracer.hpp": "curbs", "borders.hpp": "curbs", "curb_tracer.cpp": "curbs", "line_fit.hpp": "curbs",
 }
 
 

@@ -15,8 +15,8 @@ struct DriveFiles {
   std::string out;
 };
 
-/// CAN frames up to the first reading that covers a line's last beam, then the poses, then the line: the order of `curbline
-/// replay`. Throws BadInput.
+/// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: what `curbline replay`
+/// gives the pipeline, with some readings more of the time to come. Throws BadInput.
 void write_drive(const DriveFiles& files);
 
 /// The curbs after the last scan line of a stream of results. Throws BadInput.

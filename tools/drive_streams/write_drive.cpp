@@ -2,7 +2,7 @@
 #include <optional>
 #include <span>
 
-#include "can/signal.hpp"
+#include "can/tilt_decoder.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "drive_log/drive_log.hpp"
 #include "formats/atomic_file.hpp"
@@ -18,6 +18,8 @@ using drive_log::RecordHeader;
 using drive_log::RecordKind;
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
+/// The board finds the servo's latency on the way, and this many standard deviations beyond what was set are served.
+constexpr float latency_bound = 4.0f;
 
 class DriveWriter {
  public:
@@ -26,17 +28,18 @@ class DriveWriter {
     if (!robot_.tilt.fixed && files.can.empty()) throw BadInput("no tilt log for a laser that nods; expected --can LOG");
     if (!robot_.pose.still && files.poses.empty()) throw BadInput("no poses for a robot that drives; expected --poses FILE");
     if (!robot_.tilt.fixed) can_.emplace(files.can);
+    tilt_decoder_.init(robot_.tilt_signal, robot_.tilt_sync_id);
     if (!robot_.pose.still) poses_.emplace(files.poses);
   }
 
   void write() {
-    const drive_log::Setup setup{pipeline_settings(robot_), robot_.tilt_signal};
+    const drive_log::Setup setup{pipeline_settings(robot_), robot_.tilt_signal, robot_.tilt_sync_id};
     put(RecordKind::setup, setup);
     while (const auto line = scans_.next()) {
       check_geometry(*line, robot_.laser, scans_.path(), scans_.line());
       const float duration_ns = robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line->ranges_m.size());
       const std::int64_t last_beam_ns = line->time_ns + static_cast<std::int64_t>(duration_ns);
-      put_frames(last_beam_ns + static_cast<std::int64_t>(robot_.tilt.latency_s * 1e9f));
+      put_frames(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
       put_poses(last_beam_ns);
       put_line(*line);
     }
@@ -62,7 +65,7 @@ class DriveWriter {
       const auto frame = can_->next();
       if (frame) put(RecordKind::can_frame, *frame);
       if (!frame) tilt_until_ns_ = log_ended;
-      if (frame && can::decode(robot_.tilt_signal, *frame)) tilt_until_ns_ = frame->time_ns;
+      if (const auto reading = frame ? tilt_decoder_.take(*frame) : std::nullopt) tilt_until_ns_ = reading->time_ns;
     }
   }
 
@@ -89,6 +92,7 @@ class DriveWriter {
   std::optional<CanLogReader> can_;
   std::optional<TrajectoryReader> poses_;
   AtomicFile out_;
+  can::TiltDecoder tilt_decoder_{};
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest written
 };
 
