@@ -33,9 +33,9 @@ def stack_rows(board, elf, results):
     main, path = graph.worst("main")
     painted = max(int(p.read_text()) for p in results.glob("*.stack"))
     if painted > main + PAINT_MARGIN:
-        sys.exit(f"{board.name}: {painted} bytes of stack are painted over, and the call graph allows {main}; its walk is wrong")
-    deepest = " > ".join(short(graph.names.get(n, n)) for n in path)
-    return [("stack", "pipeline", pipeline), ("", f"main(), deepest by {deepest}", main), ("", "main(), by painting", painted)]
+        deepest = " > ".join(short(graph.names.get(n, n)) for n in path)
+        sys.exit(f"{board.name}: {painted} bytes of stack are painted over, and the call graph allows {main} ({deepest}); its walk is wrong")
+    return [("stack", "pipeline", pipeline), ("", "main(), by the call graph", main), ("", "main(), by painting", painted)]
 
 
 def short(name):
@@ -46,15 +46,32 @@ def short(name):
     return "::".join(name.split("(")[0].split(" ")[-1].split("::")[-2:])
 
 
+def read_counts(path):
+    """A row of counts by stage for each scan line of a drive."""
+    with path.open() as file:
+        return [[int(n) for n in row] for row in csv.reader(file)]
+
+
+def rows_by_drive(results):
+    """Where the worst line and the highest mean are."""
+    totals = {path.stem: [sum(line[1:len(stages.STAGES)]) for line in read_counts(path)] for path in results.glob("*.counts")}
+    means = {drive: sum(t) // len(t) for drive, t in totals.items()}
+    recorded = [n for drive, t in totals.items() if drive.startswith("scan-") for n in t]
+    rows = [("", f"mean of {max(means, key=means.get)}, the highest", max(means.values()))]
+    if recorded:
+        rows += [("", "recorded drives alone: worst", max(recorded)), ("", "recorded drives alone: mean", sum(recorded) // len(recorded))]
+    return rows
+
+
 def instruction_rows(results):
     """Worst and mean of a line, and of each stage, over all drives."""
-    lines = [[int(n) for n in row] for path in sorted(results.glob("*.counts")) for row in csv.reader(path.open())]
+    lines = [line for path in sorted(results.glob("*.counts")) for line in read_counts(path)]
     if not lines:
         sys.exit(f"{results}: no counts; run tools/boards/run_drives.py first")
     count = len(stages.STAGES)
     totals = [sum(line[1:count]) for line in lines]
     worst, mean = max(totals), sum(totals) // len(totals)
-    rows = [("instructions", "worst", worst), ("", "mean", mean)]
+    rows = [("instructions", "worst", worst), ("", "mean", mean), *rows_by_drive(results)]
     at_worst = lines[totals.index(worst)]
     for s, stage in enumerate(stages.STAGES[1:], 1):
         rows.append(("", f"{stage}: mean", sum(line[s] for line in lines) // len(lines)))
@@ -72,9 +89,14 @@ def measure(build, board):
 
 
 def print_table(board, rows, budget, kept):
-    """Returns how many budgets are exceeded."""
+    """Returns how many budgets are exceeded. A budget of what is not measured would never be: it is refused."""
+    measured = {(group, name) for group, name, _ in keyed(rows)}
+    for group, names in budget.items():
+        for name in names:
+            if (group, name) not in measured:
+                sys.exit(f"budget.toml: {group}.{name}: nothing of that name is measured; expected one of the rows of tools/budget")
     exceeded, group = 0, ""
-    print(f"{board.name:44}{'used':>12}{'allowed':>12}{'change':>12}")
+    print(f"{board.name:52}{'used':>12}{'allowed':>12}{'change':>12}")
     for head, name, used in rows:
         group = head or group
         allowed = budget.get(group, {}).get(name) if head or name in budget.get(group, {}) else None
@@ -83,7 +105,7 @@ def print_table(board, rows, budget, kept):
         before = kept.get((group, name))
         change = "" if before is None else f"{used - before:+d}"
         text = f"{group} {name}" if allowed is not None else f"  {name}"
-        print(f"{text:44}{used:12}{'' if allowed is None else allowed:>12}{change:>12}{'  EXCEEDED' if over else ''}")
+        print(f"{text:52}{used:12}{'' if allowed is None else allowed:>12}{change:>12}{'  EXCEEDED' if over else ''}")
     return exceeded
 
 

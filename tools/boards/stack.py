@@ -23,7 +23,9 @@ class CallGraph:
         if not graphs:
             sys.exit(f"{build}: no call graph; expected a build with -fcallgraph-info=su,da, not out of a compiler cache")
         for path in graphs:
-            self.read(path.read_text())
+            target = re.search(r"CMakeFiles/(\S+\.elf)\.dir/", str(path))
+            if not target or target[1] == elf.name:  # of the libraries and of this program
+                self.read(path.read_text())
         self.add_library_functions(elf, prefix)
 
     def read(self, text):

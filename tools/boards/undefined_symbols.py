@@ -16,18 +16,28 @@ ALLOWED = re.compile("|".join([
 ARCHIVES = ("curbline/lib/libcurbline.a", "common/libcurbline_drive.a")
 
 
+def asked_of_others(archives, prefix):
+    """What the archives use together and do not have."""
+    undefined, defined = set(), set()
+    for line in stages.run([prefix + "nm", *archives]).splitlines():
+        if match := re.fullmatch(r"[0-9a-f ]*\s(\w) (\S+)", line):
+            (undefined if match[1] in "Uwv" and not re.match(r"[0-9a-f]", line) else defined).add(match[2])
+    return undefined - defined
+
+
+def refused(symbols):
+    return sorted(s for s in symbols if not ALLOWED.fullmatch(s))
+
+
 def main(build, name):
     board = boards.BOARDS[name]
     archives = [boards.program_of(build, name).parent / archive for archive in ARCHIVES]
     for archive in archives:
         if not archive.exists():
             sys.exit(f"{archive}: not there; expected the build of board {name}")
-    undefined, defined = set(), set()
-    for line in stages.run([board.compilers + "nm", *archives]).splitlines():
-        if match := re.fullmatch(r"[0-9a-f ]*\s(\w) (\S+)", line):
-            (undefined if match[1] in "Uwv" and not re.match(r"[0-9a-f]", line) else defined).add(match[2])
-    foreign = sorted(s for s in undefined - defined if not ALLOWED.fullmatch(s))
-    print(f"{name}: {', '.join(sorted(undefined - defined)) or 'nothing'}")
+    asked = asked_of_others(archives, board.compilers)
+    foreign = refused(asked)
+    print(f"{name}: {', '.join(sorted(asked)) or 'nothing'}")
     if foreign:
         sys.exit(f"{name}: the library asks for {', '.join(foreign)}; expected memcpy and its like, sqrt and the compiler's helpers alone")
 
