@@ -1,5 +1,5 @@
-// Runs a drive: records of drive_log.hpp through the pipeline, a result out after each scan line. The same code on a desk
-// and on every board, so that their results can be compared byte by byte. Nothing is allocated.
+// Runs a drive: records of drive_log.hpp through the pipeline, a result out after each scan line. The same code on a
+// desk and on every board, so that their results can be compared byte by byte. Nothing is allocated.
 #pragma once
 
 #include <array>
@@ -22,7 +22,16 @@ using drive_log::RecordHeader;
 using drive_log::RecordKind;
 
 /// How a drive ended. Anything but `done` names what was wrong with the stream.
-enum class DriveEnd : std::uint8_t { done, cut_record, no_setup, other_build, setup_refused, no_bus, unknown_record, no_room_for_results };
+enum class DriveEnd : std::uint8_t {
+  done,
+  cut_record,
+  no_setup,
+  other_build,
+  setup_refused,
+  no_bus,
+  unknown_record,
+  no_room_for_results
+};
 const char* to_string(DriveEnd end);
 
 /// A place that bytes come from and results go to; see port/README.md.
@@ -33,10 +42,11 @@ concept ByteStream = requires(Stream& stream, std::span<std::byte> in, std::span
   { stream.write(out) } -> std::same_as<bool>;
 };
 
-/// How the drive's CAN frames come to the pipeline. open() is told the servo's signal; carry() hands on what the frame has become on its
-/// way, by take(frame), none or several times. Both are false if the bus fails.
+/// How the drive's CAN frames come to the pipeline. open() is told the servo's signal; carry() hands on what the frame
+/// has become on its way, by take(frame), none or several times. Both are false if the bus fails.
 template <typename Bus>
-concept FrameWay = requires(Bus& bus, const can::Signal& signal, const can::Frame& frame, void (*take)(const can::Frame&)) {
+concept FrameWay = requires(Bus& bus, const can::Signal& signal, const can::Frame& frame,
+                            void (*take)(const can::Frame&)) {
   { bus.open(signal) } -> std::same_as<bool>;
   { bus.carry(frame, take) } -> std::same_as<bool>;
 };
@@ -140,7 +150,8 @@ DriveEnd Drive<Stream, Bus>::take_line(std::size_t bytes) {
   const std::size_t beams = (bytes - sizeof head) / sizeof(float);
   if (beams > ranges_m_.size()) return DriveEnd::other_build;
   const std::span<float> ranges_m = std::span(ranges_m_).first(beams);
-  if (!read(head, sizeof head) || stream_.read(std::as_writable_bytes(ranges_m)) != ranges_m.size_bytes()) return DriveEnd::cut_record;
+  if (!read(head, sizeof head) || stream_.read(std::as_writable_bytes(ranges_m)) != ranges_m.size_bytes())
+    return DriveEnd::cut_record;
   const ScanLine line{head.time_ns, ranges_m};
   const Status status = pipeline_.take(line);
   return end_line(line, status) ? DriveEnd::done : DriveEnd::no_room_for_results;

@@ -11,7 +11,9 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 struct Files {
   File in, out;
   std::size_t read(std::span<std::byte> bytes) { return std::fread(bytes.data(), 1, bytes.size(), in.get()); }
-  bool write(std::span<const std::byte> bytes) { return std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size(); }
+  bool write(std::span<const std::byte> bytes) {
+    return std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size();
+  }
 };
 
 curbline::Pipeline<curbline::board::limits> pipeline;
@@ -21,7 +23,8 @@ curbline::Pipeline<curbline::board::limits> pipeline;
 int main(int count, char** words) {
   if (count != 3) return std::fprintf(stderr, "usage: %s DRIVE RESULTS\n", words[0]), 2;
   Files files{File(std::fopen(words[1], "rb"), std::fclose), File(std::fopen(words[2], "wb"), std::fclose)};
-  if (!files.in) return std::fprintf(stderr, "%s: cannot be read; expected a stream of curbline-drive-log\n", words[1]), 1;
+  if (!files.in)
+    return std::fprintf(stderr, "%s: cannot be read; expected a stream of curbline-drive-log\n", words[1]), 1;
   if (!files.out) return std::fprintf(stderr, "%s: cannot be written\n", words[2]), 1;
   curbline::board::Drive drive(files, pipeline);
   curbline::board::DriveEnd end = drive.run();

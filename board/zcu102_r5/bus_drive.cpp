@@ -1,6 +1,7 @@
-// A drive whose CAN frames go over the board's bus, each at its own time: CAN1 plays the servo, CAN0 the robot, and a frame's time is that
-// at which CAN0 had it. Results hold each frame as it was received, so that a desk can repeat, bit for bit, what this board computed. Beside
-// each frame goes one with another id, which must not come through. Words: PROGRAM DRIVE RESULTS.
+// A drive whose CAN frames go over the board's bus, each at its own time: CAN1 plays the servo, CAN0 the robot, and a
+// frame's time is that at which CAN0 had it. Results hold each frame as it was received, so that a desk can repeat, bit
+// for bit, what this board computed. Beside each frame goes one with another id, which must not come through. Words:
+// PROGRAM DRIVE RESULTS.
 #include "can_pair.hpp"
 #include "cycle_clock.hpp"
 #include "drive.hpp"
@@ -33,7 +34,9 @@ class Wire {
     }
     can::Frame other = frame;
     other.id ^= 0x10;
-    if (servo_.send(other) != curbline::xilinx_can::Status::ok || servo_.send(frame) != curbline::xilinx_can::Status::ok) return false;
+    if (servo_.send(other) != curbline::xilinx_can::Status::ok ||
+        servo_.send(frame) != curbline::xilinx_can::Status::ok)
+      return false;
     return receive(take);
   }
 
@@ -56,7 +59,8 @@ class Wire {
     return files.write(std::as_bytes(std::span(&header, 1))) && files.write(std::as_bytes(std::span(&frame, 1)));
   }
 
-  Can servo_{curbline::xilinx_can::MemoryRegisters{can1_base}}, robot_{curbline::xilinx_can::MemoryRegisters{can0_base}};
+  Can servo_{curbline::xilinx_can::MemoryRegisters{can1_base}},
+      robot_{curbline::xilinx_can::MemoryRegisters{can0_base}};
   CycleClock clock_{};
   bool started_ = false;
 };

@@ -1,4 +1,5 @@
-// The driver on the board's two controllers, which share a bus. Prints a line a claim; ends with 1 if one does not hold.
+// The driver on the board's two controllers, which share a bus. Prints a line a claim; ends with 1 if one does not
+// hold.
 #include <array>
 
 #include "can_pair.hpp"
@@ -50,8 +51,8 @@ int drain(can::Frame& last) {
 
 bool arrives(const can::Frame& sent) {
   can::Frame got;
-  return sender.send(sent) == Status::ok && drain(got) == 1 && got.id == sent.id && got.extended == sent.extended && got.length == sent.length &&
-         got.data == sent.data;
+  return sender.send(sent) == Status::ok && drain(got) == 1 && got.id == sent.id && got.extended == sent.extended &&
+         got.length == sent.length && got.data == sent.data;
 }
 
 void every_length_and_kind() {
@@ -71,7 +72,8 @@ void filters() {
   }
   can::Frame remote = frame_of(0x181, false, 0);
   remote.remote = true;
-  claim("filters let their ids through, and no other, nor remote requests", all && sender.send(remote) == Status::ok && drain(got) == 0);
+  claim("filters let their ids through, and no other, nor remote requests",
+        all && sender.send(remote) == Status::ok && drain(got) == 0);
 }
 
 void overflow() {

@@ -1,4 +1,5 @@
-// A clock made of the core's cycle counter. Source: Armv7-A and -R Architecture Reference Manual, B4.1.112 (PMCCNTR and its like).
+// A clock made of the core's cycle counter. Source: Armv7-A and -R Architecture Reference Manual, B4.1.112 (PMCCNTR and
+// its like).
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-// A drive as a stream of bytes: what a board is fed, and what it gives back. In: the settings, then CAN frames, poses and
-// scan lines in the order in which a robot's computer has them (tools/drive_log makes it of logs). Out: a result a scan
-// line. Records are the library's own structs as they lie in memory: the same on every little-endian machine whose long
-// long and double are aligned to 8 bytes, as all that this project knows are. A stream lives between programs of one
-// build; it is no format to keep.
+// A drive as a stream of bytes: what a board is fed, and what it gives back. In: the settings, then CAN frames, poses
+// and scan lines in the order in which a robot's computer has them (tools/drive_log makes it of logs). Out: a result a
+// scan line. Records are the library's own structs as they lie in memory: the same on every little-endian machine whose
+// long long and double are aligned to 8 bytes, as all that this project knows are. A stream lives between programs of
+// one build; it is no format to keep.
 #pragma once
 
 #include <array>
@@ -43,7 +43,8 @@ struct ScanLineHead {
   std::int64_t time_ns = 0;
 };
 
-static_assert(std::is_trivially_copyable_v<Setup> && std::is_trivially_copyable_v<can::Frame> && std::is_trivially_copyable_v<Pose>);
+static_assert(std::is_trivially_copyable_v<Setup> && std::is_trivially_copyable_v<can::Frame> &&
+              std::is_trivially_copyable_v<Pose>);
 static_assert(sizeof(can::Frame) == 88 && sizeof(Pose) == 40 && alignof(can::Signal) == 8);
 
 /// What the pipeline says after a scan line, byte for byte: header, time, status, counters, how many curbs, curbs.

@@ -5,7 +5,14 @@
 namespace curbline::semihosting {
 namespace {
 
-enum class Operation : std::uint32_t { open = 0x01, write0 = 0x04, write = 0x05, read = 0x06, get_command_line = 0x15, exit_extended = 0x20 };
+enum class Operation : std::uint32_t {
+  open = 0x01,
+  write0 = 0x04,
+  write = 0x05,
+  read = 0x06,
+  get_command_line = 0x15,
+  exit_extended = 0x20
+};
 enum class OpenMode : std::uint32_t { read_binary = 1, write_binary = 5 };
 using Word = std::uint32_t;
 
@@ -83,7 +90,9 @@ bool FilePair::open(const char* in, const char* out) {
 std::size_t FilePair::read(std::span<std::byte> bytes) {
   const std::array<Word, 3> arguments{static_cast<Word>(in_), address(bytes.data()), static_cast<Word>(bytes.size())};
   const int missing = call(Operation::read, arguments.data());
-  return missing < 0 || static_cast<std::size_t>(missing) > bytes.size() ? 0 : bytes.size() - static_cast<std::size_t>(missing);
+  return missing < 0 || static_cast<std::size_t>(missing) > bytes.size()
+             ? 0
+             : bytes.size() - static_cast<std::size_t>(missing);
 }
 
 bool FilePair::write(std::span<const std::byte> bytes) {

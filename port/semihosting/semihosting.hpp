@@ -1,6 +1,6 @@
-// Files and text of the host that runs the emulator or the debugger, for firmware without any of its own. Every call stops the
-// core until the host has answered, for microseconds under QEMU and milliseconds over a probe: for tests and bring-up, not for a
-// robot. Without a host a call faults. Not reentrant, not for interrupts. Nothing is allocated.
+// Files and text of the host that runs the emulator or the debugger, for firmware without any of its own. Every call
+// stops the core until the host has answered, for microseconds under QEMU and milliseconds over a probe: for tests and
+// bring-up, not for a robot. Without a host a call faults. Not reentrant, not for interrupts. Nothing is allocated.
 // Source: Arm, Semihosting for AArch32 and AArch64, release 2.0.
 #pragma once
 

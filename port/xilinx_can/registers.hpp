@@ -1,5 +1,6 @@
-// Registers of the CAN controller in Zynq-7000 and Zynq UltraScale+, and what lies in them. Source: AMD, Zynq UltraScale+ Device Register
-// Reference (UG1087), module CAN; the ids' layout: Technical Reference Manual (UG1085), CAN controller.
+// Registers of the CAN controller in Zynq-7000 and Zynq UltraScale+, and what lies in them. Source: AMD, Zynq
+// UltraScale+ Device Register Reference (UG1087), module CAN; the ids' layout: Technical Reference Manual (UG1085), CAN
+// controller.
 #pragma once
 
 #include <array>
@@ -38,8 +39,8 @@ namespace bits {
 constexpr std::uint32_t reset = 1u << 0, enable = 1u << 1;  // software_reset
 constexpr std::uint32_t loopback = 1u << 1;                 // mode
 // status
-constexpr std::uint32_t in_configuration = 1u << 0, in_loopback = 1u << 1, in_normal = 1u << 3, error_warning = 1u << 6, tx_full = 1u << 10,
-                        filters_busy = 1u << 11;
+constexpr std::uint32_t in_configuration = 1u << 0, in_loopback = 1u << 1, in_normal = 1u << 3, error_warning = 1u << 6,
+                        tx_full = 1u << 10, filters_busy = 1u << 11;
 constexpr std::uint32_t error_state = 3u << 7, error_active = 1u << 7, bus_off = 2u << 7, error_passive = 3u << 7;
 // interrupt_status, interrupt_clear
 constexpr std::uint32_t overflow = 1u << 6, not_empty = 1u << 7, error = 1u << 8, went_bus_off = 1u << 9, all = 0x7FFF;
@@ -50,7 +51,8 @@ constexpr std::uint32_t substitute_remote = 1u << 20, extended = 1u << 19, remot
 /// An id as registers have it: the upper 11 bits at the top, then for 29 bits the lower 18.
 constexpr std::uint32_t id_word(std::uint32_t id, bool extended, bool remote) {
   if (!extended) return (id & 0x7FFu) << 21 | (remote ? bits::substitute_remote : 0u);
-  return (id >> 18 & 0x7FFu) << 21 | bits::substitute_remote | bits::extended | (id & 0x3FFFFu) << 1 | (remote ? bits::remote : 0u);
+  return (id >> 18 & 0x7FFu) << 21 | bits::substitute_remote | bits::extended | (id & 0x3FFFFu) << 1 |
+         (remote ? bits::remote : 0u);
 }
 
 /// Four bytes of a frame, the first on top.
@@ -70,7 +72,8 @@ constexpr can::Frame frame_of(const std::array<std::uint32_t, 4>& words, std::in
   const std::uint32_t length = words[1] >> 28;
   frame.length = static_cast<std::uint8_t>(length < 8 ? length : 8);  // 9 to 15 mean 8 (ISO 11898-1)
   if (frame.remote) return frame;
-  for (std::size_t i = 0; i < frame.length; ++i) frame.data[i] = static_cast<std::uint8_t>(words[2 + i / 4] >> (24 - 8 * (i % 4)));
+  for (std::size_t i = 0; i < frame.length; ++i)
+    frame.data[i] = static_cast<std::uint8_t>(words[2 + i / 4] >> (24 - 8 * (i % 4)));
   return frame;
 }
 
@@ -82,7 +85,9 @@ class MemoryRegisters {
   void write(Register r, std::uint32_t value) { *at(static_cast<std::uint32_t>(r)) = value; }
 
  private:
-  volatile std::uint32_t* at(std::uint32_t offset) const { return reinterpret_cast<volatile std::uint32_t*>(base_ + offset); }
+  volatile std::uint32_t* at(std::uint32_t offset) const {
+    return reinterpret_cast<volatile std::uint32_t*>(base_ + offset);
+  }
   std::uintptr_t base_;
 };
 

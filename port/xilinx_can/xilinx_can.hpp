@@ -1,4 +1,5 @@
-// A CAN controller of a Zynq-7000 or Zynq UltraScale+ without an operating system: bus -> XilinxCan -> can::TiltDecoder -> TiltTrack.
+// A CAN controller of a Zynq-7000 or Zynq UltraScale+ without an operating system: bus -> XilinxCan -> can::TiltDecoder
+// -> TiltTrack.
 //
 //   XilinxCan bus{MemoryRegisters{0xFF060000}};                   // CAN0; its clock and pins are the boot loader's
 //   const std::array filters{filter_of(signal)};
@@ -6,14 +7,15 @@
 //   std::array<can::Frame, 8> frames;
 //   const int n = bus.receive(frames, now_ns);
 //
-// Call receive() from the controller's interrupt, whose line is raised while a frame waits, and a few times a second besides, which ends
-// bus-off; or poll it. A frame's time is that which receive() was given, on the caller's clock. The controller's own stamp is not used: 16
-// bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full bus at 1 Mbit/s.
+// Call receive() from the controller's interrupt, whose line is raised while a frame waits, and a few times a second
+// besides, which ends bus-off; or poll it. A frame's time is that which receive() was given, on the caller's clock. The
+// controller's own stamp is not used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full
+// bus at 1 Mbit/s.
 //
-// What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and set up anew after
-// Settings::restart_after_ns). open() and self_test() wait for the controller, 100,000 reads of a register at most, some 10 ms; nothing
-// else waits. No heap. All calls of an object come from one context, which may be an interrupt. Registers is MemoryRegisters, or what a
-// test has instead. Source: UG1085 and UG1087, see registers.hpp.
+// What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
+// set up anew after Settings::restart_after_ns). open() and self_test() wait for the controller, 100,000 reads of a
+// register at most, some 10 ms; nothing else waits. No heap. All calls of an object come from one context, which may be
+// an interrupt. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
 #pragma once
 
 #include <algorithm>
@@ -62,7 +64,7 @@ enum class BusState : std::uint8_t { closed, active, warning, passive, off };
 /// Everything only grows. A healthy bus sees nothing but `frames` and `sent`.
 struct Counters {
   std::uint32_t frames = 0, sent = 0, not_sent = 0;
-  std::uint32_t overflows = 0;  ///< times that the FIFO was found to have lost frames
+  std::uint32_t overflows = 0;   ///< times that the FIFO was found to have lost frames
   std::uint32_t bus_errors = 0;  ///< times that broken frames, or ones nobody acknowledged, were found
   std::uint32_t times_bus_off = 0, restarts = 0;
 };
@@ -80,8 +82,8 @@ class XilinxCan {
   /// Sends frames of both kinds to itself, off the bus, and looks at what comes back. Then the controller is closed.
   Status self_test(const Settings& settings);
 
-  /// Fills `out` from its start with the frames that have come, oldest first, and returns how many; what has no room stays for the
-  /// next call. Follows the bus's state, which counts errors and ends bus-off.
+  /// Fills `out` from its start with the frames that have come, oldest first, and returns how many; what has no room
+  /// stays for the next call. Follows the bus's state, which counts errors and ends bus-off.
   int receive(std::span<can::Frame> out, std::int64_t now_ns);
 
   /// Queues a frame; does not wait.
@@ -132,7 +134,8 @@ Status XilinxCan<Registers>::start(std::uint32_t mode) {
   if (!wait(bits::in_configuration, bits::in_configuration)) return Status::no_answer;
   const BitTiming& t = timing_;
   registers_.write(Register::prescaler, static_cast<std::uint32_t>(t.prescaler - 1));
-  registers_.write(Register::bit_timing, static_cast<std::uint32_t>((t.jump - 1) << 7 | (t.segment2 - 1) << 4 | (t.segment1 - 1)));
+  registers_.write(Register::bit_timing,
+                   static_cast<std::uint32_t>((t.jump - 1) << 7 | (t.segment2 - 1) << 4 | (t.segment1 - 1)));
   registers_.write(Register::mode, mode);
   registers_.write(Register::interrupt_enable, bits::not_empty);
   if (!set_filters()) return Status::no_answer;
@@ -159,11 +162,13 @@ bool XilinxCan<Registers>::set_filters() {
   if (!wait(bits::filters_busy, 0)) return false;
   for (std::size_t i = 0; i < filter_count_; ++i) {
     const Filter& f = filters_[i];
-    const std::uint32_t kind = bits::extended | (f.extended ? bits::remote : bits::substitute_remote);  // compared beside the id
+    const std::uint32_t kind =
+        bits::extended | (f.extended ? bits::remote : bits::substitute_remote);  // compared beside the id
     const std::uint32_t mask = (id_word(f.mask, f.extended, false) & ~bits::substitute_remote) | kind;
     const auto offset = static_cast<std::uint32_t>(8 * i);
     registers_.write(Register{static_cast<std::uint32_t>(Register::filter_mask1) + offset}, mask);
-    registers_.write(Register{static_cast<std::uint32_t>(Register::filter_id1) + offset}, id_word(f.id, f.extended, false));
+    registers_.write(Register{static_cast<std::uint32_t>(Register::filter_id1) + offset},
+                     id_word(f.id, f.extended, false));
   }
   registers_.write(Register::filter_enable, (1u << filter_count_) - 1u);
   return true;
@@ -196,7 +201,8 @@ bool XilinxCan<Registers>::take(can::Frame& frame, std::int64_t now_ns) {
 
 template <typename Registers>
 void XilinxCan<Registers>::follow_bus(std::int64_t now_ns) {
-  const std::uint32_t happened = registers_.read(Register::interrupt_status) & (bits::overflow | bits::error | bits::went_bus_off);
+  const std::uint32_t happened =
+      registers_.read(Register::interrupt_status) & (bits::overflow | bits::error | bits::went_bus_off);
   if (happened != 0) registers_.write(Register::interrupt_clear, happened);
   if ((happened & bits::overflow) != 0) ++counters_.overflows;
   if ((happened & bits::error) != 0) {
@@ -223,7 +229,8 @@ void XilinxCan<Registers>::follow_bus(std::int64_t now_ns) {
 template <typename Registers>
 Status XilinxCan<Registers>::may_send(const can::Frame& frame) const {
   if (bus_ == BusState::closed) return Status::not_open;
-  const bool sound = !frame.error && !frame.fd && frame.length <= 8 && frame.id <= (frame.extended ? 0x1FFFFFFFu : 0x7FFu);
+  const bool sound =
+      !frame.error && !frame.fd && frame.length <= 8 && frame.id <= (frame.extended ? 0x1FFFFFFFu : 0x7FFu);
   if (!sound) return Status::bad_frame;
   if (bus_ == BusState::off) return Status::bus_off;
   return (registers_.read(Register::status) & bits::tx_full) != 0 ? Status::queue_full : Status::ok;
@@ -271,7 +278,8 @@ Status XilinxCan<Registers>::echo(const can::Frame& frame) {
   can::Frame heard;
   for (int i = 0; i < patience; ++i) {
     if (!take(heard, 0)) continue;
-    const bool same = heard.id == frame.id && heard.extended == frame.extended && heard.length == frame.length && heard.data == frame.data;
+    const bool same = heard.id == frame.id && heard.extended == frame.extended && heard.length == frame.length &&
+                      heard.data == frame.data;
     return same ? Status::ok : Status::self_test_failed;
   }
   return Status::self_test_failed;

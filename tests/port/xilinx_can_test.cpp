@@ -1,4 +1,5 @@
-// The driver against a controller of software that keeps the manual's rules. The emulated controller has its own tests: ctest -L board.
+// The driver against a controller of software that keeps the manual's rules. The emulated controller has its own tests:
+// ctest -L board.
 #include "xilinx_can/xilinx_can.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,14 +18,15 @@ class Controller {
  public:
   Controller() = default;
 
-  bool dead = false;      ///< it answers nothing but zeros
-  bool muted = false;     ///< what is sent stays in the FIFO
+  bool dead = false;         ///< it answers nothing but zeros
+  bool muted = false;        ///< what is sent stays in the FIFO
   std::uint32_t damage = 0;  ///< of data that comes back
   std::uint32_t prescaler = 0, timing = 0;
   std::vector<Words> sent;
 
   void arrive(const can::Frame& frame) {
-    take({id_word(frame.id, frame.extended, frame.remote), static_cast<std::uint32_t>(frame.length) << 28, data_word(frame, 0), data_word(frame, 4)});
+    take({id_word(frame.id, frame.extended, frame.remote), static_cast<std::uint32_t>(frame.length) << 28,
+          data_word(frame, 0), data_word(frame, 4)});
   }
   void go_bus_off() {
     error_state_ = bits::bus_off;
@@ -36,29 +38,58 @@ class Controller {
   std::uint32_t read(Register r) {
     if (dead) return 0;
     switch (r) {
-      case Register::status: return status();
-      case Register::interrupt_status: return interrupts_ | (fifo_.empty() ? 0 : bits::not_empty);
-      case Register::rx_id: return fifo_.front()[0];
-      case Register::rx_length: return fifo_.front()[1];
-      case Register::rx_data1: return fifo_.front()[2];
-      case Register::rx_data2: return pop();
-      default: return 0;
+      case Register::status:
+        return status();
+      case Register::interrupt_status:
+        return interrupts_ | (fifo_.empty() ? 0 : bits::not_empty);
+      case Register::rx_id:
+        return fifo_.front()[0];
+      case Register::rx_length:
+        return fifo_.front()[1];
+      case Register::rx_data1:
+        return fifo_.front()[2];
+      case Register::rx_data2:
+        return pop();
+      default:
+        return 0;
     }
   }
 
   void write(Register r, std::uint32_t value) {
     switch (r) {
-      case Register::software_reset: return reset(value);
-      case Register::mode: mode_ = value; return;
-      case Register::prescaler: REQUIRE(!enabled_); prescaler = value; return;
-      case Register::bit_timing: REQUIRE(!enabled_); timing = value; return;
-      case Register::interrupt_clear: interrupts_ &= ~value; return;
-      case Register::tx_id: tx_[0] = value; return;
-      case Register::tx_length: tx_[1] = value; return;
-      case Register::tx_data1: tx_[2] = value; return;
-      case Register::tx_data2: tx_[3] = value; return transmit();
-      case Register::filter_enable: filters_on_ = value; return;
-      default: return write_filter(static_cast<std::uint32_t>(r), value);
+      case Register::software_reset:
+        return reset(value);
+      case Register::mode:
+        mode_ = value;
+        return;
+      case Register::prescaler:
+        REQUIRE(!enabled_);
+        prescaler = value;
+        return;
+      case Register::bit_timing:
+        REQUIRE(!enabled_);
+        timing = value;
+        return;
+      case Register::interrupt_clear:
+        interrupts_ &= ~value;
+        return;
+      case Register::tx_id:
+        tx_[0] = value;
+        return;
+      case Register::tx_length:
+        tx_[1] = value;
+        return;
+      case Register::tx_data1:
+        tx_[2] = value;
+        return;
+      case Register::tx_data2:
+        tx_[3] = value;
+        return transmit();
+      case Register::filter_enable:
+        filters_on_ = value;
+        return;
+      default:
+        return write_filter(static_cast<std::uint32_t>(r), value);
     }
   }
 
@@ -67,7 +98,8 @@ class Controller {
 
   std::uint32_t status() const {
     if (!enabled_) return bits::in_configuration;
-    return (mode_ == bits::loopback ? bits::in_loopback : bits::in_normal) | error_state_ | (muted && sent.size() >= depth ? bits::tx_full : 0);
+    return (mode_ == bits::loopback ? bits::in_loopback : bits::in_normal) | error_state_ |
+           (muted && sent.size() >= depth ? bits::tx_full : 0);
   }
   void reset(std::uint32_t value) {
     enabled_ = (value & bits::enable) != 0;
@@ -75,7 +107,8 @@ class Controller {
     ++resets_;
     *this = Controller{*this, resets_};
   }
-  Controller(const Controller& before, int resets) : dead(before.dead), muted(before.muted), damage(before.damage), sent(before.sent), resets_(resets) {}
+  Controller(const Controller& before, int resets)
+      : dead(before.dead), muted(before.muted), damage(before.damage), sent(before.sent), resets_(resets) {}
   void transmit() {
     REQUIRE((enabled_ && error_state_ != bits::bus_off));
     sent.push_back(tx_);
@@ -193,14 +226,15 @@ TEST_CASE("xilinx_can: what is sent has the register's layout") {
 
 TEST_CASE("xilinx_can: filters let through their ids of their kind, and no remote request") {
   Bench b;
-  const std::array filters{filter_of(can::cia402_position(1)), Filter{0x100, 0x700, false}, Filter{0x1ABCDE00, 0x1FFFFF00, true}};
+  const std::array filters{filter_of(can::cia402_position(1)), Filter{0x100, 0x700, false},
+                           Filter{0x1ABCDE00, 0x1FFFFF00, true}};
   REQUIRE(b.bus.open(b.settings, filters) == Status::ok);
   can::Frame remote = frame_of_id(0x181);
   remote.remote = true;
   can::Frame remote_extended = frame_of_id(0x1ABCDE01, true);
   remote_extended.remote = true;
-  for (const can::Frame& f : {frame_of_id(0x181), frame_of_id(0x1FF), frame_of_id(0x1ABCDE42, true), frame_of_id(0x281), frame_of_id(0x181, true),
-                              frame_of_id(0x1ABCDF42, true), remote, remote_extended}) {
+  for (const can::Frame& f : {frame_of_id(0x181), frame_of_id(0x1FF), frame_of_id(0x1ABCDE42, true), frame_of_id(0x281),
+                              frame_of_id(0x181, true), frame_of_id(0x1ABCDF42, true), remote, remote_extended}) {
     b.controller.arrive(f);
   }
   REQUIRE(b.bus.receive(b.frames, 0) == 3);
@@ -234,7 +268,9 @@ TEST_CASE("xilinx_can: an overflow is counted, and the frames that were kept sti
   CHECK(b.bus.receive(b.frames, 0) == 1);
 }
 
-TEST_CASE("xilinx_can: after bus-off the controller is set up anew, not before its time, and hears again through its filters") {
+TEST_CASE(
+    "xilinx_can: after bus-off the controller is set up anew, not before its time, and hears again through its "
+    "filters") {
   Bench b;
   const std::array filters{Filter{0x181, 0x7FF, false}};
   REQUIRE(b.bus.open(b.settings, filters) == Status::ok);

@@ -1,8 +1,9 @@
-// A QEMU plugin that counts the instructions of a firmware by stage and by scan line. Arguments: map=FILE (what tools/budget made
-// of the firmware's debug information: `line ADDRESS`, then `range FIRST END STAGE`, hexadecimal, stage -1 for helpers) and out=FILE
-// (a row of counts by stage for each line). An instruction of a helper, such as memcpy, counts for the stage that ran last. A line
-// ends where the instruction at `line` is reached. Counts repeat exactly. For firmware on one core without interrupts; what no range holds is another core's and not counted.
-// Source: QEMU, TCG Plugins, version 1 of the interface; its header is in no package, so what is used of it stands here.
+// A QEMU plugin that counts the instructions of a firmware by stage and by scan line. Arguments: map=FILE (what
+// tools/budget made of the firmware's debug information: `line ADDRESS`, then `range FIRST END STAGE`, hexadecimal,
+// stage -1 for helpers) and out=FILE (a row of counts by stage for each line). An instruction of a helper, such as
+// memcpy, counts for the stage that ran last. A line ends where the instruction at `line` is reached. Counts repeat
+// exactly. For firmware on one core without interrupts; what no range holds is another core's and not counted. Source:
+// QEMU, TCG Plugins, version 1 of the interface; its header is in no package, so what is used of it stands here.
 #include <algorithm>
 #include <array>
 #include <cinttypes>
@@ -50,7 +51,8 @@ std::size_t current = 0;  ///< the stage that ran last
 std::FILE* out = nullptr;
 
 int stage_of(std::uint64_t address) {
-  const auto range = std::partition_point(ranges.begin(), ranges.end(), [&](const Range& r) { return r.end <= address; });
+  const auto range =
+      std::partition_point(ranges.begin(), ranges.end(), [&](const Range& r) { return r.end <= address; });
   return range != ranges.end() && range->first <= address ? range->stage : elsewhere;
 }
 
@@ -78,7 +80,8 @@ void on_translation(qemu_plugin_id_t, qemu_plugin_tb* tb) {
     const int stage = stage_of(address);
     if (stage == elsewhere) continue;  // of another core
     if (stage != helper) block->last_stage = stage;
-    ++(block->last_stage == helper ? block->leading_helpers : block->counts[static_cast<std::size_t>(block->last_stage)]);
+    ++(block->last_stage == helper ? block->leading_helpers
+                                   : block->counts[static_cast<std::size_t>(block->last_stage)]);
   }
   qemu_plugin_register_vcpu_tb_exec_cb(tb, on_block, no_registers, block);
 }

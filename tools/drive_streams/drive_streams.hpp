@@ -10,13 +10,13 @@
 namespace curbline::tools {
 
 struct DriveFiles {
-  std::string robot;  ///< TOML
+  std::string robot;              ///< TOML
   std::string scans, can, poses;  ///< can and poses are empty where the robot has none
   std::string out;
 };
 
-/// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: what `curbline replay`
-/// gives the pipeline, with some readings more of the time to come. Throws BadInput.
+/// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: what `curbline
+/// replay` gives the pipeline, with some readings more of the time to come. Throws BadInput.
 void write_drive(const DriveFiles& files);
 
 /// The curbs after the last scan line of a stream of results. Throws BadInput.

@@ -2,8 +2,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "drive_streams/drive_streams.hpp"
 #include "drive_log/drive_log.hpp"
+#include "drive_streams/drive_streams.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
@@ -44,7 +44,8 @@ std::vector<MapCurb> read_last_curbs(const std::string& path) {
       throw BadInput(path + ": not a result; expected results of a drive by this build");
     }
     curbs.clear();
-    for (std::size_t k = Layout::curbs_at; k < header.bytes; k += Layout::curb_bytes) curbs.push_back(curb_at(bytes, at + k));
+    for (std::size_t k = Layout::curbs_at; k < header.bytes; k += Layout::curb_bytes)
+      curbs.push_back(curb_at(bytes, at + k));
     at += header.bytes;
   }
   return curbs;

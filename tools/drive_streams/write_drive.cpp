@@ -3,8 +3,8 @@
 #include <span>
 
 #include "can/tilt_decoder.hpp"
-#include "drive_streams/drive_streams.hpp"
 #include "drive_log/drive_log.hpp"
+#include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
@@ -23,10 +23,13 @@ constexpr float latency_bound = 4.0f;
 
 class DriveWriter {
  public:
-  explicit DriveWriter(const DriveFiles& files) : robot_(read_robot(files.robot)), scans_(files.scans), out_(files.out) {
+  explicit DriveWriter(const DriveFiles& files)
+      : robot_(read_robot(files.robot)), scans_(files.scans), out_(files.out) {
     if (!files.poses.empty()) robot_.pose.still = false;
-    if (!robot_.tilt.fixed && files.can.empty()) throw BadInput("no tilt log for a laser that nods; expected --can LOG");
-    if (!robot_.pose.still && files.poses.empty()) throw BadInput("no poses for a robot that drives; expected --poses FILE");
+    if (!robot_.tilt.fixed && files.can.empty())
+      throw BadInput("no tilt log for a laser that nods; expected --can LOG");
+    if (!robot_.pose.still && files.poses.empty())
+      throw BadInput("no poses for a robot that drives; expected --poses FILE");
     if (!robot_.tilt.fixed) can_.emplace(files.can);
     tilt_decoder_.init(robot_.tilt_signal, robot_.tilt_sync_id);
     if (!robot_.pose.still) poses_.emplace(files.poses);
@@ -39,7 +42,8 @@ class DriveWriter {
       check_geometry(*line, robot_.laser, scans_.path(), scans_.line());
       const float duration_ns = robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line->ranges_m.size());
       const std::int64_t last_beam_ns = line->time_ns + static_cast<std::int64_t>(duration_ns);
-      put_frames(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
+      put_frames(last_beam_ns +
+                 static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
       put_poses(last_beam_ns);
       put_line(*line);
     }
@@ -75,7 +79,8 @@ class DriveWriter {
       const auto pose = poses_->next();
       poses_until_ns_ = pose ? pose->time_ns : log_ended;
       if (!pose) return;
-      put(RecordKind::pose, Pose{pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
+      put(RecordKind::pose, Pose{pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy),
+                                 f(pose->qz), f(pose->qw)});
     }
   }
 
