@@ -9,6 +9,7 @@
 #include "curbline/tilt_watch.hpp"
 #include "port.hpp"
 #include "robot.hpp"
+#include "runtime.hpp"
 
 namespace can = curbline::can;
 
@@ -64,6 +65,10 @@ void take_lines() {
 }
 
 }  // namespace
+
+void curbline::board::leave(int) {
+  port.stop("an exception that nobody handles");
+}
 
 int main() {
   start();

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "semihosting/semihosting.hpp"
-
 extern "C" {
 using Word = std::uint32_t;
 using Constructor = void (*)();
@@ -29,7 +27,7 @@ void run_main() {
   for (volatile Word* to = data_begin; to < data_end; ++to, ++from) *to = *from;
   for (volatile Word* to = bss_begin; to < bss_end; ++to) *to = 0;
   for (const Constructor* constructor = init_array_begin; constructor < init_array_end; ++constructor) (*constructor)();
-  semihosting::exit(main());
+  leave(main());
 }
 
 std::size_t stack_used() {

@@ -8,7 +8,7 @@
 #include "semihosting/semihosting.hpp"
 #include "timer.hpp"
 
-extern "C" void on_timer();
+extern "C" void on_interrupt(std::uint32_t irq);
 
 namespace semihosting = curbline::semihosting;
 namespace timer = curbline::board::timer;
@@ -170,7 +170,7 @@ bool run(const char* in, const char* out) {
 }  // namespace servo
 }  // namespace
 
-void on_timer() {
+void on_interrupt(std::uint32_t) {
   timer::acknowledge();
   timer::set_period(next_period());
   handler();

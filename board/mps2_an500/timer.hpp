@@ -1,4 +1,4 @@
-// TIMER0 of the MPS2, which calls on_timer(). Source: Arm, Cortex-M System Design Kit TRM (DDI 0479), APB timer;
+// TIMER0 of the MPS2, whose interrupt on_interrupt() takes. Source: Arm, Cortex-M System Design Kit TRM (DDI 0479), APB timer;
 // Armv7-M Architecture Reference Manual, B3.4 (NVIC).
 #pragma once
 
@@ -13,7 +13,7 @@ inline volatile std::uint32_t& word(std::uintptr_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);
 }
 
-/// From now on, and after each call of on_timer(), in so many ticks of 40 ns.
+/// From now on, and after each call of on_interrupt(), in so many ticks of 40 ns.
 inline void set_period(std::uint32_t ticks) {
   word(base + 8) = ticks;
 }
@@ -30,7 +30,7 @@ inline void stop() {
   word(base) = 0;
 }
 
-/// What on_timer() does first.
+/// What on_interrupt() does first.
 inline void acknowledge() {
   word(base + 12) = 1;
 }

@@ -2,7 +2,6 @@
 #include <cstddef>
 
 #include "runtime.hpp"
-#include "semihosting/semihosting.hpp"
 
 extern "C" {
 [[noreturn]] void start();
@@ -16,6 +15,5 @@ void start() {
 }
 
 void unexpected_exception() {
-  curbline::semihosting::print("unexpected exception\n");
-  curbline::semihosting::exit(3);
+  curbline::board::leave(curbline::board::unexpected_exception);
 }

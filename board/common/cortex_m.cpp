@@ -1,34 +1,32 @@
-// From reset to main() on a Cortex-M with an FPU, and what every exception does that nobody handles. Source: Armv7-M
-// Architecture Reference Manual, B1.5 (vectors, reset), B3.2.20 (CPACR).
+// From reset to main() on a Cortex-M with an FPU. Source: Armv7-M Architecture Reference Manual, B1.5 (vectors, reset), B3.2.20 (CPACR).
 #include <cstddef>
 #include <cstdint>
 
 #include "runtime.hpp"
-#include "semihosting/semihosting.hpp"
 
 extern "C" {
 extern std::uint32_t stack_end[];
 [[noreturn]] void reset();
 [[noreturn]] void unexpected();
-[[gnu::weak]] void on_timer();  // a program that starts the timer has it
+void dispatch();
+[[gnu::weak]] void on_interrupt(std::uint32_t irq);  // a program that enables interrupts has it
 }
 
 namespace {
 
 using Handler = void (*)();
-constexpr std::size_t timer0_irq = 8;
+constexpr std::size_t interrupt_count = 150;  // of the largest controllers
 
 struct Vectors {
   std::uint32_t* stack;
   Handler exceptions[15];
-  Handler interrupts[16];
+  Handler interrupts[interrupt_count];
 };
 
 constexpr Vectors make_vectors() {
   Vectors vectors{stack_end, {reset}, {}};
   for (std::size_t i = 1; i < 15; ++i) vectors.exceptions[i] = unexpected;
-  for (Handler& handler : vectors.interrupts) handler = unexpected;
-  vectors.interrupts[timer0_irq] = on_timer;
+  for (Handler& handler : vectors.interrupts) handler = dispatch;
   return vectors;
 }
 
@@ -36,13 +34,18 @@ constexpr Vectors make_vectors() {
 
 }  // namespace
 
-void on_timer() {
+void dispatch() {
+  std::uint32_t exception;
+  asm volatile("mrs %0, ipsr" : "=r"(exception));
+  on_interrupt(exception - 16);
+}
+
+void on_interrupt(std::uint32_t) {
   unexpected();
 }
 
 void unexpected() {
-  curbline::semihosting::print("unexpected exception\n");
-  curbline::semihosting::exit(3);
+  curbline::board::leave(curbline::board::unexpected_exception);
 }
 
 void reset() {
