@@ -1,4 +1,7 @@
-"""Worst-case stack of a function: the compiler's call graph (-fcallgraph-info=su,da), with the linker's and the C library's own functions
+#!/usr/bin/env python3
+"""stack.py ELF FUNCTION [PREFIX]: worst-case stack of a function of a firmware (PREFIX of its binutils: arm-none-eabi-) and the way to it.
+
+From the compiler's call graph (-fcallgraph-info=su,da), with the linker's and the C library's own functions
 read off the disassembly. Recursion and calls through pointers are refused: their depth is not known."""
 import re
 import sys
@@ -101,3 +104,11 @@ def registers(operands):
         ends = [int(n) if n else 0 for n in re.findall(r"[rsd](\d+)", part)]
         count += ends[1] - ends[0] + 1 if len(ends) == 2 else 1
     return count
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
+    elf = Path(sys.argv[1])
+    worst, path = CallGraph(elf.parent, elf, (sys.argv[3:] or ["arm-none-eabi-"])[0]).worst(sys.argv[2])
+    print(worst, *path, sep="\n  ")
