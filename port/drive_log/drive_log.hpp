@@ -1,8 +1,8 @@
 // A drive as a stream of bytes: what a board is fed, and what it gives back. In: the settings, then CAN frames, poses
-// and scan lines in the order in which a robot's computer has them (tools/drive_log makes it of logs). Out: a result a
-// scan line. Records are the library's own structs as they lie in memory: the same on every little-endian machine whose
-// long long and double are aligned to 8 bytes, as all that this project knows are. A stream lives between programs of
-// one build; it is no format to keep.
+// and scan lines in the order in which a robot's computer has them (tools/drive_streams makes it of logs). Out: a
+// result a scan line, and from a board with a bus the frames as it received them. Records are the library's own structs
+// as they lie in memory: the same on every little-endian machine whose long long and double are aligned to 8 bytes, as
+// all that this project knows are. A stream lives between programs of one build; it is no format to keep.
 #pragma once
 
 #include <array>

@@ -16,6 +16,7 @@ class Board:
     run: tuple             # what comes before the program: an emulator and its machine
     core: bool = False     # a core without an operating system: fed by semihosting
     compilers: str = ""    # prefix of its binutils
+    budget: bool = False   # its folder's budget.toml is of this core
 
 
 BOARDS = {b.name: b for b in [
@@ -27,11 +28,11 @@ BOARDS = {b.name: b for b in [
     Board("x86-64-clang-scalar", "desk", ()),
     Board("aarch64-linux", "desk", ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"), compilers="aarch64-linux-gnu-"),
     Board("armv7-linux", "desk", ("qemu-arm", "-L", "/usr/arm-linux-gnueabihf"), compilers="arm-linux-gnueabihf-"),
-    Board("cortex-m7", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-"),
+    Board("cortex-m7", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-", True),
     Board("cortex-m7-sp", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-"),
     Board("cortex-m4f", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an386"), True, "arm-none-eabi-"),
     Board("cortex-r5f", "zcu102_r5", ("qemu-system-aarch64", "-M", "xlnx-zcu102,canbus0=wire,canbus1=wire", "-object", "can-bus,id=wire",
-                                      "-smp", "6", "-m", "256M"), True, "arm-none-eabi-"),  # both CAN controllers on one wire
+                                      "-smp", "6", "-m", "256M"), True, "arm-none-eabi-", True),  # both CAN controllers on one wire
 ]}
 REFERENCE = "x86-64-gcc"
 # An emulated board's time is its instructions', 16 ns each: the same in every run, however busy this machine is.

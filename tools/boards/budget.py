@@ -132,6 +132,6 @@ def main(build, name, keep):
 
 if __name__ == "__main__":
     words = [w for w in sys.argv[1:] if w != "--keep"]
-    if len(words) != 2 or words[1] not in ("cortex-m7", "cortex-r5f"):
+    if len(words) != 2 or words[1] not in (b.name for b in boards.BOARDS.values() if b.budget):
         sys.exit(__doc__)
     sys.exit(main(words[0], words[1], "--keep" in sys.argv))

@@ -2,7 +2,7 @@
 """run_drives.py BUILD BOARD: runs every drive on a board and compares its results with the desk's, byte for byte.
 
 Results go to BUILD/board/results/BOARD. The desk's own board, x86-64-gcc, is what the others are compared with: run it first. A core
-also leaves its instruction counts (NAME.counts, a row a scan line) and the stack it used (NAME.stack) there, for tools/budget.
+also leaves the stack it used (NAME.stack) there, and one with a budget its instruction counts (NAME.counts, a row a scan line).
 """
 import re
 import sys
@@ -18,17 +18,22 @@ def results_folder(build, name):
 
 
 def run_core(board, build, program, drive, results):
-    """With the plugin that counts."""
-    map_file = results.parent / "stages.map"
-    if not map_file.exists() or map_file.stat().st_mtime < program.stat().st_mtime:
-        stages.write_map(program, map_file, board.compilers)
-    plugin = Path(build) / "board" / "count_plugin.so"
-    extra = ["-plugin", f"{plugin},map={map_file},out={results.with_suffix('.counts')}"]
+    """With the plugin that counts, if what it counts has a budget."""
+    extra = counting(board, build, program, results) if board.budget else []
     said = boards.run(board, program, [str(drive), str(results)], extra)
     used = re.search(r"stack bytes used: (\d+)", said)
     if not used:
         sys.exit(f"{board.name}: {drive.name}: no line of the stack's use in: {said.strip()}")
     results.with_suffix(".stack").write_text(used[1])
+
+
+def counting(board, build, program, results):
+    map_file = results.parent / "stages.map"
+    newest_source = max(path.stat().st_mtime for path in (program, Path(stages.__file__)))
+    if not map_file.exists() or map_file.stat().st_mtime < newest_source:
+        stages.write_map(program, map_file, board.compilers)
+    plugin = Path(build) / "board" / "count_plugin.so"
+    return ["-plugin", f"{plugin},map={map_file},out={results.with_suffix('.counts')}"]
 
 
 def first_difference(a, b):
