@@ -1,5 +1,5 @@
-// The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; what is your board's is in
-// port.hpp, what is your robot's in robot.hpp.
+// The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; what is
+// your board's is in port.hpp, what is your robot's in robot.hpp.
 #include <array>
 
 #include "can/curb_frames.hpp"
@@ -49,7 +49,8 @@ void tell() {
   for (const curbline::Curb& c : pipeline.curbs()) {
     const bool first_end = c.x0_m < c.x1_m;
     const float x_m = first_end ? c.x0_m : c.x1_m, y_m = first_end ? c.y0_m : c.y1_m;
-    if (x_m > 0.0f && (!ahead || x_m < ahead->distance_m)) ahead = {x_m, y_m, c.height_m, c.height_sd_m, c.kind, c.probability};
+    if (x_m > 0.0f && (!ahead || x_m < ahead->distance_m))
+      ahead = {x_m, y_m, c.height_m, c.height_sd_m, c.kind, c.probability};
   }
   port.send(can::curb_ahead_frame(ahead));
   port.send(can::curb_status_frame({++lines_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));

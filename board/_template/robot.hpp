@@ -8,10 +8,10 @@
 inline constexpr curbline::Limits limits{};  // 40 x 40 cells, 16 planes, 1081 beams: 160 KiB
 
 inline curbline::Settings robot_settings() {
-  curbline::Settings settings;            // a Hokuyo UTM-30LX
-  settings.tilt.T_base_tilt.z_m = 1.1f;   // the tilt axis above the ground
+  curbline::Settings settings;             // a Hokuyo UTM-30LX
+  settings.tilt.T_base_tilt.z_m = 1.1f;    // the tilt axis above the ground
   settings.tilt.T_tilt_laser.z_m = 0.05f;  // the laser above the axis
-  settings.pose.still = true;             // false once Port::pose() has something to give
+  settings.pose.still = true;              // false once Port::pose() has something to give
   return settings;
 }
 

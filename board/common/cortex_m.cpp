@@ -1,4 +1,5 @@
-// From reset to main() on a Cortex-M with an FPU. Source: Armv7-M Architecture Reference Manual, B1.5 (vectors, reset), B3.2.20 (CPACR).
+// From reset to main() on a Cortex-M with an FPU. Source: Armv7-M Architecture Reference Manual, B1.5 (vectors, reset),
+// B3.2.20 (CPACR).
 #include <cstddef>
 #include <cstdint>
 

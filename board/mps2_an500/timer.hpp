@@ -1,5 +1,5 @@
-// TIMER0 of the MPS2, whose interrupt on_interrupt() takes. Source: Arm, Cortex-M System Design Kit TRM (DDI 0479), APB timer;
-// Armv7-M Architecture Reference Manual, B3.4 (NVIC).
+// TIMER0 of the MPS2, whose interrupt on_interrupt() takes. Source: Arm, Cortex-M System Design Kit TRM (DDI 0479), APB
+// timer; Armv7-M Architecture Reference Manual, B3.4 (NVIC).
 #pragma once
 
 #include <cstdint>

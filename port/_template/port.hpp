@@ -1,5 +1,6 @@
-// Copy this folder, and write in port.cpp what your board has. Until then everything answers "nothing has come". What a port promises is in
-// port/README.md; the numbers behind "now" and every stamp are nanoseconds of one clock that only goes forward.
+// Copy this folder, and write in port.cpp what your board has. Until then everything answers "nothing has come". What a
+// port promises is in port/README.md; the numbers behind "now" and every stamp are nanoseconds of one clock that only
+// goes forward.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ class Port {
 
   std::int64_t now_ns();
 
-  /// Fills `out` from its start with the frames of the bus, oldest first, each with the time at which it came in, and returns how many. Up
-  /// to a millisecond of delay in that time is as good as a servo's own.
+  /// Fills `out` from its start with the frames of the bus, oldest first, each with the time at which it came in, and
+  /// returns how many. Up to a millisecond of delay in that time is as good as a servo's own.
   int receive(std::span<curbline::can::Frame> out);
 
   /// A scan line that is complete. Its time is that of its first beam; its ranges stay until the next call.

@@ -1,5 +1,5 @@
-// In place of port/_template and the template's robot.hpp: a drive's records are what bus and scanner give, in their order, and time is
-// theirs. What the robot sends is written to a file, as records.
+// In place of port/_template and the template's robot.hpp: a drive's records are what bus and scanner give, in their
+// order, and time is theirs. What the robot sends is written to a file, as records.
 #pragma once
 
 #include <array>
@@ -46,7 +46,8 @@ class Port {
     curbline::drive_log::ScanLineHead head;
     const std::span<float> ranges_m = std::span(ranges_m_).first((header_.bytes - sizeof head) / sizeof(float));
     if (std::fread(&head, sizeof head, 1, drive_) != 1) stop("the drive is cut");
-    if (std::fread(ranges_m.data(), sizeof(float), ranges_m.size(), drive_) != ranges_m.size()) stop("the drive is cut");
+    if (std::fread(ranges_m.data(), sizeof(float), ranges_m.size(), drive_) != ranges_m.size())
+      stop("the drive is cut");
     next();
     return curbline::ScanLine{head.time_ns, ranges_m};
   }
@@ -78,7 +79,8 @@ class Port {
   }
   template <typename T>
   void read(T& value) {
-    if (header_.bytes != sizeof value || std::fread(&value, sizeof value, 1, drive_) != 1) stop("the drive is of another build");
+    if (header_.bytes != sizeof value || std::fread(&value, sizeof value, 1, drive_) != 1)
+      stop("the drive is of another build");
     next();
   }
 
