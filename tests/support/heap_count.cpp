@@ -8,13 +8,12 @@ namespace {
 
 std::atomic<long> count{0};
 
+// operator new is counted by the malloc that it calls.
 void* take(std::size_t size) noexcept {
-  count.fetch_add(1, std::memory_order_relaxed);
   return std::malloc(size > 0 ? size : 1);
 }
 
 void* take(std::size_t size, std::align_val_t alignment) noexcept {
-  count.fetch_add(1, std::memory_order_relaxed);
   const auto a = static_cast<std::size_t>(alignment);
   return std::aligned_alloc(a, (size + a - 1) / a * a);
 }
@@ -25,6 +24,36 @@ void* or_throw(void* p) {
 }
 
 }  // namespace
+
+// What C code and Eigen ask directly. The linker turns calls into these (--wrap), those of libraries that are shared excepted.
+extern "C" {
+void* __real_malloc(std::size_t size);
+void* __real_calloc(std::size_t count, std::size_t size);
+void* __real_realloc(void* p, std::size_t size);
+void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
+int __real_posix_memalign(void** p, std::size_t alignment, std::size_t size);
+
+void* __wrap_malloc(std::size_t size) {
+  count.fetch_add(1, std::memory_order_relaxed);
+  return __real_malloc(size);
+}
+void* __wrap_calloc(std::size_t number, std::size_t size) {
+  count.fetch_add(1, std::memory_order_relaxed);
+  return __real_calloc(number, size);
+}
+void* __wrap_realloc(void* p, std::size_t size) {
+  count.fetch_add(1, std::memory_order_relaxed);
+  return __real_realloc(p, size);
+}
+void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
+  count.fetch_add(1, std::memory_order_relaxed);
+  return __real_aligned_alloc(alignment, size);
+}
+int __wrap_posix_memalign(void** p, std::size_t alignment, std::size_t size) {
+  count.fetch_add(1, std::memory_order_relaxed);
+  return __real_posix_memalign(p, alignment, size);
+}
+}
 
 long curbline::test::heap_count() {
   return count.load(std::memory_order_relaxed);

@@ -1,9 +1,11 @@
 // The whole way from scan lines to curbs: what is refused, what is survived, and what stays the same.
 #include "curbline/pipeline.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -296,6 +298,16 @@ TEST_CASE("heap count: it sees an allocation") {
   ::operator delete(p);
   const auto q = std::make_unique<std::vector<int>>(100);
   CHECK(test::heap_count() >= before + 3);
+}
+
+TEST_CASE("heap count: it sees malloc and what Eigen asks for") {
+  const long before = test::heap_count();
+  void* volatile p = std::malloc(16);  // volatile: the pair may not be optimised away
+  CHECK(test::heap_count() == before + 1);
+  std::free(p);
+  const Eigen::MatrixXf matrix = Eigen::MatrixXf::Zero(20, 20);
+  CHECK(test::heap_count() == before + 2);
+  CHECK(matrix.sum() == 0.0f);
 }
 
 TEST_CASE("pipeline: nothing is taken from the heap, in any call") {

@@ -1,0 +1,82 @@
+// The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; what is
+// your board's is in port.hpp, what is your robot's in robot.hpp.
+#include <array>
+
+#include "can/curb_frames.hpp"
+#include "can/tilt_decoder.hpp"
+#include "curbline/line_queue.hpp"
+#include "curbline/pipeline.hpp"
+#include "curbline/tilt_watch.hpp"
+#include "port.hpp"
+#include "robot.hpp"
+#include "runtime.hpp"
+
+namespace can = curbline::can;
+
+namespace {
+
+// All the memory there is.
+Port port;
+curbline::Pipeline<limits> pipeline;
+curbline::LineQueue<limits, 3> waiting;  // lines whose last beams have no tilt yet
+can::TiltDecoder decoder;
+curbline::TiltWatch watch;
+std::int64_t newest_tilt_ns = curbline::TiltWatch::no_reading;
+std::uint8_t lines_told = 0;
+
+void start() {
+  const curbline::Settings settings = robot_settings();
+  const curbline::Status status = pipeline.init(settings);
+  if (status != curbline::Status::ok) port.stop(curbline::to_string(status));
+  if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
+  waiting.init(settings.laser, settings.tilt, 2 * settings.tilt.max_gap_s);
+  watch.init(settings.tilt.max_gap_s);
+  if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
+}
+
+void take_frames() {
+  std::array<can::Frame, 8> frames;
+  const int count = port.receive(frames);
+  for (const can::Frame& frame : std::span(frames).first(static_cast<std::size_t>(count))) {
+    const auto reading = decoder.take(frame);
+    if (reading && pipeline.add_tilt(*reading)) newest_tilt_ns = reading->time_ns;
+  }
+}
+
+/// To the motors: the curb whose nearest point is least far ahead of the base.
+void tell() {
+  std::optional<can::CurbAhead> ahead;
+  for (const curbline::Curb& c : pipeline.curbs()) {
+    const bool first_end = c.x0_m < c.x1_m;
+    const float x_m = first_end ? c.x0_m : c.x1_m, y_m = first_end ? c.y0_m : c.y1_m;
+    if (x_m > 0.0f && (!ahead || x_m < ahead->distance_m))
+      ahead = {x_m, y_m, c.height_m, c.height_sd_m, c.kind, c.probability};
+  }
+  port.send(can::curb_ahead_frame(ahead));
+  port.send(can::curb_status_frame({++lines_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
+}
+
+void take_lines() {
+  const std::int64_t now_ns = port.now_ns();
+  if (const auto line = port.scan_line()) waiting.push(*line, now_ns);
+  while (const auto line = waiting.pop(newest_tilt_ns, now_ns)) {
+    watch.update(newest_tilt_ns, now_ns);
+    if (pipeline.take(*line) == curbline::Status::ok) tell();
+  }
+}
+
+}  // namespace
+
+void curbline::board::leave(int) {
+  port.stop("an exception that nobody handles");
+}
+
+int main() {
+  start();
+  for (;;) {
+    take_frames();
+    while (const auto pose = port.pose()) pipeline.add_pose(*pose);
+    take_lines();
+    port.rest();
+  }
+}

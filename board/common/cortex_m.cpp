@@ -1,0 +1,58 @@
+// From reset to main() on a Cortex-M with an FPU. Source: Armv7-M Architecture Reference Manual, B1.5 (vectors, reset),
+// B3.2.20 (CPACR).
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime.hpp"
+
+extern "C" {
+extern std::uint32_t stack_end[];
+[[noreturn]] void reset();
+[[noreturn]] void unexpected();
+void dispatch();
+[[gnu::weak]] void on_interrupt(std::uint32_t irq);  // a program that enables interrupts has it
+}
+
+namespace {
+
+using Handler = void (*)();
+constexpr std::size_t interrupt_count = 150;  // of the largest controllers
+
+struct Vectors {
+  std::uint32_t* stack;
+  Handler exceptions[15];
+  Handler interrupts[interrupt_count];
+};
+
+constexpr Vectors make_vectors() {
+  Vectors vectors{stack_end, {reset}, {}};
+  for (std::size_t i = 1; i < 15; ++i) vectors.exceptions[i] = unexpected;
+  for (Handler& handler : vectors.interrupts) handler = dispatch;
+  return vectors;
+}
+
+[[gnu::section(".vectors"), gnu::used]] constinit const Vectors vectors = make_vectors();
+
+}  // namespace
+
+void dispatch() {
+  std::uint32_t exception;
+  asm volatile("mrs %0, ipsr" : "=r"(exception));
+  on_interrupt(exception - 16);
+}
+
+void on_interrupt(std::uint32_t) {
+  unexpected();
+}
+
+void unexpected() {
+  curbline::board::leave(curbline::board::unexpected_exception);
+}
+
+void reset() {
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xFu << 20;  // CPACR: full access to CP10 and CP11, the FPU
+  asm volatile("dsb\n isb" ::: "memory");
+  constexpr std::size_t own_frames = 128;  // of this function and the ones it calls
+  curbline::board::paint_stack(static_cast<const std::byte*>(__builtin_frame_address(0)) - own_frames);
+  curbline::board::run_main();
+}

@@ -1,0 +1,13 @@
+# Firmware by Debian's gcc-arm-none-eabi. The file that includes this one says which core: curbline_core.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR arm)
+set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)  # nothing links before the board's linker script is known
+set(curbline_flags "${curbline_core} -mfloat-abi=hard -ffunction-sections -fdata-sections")
+set(CMAKE_C_FLAGS_INIT "${curbline_flags}")
+set(CMAKE_ASM_FLAGS_INIT "${curbline_flags}")
+# Eigen aligns nothing beyond what the core asks for and refuses to allocate.
+set(CMAKE_CXX_FLAGS_INIT "${curbline_flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics -DEIGEN_NO_MALLOC -DEIGEN_DONT_VECTORIZE -DEIGEN_MAX_ALIGN_BYTES=8")
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -g -DNDEBUG" CACHE STRING "-g is for tools/budget and costs no flash")

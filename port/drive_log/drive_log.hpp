@@ -1,0 +1,94 @@
+// A drive as a stream of bytes: what a board is fed, and what it gives back. In: the settings, then CAN frames, poses
+// and scan lines in the order in which a robot's computer has them (tools/drive_streams makes it of logs). Out: a
+// result a scan line, and from a board with a bus the frames as it received them. Records are the library's own structs
+// as they lie in memory: the same on every little-endian machine whose long long and double are aligned to 8 bytes, as
+// all that this project knows are. A stream lives between programs of one build; it is no format to keep.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include "can/signal.hpp"
+#include "curbline/counters.hpp"
+#include "curbline/curb_tracer.hpp"
+#include "curbline/pose_track.hpp"
+#include "curbline/scan_line.hpp"
+#include "curbline/settings.hpp"
+#include "curbline/status.hpp"
+
+namespace curbline::drive_log {
+
+enum class RecordKind : std::uint32_t { setup = 1, can_frame, pose, scan_line, result };
+
+/// Before every record; `bytes` follow.
+struct RecordHeader {
+  RecordKind kind;
+  std::uint32_t bytes;
+};
+
+/// The first record.
+struct Setup {
+  Settings settings{};
+  can::Signal tilt_signal{};
+  std::optional<std::uint16_t> tilt_sync_id{};
+};
+
+/// The head of a scan line; the ranges follow as floats, NaN where nothing returned.
+struct ScanLineHead {
+  std::int64_t time_ns = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<Setup> && std::is_trivially_copyable_v<can::Frame> &&
+              std::is_trivially_copyable_v<Pose>);
+static_assert(sizeof(can::Frame) == 88 && sizeof(Pose) == 40 && alignof(can::Signal) == 8);
+
+/// What the pipeline says after a scan line, byte for byte: header, time, status, counters, how many curbs, curbs.
+template <int max_curbs>
+class Result {
+ public:
+  // Offsets from the end of the header, for readers.
+  static constexpr std::size_t curbs_at = 12 + sizeof(Counters) + 4;
+  static constexpr std::size_t curb_bytes = 7 * sizeof(float) + 3 * sizeof(std::uint16_t);
+
+  Result(const ScanLine& line, Status status, const Counters& counters, std::span<const Curb> curbs) {
+    const RecordHeader header{RecordKind::result, 0};
+    put(header);
+    put(line.time_ns);
+    put(static_cast<std::uint32_t>(status));
+    put(counters);
+    put(static_cast<std::uint32_t>(curbs.size()));
+    for (const Curb& curb : curbs) put_curb(curb);
+    const auto bytes = static_cast<std::uint32_t>(size_ - sizeof header);
+    std::memcpy(bytes_.data() + offsetof(RecordHeader, bytes), &bytes, sizeof bytes);
+  }
+
+  std::span<const std::byte> bytes() const { return {bytes_.data(), size_}; }
+
+ private:
+  static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0 && sizeof(Curb) == 36,
+                "a field more of a curb belongs below too");
+
+  template <typename T>
+  void put(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::memcpy(bytes_.data() + size_, &value, sizeof value);
+    size_ += sizeof value;
+  }
+
+  void put_curb(const Curb& c) {
+    for (const float value : {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.height_m, c.height_sd_m, c.probability}) put(value);
+    put(static_cast<std::uint16_t>(c.kind));
+    put(c.near_label);
+    put(c.far_label);
+  }
+
+  std::array<std::byte, sizeof(RecordHeader) + curbs_at + static_cast<std::size_t>(max_curbs) * curb_bytes> bytes_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace curbline::drive_log

@@ -1,0 +1,288 @@
+// A CAN controller of a Zynq-7000 or Zynq UltraScale+ without an operating system: bus -> XilinxCan -> can::TiltDecoder
+// -> TiltTrack.
+//
+//   XilinxCan bus{MemoryRegisters{0xFF060000}};                   // CAN0; its clock and pins are the boot loader's
+//   const std::array filters{filter_of(signal)};
+//   if (bus.open({.clock_hz = 100'000'000}, filters) != Status::ok) ...
+//   std::array<can::Frame, 8> frames;
+//   const int n = bus.receive(frames, now_ns);
+//
+// Call receive() from the controller's interrupt, whose line is raised while a frame waits, and a few times a second
+// besides, which ends bus-off; or poll it. A frame's time is that which receive() was given, on the caller's clock. The
+// controller's own stamp is not used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full
+// bus at 1 Mbit/s.
+//
+// What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
+// set up anew after Settings::restart_after_ns). open() and self_test() wait for the controller, 100,000 reads of a
+// register at most, some 10 ms; nothing else waits. No heap. All calls of an object come from one context, which may be
+// an interrupt. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "can/frame.hpp"
+#include "can/signal.hpp"
+#include "xilinx_can/bit_timing.hpp"
+#include "xilinx_can/registers.hpp"
+
+namespace curbline::xilinx_can {
+
+enum class Status : std::uint8_t {
+  ok,
+  bad_bit_rate,      ///< the clock cannot be divided to it
+  too_many_filters,  ///< more than max_filters
+  no_answer,         ///< the controller does not change its mode: no clock, or another device
+  self_test_failed,  ///< what came back is not what was sent
+  queue_full,        ///< nothing can be sent yet: no other node acknowledges, or the bus is full
+  bad_frame,         ///< none of a classic bus
+  bus_off,           ///< nothing can be sent until the controller has been restarted
+  not_open,
+};
+
+struct Settings {
+  std::int64_t clock_hz = 0;  ///< of the controller, CAN_REF_CLK
+  std::int64_t bits_s = 500'000;
+  std::int64_t restart_after_ns = 100'000'000;  ///< bus-off lasts so long; at 0 a broken bus would never be left alone
+};
+
+/// Data frames whose id agrees with `id` in the bits of `mask`. Remote requests never pass.
+struct Filter {
+  std::uint32_t id = 0;
+  std::uint32_t mask = 0x1FFFFFFFu;
+  bool extended = false;
+};
+inline Filter filter_of(const can::Signal& signal) {
+  return {signal.id, signal.id_mask, signal.extended};
+}
+
+enum class BusState : std::uint8_t { closed, active, warning, passive, off };
+
+/// Everything only grows. A healthy bus sees nothing but `frames` and `sent`.
+struct Counters {
+  std::uint32_t frames = 0, sent = 0, not_sent = 0;
+  std::uint32_t overflows = 0;   ///< times that the FIFO was found to have lost frames
+  std::uint32_t bus_errors = 0;  ///< times that broken frames, or ones nobody acknowledged, were found
+  std::uint32_t times_bus_off = 0, restarts = 0;
+};
+
+template <typename Registers>
+class XilinxCan {
+ public:
+  static constexpr std::size_t max_filters = 4;
+
+  explicit XilinxCan(Registers registers) : registers_(registers) {}
+
+  /// Sets the controller up and joins the bus. Without a filter every frame comes in. May be called again.
+  Status open(const Settings& settings, std::span<const Filter> filters);
+
+  /// Sends frames of both kinds to itself, off the bus, and looks at what comes back. Then the controller is closed.
+  Status self_test(const Settings& settings);
+
+  /// Fills `out` from its start with the frames that have come, oldest first, and returns how many; what has no room
+  /// stays for the next call. Follows the bus's state, which counts errors and ends bus-off.
+  int receive(std::span<can::Frame> out, std::int64_t now_ns);
+
+  /// Queues a frame; does not wait.
+  Status send(const can::Frame& frame);
+
+  BusState bus() const { return bus_; }
+  const Counters& counters() const { return counters_; }
+  Registers& registers() { return registers_; }
+
+ private:
+  static constexpr int patience = 100'000;  ///< reads
+
+  Status start(std::uint32_t mode);
+  bool wait(std::uint32_t status_mask, std::uint32_t wanted) const;
+  bool set_filters();
+  bool take(can::Frame& frame, std::int64_t now_ns);
+  void follow_bus(std::int64_t now_ns);
+  Status may_send(const can::Frame& frame) const;
+  Status echo(const can::Frame& frame);
+
+  Registers registers_;
+  BitTiming timing_{};
+  std::int64_t restart_after_ns_ = 0;
+  std::array<Filter, max_filters> filters_{};
+  std::size_t filter_count_ = 0;
+  BusState bus_ = BusState::closed;
+  std::int64_t off_since_ns_ = 0;
+  Counters counters_{};
+};
+
+template <typename Registers>
+Status XilinxCan<Registers>::open(const Settings& settings, std::span<const Filter> filters) {
+  bus_ = BusState::closed;
+  if (filters.size() > max_filters) return Status::too_many_filters;
+  const std::optional<BitTiming> timing = bit_timing(settings.clock_hz, settings.bits_s);
+  if (!timing) return Status::bad_bit_rate;
+  timing_ = *timing;
+  restart_after_ns_ = settings.restart_after_ns;
+  filter_count_ = filters.size();
+  std::copy(filters.begin(), filters.end(), filters_.begin());
+  return start(0);
+}
+
+/// Reset, set-up, and out of configuration mode into `mode`.
+template <typename Registers>
+Status XilinxCan<Registers>::start(std::uint32_t mode) {
+  registers_.write(Register::software_reset, bits::reset);
+  if (!wait(bits::in_configuration, bits::in_configuration)) return Status::no_answer;
+  const BitTiming& t = timing_;
+  registers_.write(Register::prescaler, static_cast<std::uint32_t>(t.prescaler - 1));
+  registers_.write(Register::bit_timing,
+                   static_cast<std::uint32_t>((t.jump - 1) << 7 | (t.segment2 - 1) << 4 | (t.segment1 - 1)));
+  registers_.write(Register::mode, mode);
+  registers_.write(Register::interrupt_enable, bits::not_empty);
+  if (!set_filters()) return Status::no_answer;
+  registers_.write(Register::software_reset, bits::enable);
+  const std::uint32_t wanted = mode == bits::loopback ? bits::in_loopback : bits::in_normal;
+  if (!wait(wanted, wanted)) return Status::no_answer;
+  registers_.write(Register::interrupt_clear, bits::all);
+  bus_ = BusState::active;
+  return Status::ok;
+}
+
+template <typename Registers>
+bool XilinxCan<Registers>::wait(std::uint32_t status_mask, std::uint32_t wanted) const {
+  for (int i = 0; i < patience; ++i) {
+    if ((registers_.read(Register::status) & status_mask) == wanted) return true;
+  }
+  return false;
+}
+
+/// A filter may be written only while it is off and the controller does not use it.
+template <typename Registers>
+bool XilinxCan<Registers>::set_filters() {
+  registers_.write(Register::filter_enable, 0);
+  if (!wait(bits::filters_busy, 0)) return false;
+  for (std::size_t i = 0; i < filter_count_; ++i) {
+    const Filter& f = filters_[i];
+    const std::uint32_t kind =
+        bits::extended | (f.extended ? bits::remote : bits::substitute_remote);  // compared beside the id
+    const std::uint32_t mask = (id_word(f.mask, f.extended, false) & ~bits::substitute_remote) | kind;
+    const auto offset = static_cast<std::uint32_t>(8 * i);
+    registers_.write(Register{static_cast<std::uint32_t>(Register::filter_mask1) + offset}, mask);
+    registers_.write(Register{static_cast<std::uint32_t>(Register::filter_id1) + offset},
+                     id_word(f.id, f.extended, false));
+  }
+  registers_.write(Register::filter_enable, (1u << filter_count_) - 1u);
+  return true;
+}
+
+template <typename Registers>
+int XilinxCan<Registers>::receive(std::span<can::Frame> out, std::int64_t now_ns) {
+  if (bus_ == BusState::closed) return 0;
+  int n = 0;
+  for (can::Frame& frame : out) {
+    if (!take(frame, now_ns)) break;
+    ++n;
+  }
+  counters_.frames += static_cast<std::uint32_t>(n);
+  follow_bus(now_ns);
+  return n;
+}
+
+template <typename Registers>
+bool XilinxCan<Registers>::take(can::Frame& frame, std::int64_t now_ns) {
+  // The flag stays after the last frame; cleared, it is set again while the FIFO holds one.
+  registers_.write(Register::interrupt_clear, bits::not_empty);
+  if ((registers_.read(Register::interrupt_status) & bits::not_empty) == 0) return false;
+  std::array<std::uint32_t, 4> words;
+  constexpr std::array order{Register::rx_id, Register::rx_length, Register::rx_data1, Register::rx_data2};
+  for (std::size_t i = 0; i < order.size(); ++i) words[i] = registers_.read(order[i]);
+  frame = frame_of(words, now_ns);
+  return true;
+}
+
+template <typename Registers>
+void XilinxCan<Registers>::follow_bus(std::int64_t now_ns) {
+  const std::uint32_t happened =
+      registers_.read(Register::interrupt_status) & (bits::overflow | bits::error | bits::went_bus_off);
+  if (happened != 0) registers_.write(Register::interrupt_clear, happened);
+  if ((happened & bits::overflow) != 0) ++counters_.overflows;
+  if ((happened & bits::error) != 0) {
+    ++counters_.bus_errors;
+    registers_.write(Register::error_status, registers_.read(Register::error_status));
+  }
+  const std::uint32_t status = registers_.read(Register::status);
+  const bool off = (status & bits::error_state) == bits::bus_off || (happened & bits::went_bus_off) != 0;
+  if (off && bus_ != BusState::off) {
+    ++counters_.times_bus_off;
+    bus_ = BusState::off;
+    off_since_ns_ = now_ns;
+  }
+  if (bus_ == BusState::off) {
+    if (now_ns - off_since_ns_ < restart_after_ns_) return;
+    if (start(0) == Status::ok) ++counters_.restarts;
+    off_since_ns_ = now_ns;
+    return;
+  }
+  const bool passive = (status & bits::error_state) == bits::error_passive;
+  bus_ = passive ? BusState::passive : (status & bits::error_warning) != 0 ? BusState::warning : BusState::active;
+}
+
+template <typename Registers>
+Status XilinxCan<Registers>::may_send(const can::Frame& frame) const {
+  if (bus_ == BusState::closed) return Status::not_open;
+  const bool sound =
+      !frame.error && !frame.fd && frame.length <= 8 && frame.id <= (frame.extended ? 0x1FFFFFFFu : 0x7FFu);
+  if (!sound) return Status::bad_frame;
+  if (bus_ == BusState::off) return Status::bus_off;
+  return (registers_.read(Register::status) & bits::tx_full) != 0 ? Status::queue_full : Status::ok;
+}
+
+template <typename Registers>
+Status XilinxCan<Registers>::send(const can::Frame& frame) {
+  if (const Status status = may_send(frame); status != Status::ok) {
+    ++counters_.not_sent;
+    return status;
+  }
+  registers_.write(Register::tx_id, id_word(frame.id, frame.extended, frame.remote));
+  registers_.write(Register::tx_length, static_cast<std::uint32_t>(frame.length) << 28);
+  registers_.write(Register::tx_data1, data_word(frame, 0));
+  registers_.write(Register::tx_data2, data_word(frame, 4));
+  ++counters_.sent;
+  return Status::ok;
+}
+
+template <typename Registers>
+Status XilinxCan<Registers>::self_test(const Settings& settings) {
+  bus_ = BusState::closed;
+  const std::optional<BitTiming> timing = bit_timing(settings.clock_hz, settings.bits_s);
+  if (!timing) return Status::bad_bit_rate;
+  timing_ = *timing;
+  filter_count_ = 0;
+  Status status = start(bits::loopback);
+  for (const bool extended : {false, true}) {
+    can::Frame frame;
+    frame.id = extended ? 0x15555555u : 0x2AAu;
+    frame.extended = extended;
+    frame.length = 8;
+    for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(extended ? 0xA5 + i : 0x5A - i);
+    if (status == Status::ok) status = echo(frame);
+  }
+  registers_.write(Register::software_reset, bits::reset);
+  bus_ = BusState::closed;
+  return status;
+}
+
+/// Whether the controller hears what it says.
+template <typename Registers>
+Status XilinxCan<Registers>::echo(const can::Frame& frame) {
+  if (const Status status = send(frame); status != Status::ok) return status;
+  can::Frame heard;
+  for (int i = 0; i < patience; ++i) {
+    if (!take(heard, 0)) continue;
+    const bool same = heard.id == frame.id && heard.extended == frame.extended && heard.length == frame.length &&
+                      heard.data == frame.data;
+    return same ? Status::ok : Status::self_test_failed;
+  }
+  return Status::self_test_failed;
+}
+
+}  // namespace curbline::xilinx_can

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""The checks of tools/boards on small programs that they must refuse, and on some they must not."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "boards"))
+import budget  # noqa: E402
+import stack  # noqa: E402
+import undefined_symbols  # noqa: E402
+
+ARM = "arm-none-eabi-"
+FLAGS = ["-mcpu=cortex-m7", "-mthumb", "-std=c++20", "-O2", "-fno-exceptions", "-fcallgraph-info=su,da", "-ffreestanding"]
+
+
+class Built(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def build(self, text):
+        """A program of one file, as an object and its call graph."""
+        (self.folder / "program.cpp").write_text(text)
+        program = self.folder / "program.o"
+        subprocess.run([ARM + "g++", *FLAGS, "-c", "program.cpp", "-o", program], cwd=self.folder, check=True)
+        return program
+
+    def worst(self, text):
+        program = self.build(text)
+        return stack.CallGraph(self.folder, program, ARM).worst("root")
+
+    def refuses(self, text, why):
+        with self.assertRaisesRegex(SystemExit, why):
+            self.worst(text)
+
+
+class Stack(Built):
+    leaf = "[[gnu::noinline]] int leaf(volatile char* p) { return p[0]; }\n"
+
+    def test_frames_add_up_along_the_deepest_path(self):
+        deep = "extern \"C\" [[gnu::noinline]] int deep() { volatile char a[200]; a[0] = 1; return leaf(a) + a[1]; }\n"
+        root = "extern \"C\" int root() { volatile char a[100]; a[0] = 1; return deep() + leaf(a) + a[1]; }\n"
+        bytes_, path = self.worst(self.leaf + deep + root)
+        self.assertEqual(path[:2], ["root", "deep"])
+        self.assertTrue(300 <= bytes_ <= 360, bytes_)
+
+    def test_recursion_is_refused(self):
+        self.refuses("int other(int);\n[[gnu::noinline]] int again(int n) { return n > 0 ? other(n - 1) * 2 + 1 : 0; }\n"
+                     "[[gnu::noinline]] int other(int n) { return again(n) * 3 + 1; }\nextern \"C\" int root(int n) { return again(n); }", "recursion")
+
+    def test_a_call_through_a_pointer_is_refused(self):
+        self.refuses('extern "C" int root(int (*f)()) { return f() + 1; }', "through a pointer")
+
+    def test_a_virtual_call_is_refused(self):
+        self.refuses('struct A { virtual int f() = 0; };\nextern "C" int root(A& a) { return a.f() + 1; }', "through a pointer")
+
+    def test_stack_by_a_number_of_run_time_is_refused(self):
+        self.refuses(self.leaf + 'extern "C" int root(int n) { return leaf(static_cast<char*>(__builtin_alloca(n))); }', "without a bound")
+
+    def test_a_function_of_unknown_code_is_refused(self):
+        self.refuses('extern "C" int elsewhere();\nextern "C" int root() { return elsewhere() + 1; }', "not in the program")
+
+
+class UndefinedSymbols(Built):
+    def refused(self, text):
+        return undefined_symbols.refused(undefined_symbols.asked_of_others([self.build(text)], ARM))
+
+    def test_the_heap_is_refused(self):
+        self.assertEqual(self.refused("int* f() { return new int[40]; }"), ["_Znaj"])
+
+    def test_a_clock_and_output_are_refused(self):
+        text = 'extern "C" int printf(const char*, ...); extern "C" long time(long*);\nint f() { return printf("%d", (int)time(nullptr)); }'
+        self.assertEqual(self.refused(text), ["printf", "time"])
+
+    def test_the_libm_of_the_place_is_refused(self):
+        self.assertEqual(self.refused('extern "C" float expf(float);\nfloat f(float x) { return expf(x); }'), ["expf"])
+
+    def test_copies_and_the_compilers_arithmetic_are_not(self):
+        self.assertEqual(self.refused('extern "C" void* memcpy(void*, const void*, unsigned);\n'
+                                      "double f(double a, long long b) { char c[300]; memcpy(c, &a, 300); return a / static_cast<double>(b / c[9]); }"), [])
+
+
+class Budget(unittest.TestCase):
+    def test_a_figure_above_its_budget_is_exceeded_and_one_at_it_is_not(self):
+        board = budget.boards.BOARDS["cortex-m7"]
+        rows = [("stack", "pipeline", 4097), ("ram", "pipeline", 100), ("", "dem", 90)]
+        self.assertEqual(budget.print_table(board, rows, {"stack": {"pipeline": 4096}, "ram": {"pipeline": 100}}, {("stack", "pipeline"): 4000}), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+// In place of port/_template and the template's robot.hpp: a drive's records are what bus and scanner give, in their
+// order, and time is theirs. What the robot sends is written to a file, as records.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <span>
+
+#include "curbline/limits.hpp"
+#include "curbline/pose_track.hpp"
+#include "curbline/scan_line.hpp"
+#include "drive_log/drive_log.hpp"
+
+inline constexpr curbline::Limits limits{};
+
+class Port {
+ public:
+  using Kind = curbline::drive_log::RecordKind;
+
+  explicit Port(const char* drive = std::getenv("CURBLINE_DRIVE"), const char* sent = std::getenv("CURBLINE_SENT"))
+      : drive_(std::fopen(drive, "rb")), sent_(std::fopen(sent, "wb")) {
+    if (drive_ == nullptr || sent_ == nullptr) stop("CURBLINE_DRIVE or CURBLINE_SENT is no file");
+    next();
+    read(setup_);
+  }
+  const curbline::drive_log::Setup& setup() const { return setup_; }
+
+  bool open(const curbline::can::Signal&) { return true; }
+  std::int64_t now_ns() const { return now_ns_; }
+
+  int receive(std::span<curbline::can::Frame> out) {
+    int n = 0;
+    for (curbline::can::Frame& frame : out) {
+      if (header_.kind != Kind::can_frame) break;
+      read(frame);
+      now_ns_ = frame.time_ns;
+      ++n;
+    }
+    return n;
+  }
+
+  std::optional<curbline::ScanLine> scan_line() {
+    if (header_.kind != Kind::scan_line) return std::nullopt;
+    curbline::drive_log::ScanLineHead head;
+    const std::span<float> ranges_m = std::span(ranges_m_).first((header_.bytes - sizeof head) / sizeof(float));
+    if (std::fread(&head, sizeof head, 1, drive_) != 1) stop("the drive is cut");
+    if (std::fread(ranges_m.data(), sizeof(float), ranges_m.size(), drive_) != ranges_m.size())
+      stop("the drive is cut");
+    next();
+    return curbline::ScanLine{head.time_ns, ranges_m};
+  }
+
+  std::optional<curbline::Pose> pose() {
+    if (header_.kind != Kind::pose) return std::nullopt;
+    curbline::Pose pose;
+    read(pose);
+    return pose;
+  }
+
+  bool send(const curbline::can::Frame& frame) {
+    const curbline::drive_log::RecordHeader header{Kind::can_frame, sizeof frame};
+    return std::fwrite(&header, sizeof header, 1, sent_) == 1 && std::fwrite(&frame, sizeof frame, 1, sent_) == 1;
+  }
+
+  void rest() {
+    if (header_.kind == Kind{}) std::exit(std::fclose(sent_) == 0 ? 0 : 1);
+  }
+
+  [[noreturn]] void stop(const char* why) {
+    std::fprintf(stderr, "%s\n", why);
+    std::exit(1);
+  }
+
+ private:
+  void next() {
+    if (std::fread(&header_, sizeof header_, 1, drive_) != 1) header_ = {};
+  }
+  template <typename T>
+  void read(T& value) {
+    if (header_.bytes != sizeof value || std::fread(&value, sizeof value, 1, drive_) != 1)
+      stop("the drive is of another build");
+    next();
+  }
+
+  std::FILE *drive_, *sent_;
+  curbline::drive_log::RecordHeader header_{};
+  curbline::drive_log::Setup setup_{};
+  std::int64_t now_ns_ = 0;
+  std::array<float, limits.beams> ranges_m_{};
+};

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that gives it a drive, tells the motors after each scan
+line of the curbs that the desk's own run over that drive has: as many of them, and the height of the one ahead."""
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "boards"))
+import boards  # noqa: E402
+import drives  # noqa: E402
+import run_bus  # noqa: E402
+import run_drives  # noqa: E402
+
+CURB = struct.Struct("<7f3H")
+COUNTERS = 17 * 4
+AHEAD, STATUS = 0x6A0, 0x6A1  # of lib/can/curb_frames.hpp
+FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # in a record of a frame
+
+
+def told_by_results(path):
+    """(curbs, height of the nearest ahead in mm or None) after each line that was taken."""
+    for _, record in run_bus.records(path):
+        status, = struct.unpack_from("<I", record, 16)
+        count_at = 20 + COUNTERS
+        count, = struct.unpack_from("<I", record, count_at)
+        ahead = None
+        for k in range(count):
+            x0, _, x1, _, height, *_ = CURB.unpack_from(record, count_at + 4 + CURB.size * k)
+            if min(x0, x1) > 0 and (ahead is None or min(x0, x1) < ahead[0]):
+                ahead = (min(x0, x1), height)
+        if status == 0:
+            yield count, None if ahead is None else ahead[1] * 1000
+
+
+def told_by_frames(path):
+    """The same of the frames that the robot sent: an AHEAD and a STATUS after each line."""
+    frames = [(struct.unpack_from("<I", r, FRAME_ID)[0], r[FRAME_DATA:]) for _, r in run_bus.records(path)]
+    for (ahead_id, ahead), (status_id, status) in zip(frames[::2], frames[1::2], strict=True):
+        assert (ahead_id, status_id) == (AHEAD, STATUS)
+        yield status[2], struct.unpack_from("<h", ahead, 4)[0] if ahead[7] & 3 else None
+
+
+def main(build, program):
+    folder = run_drives.results_folder(build, "template")
+    folder.mkdir(parents=True, exist_ok=True)
+    drive, sent = drives.folder(build) / "street.drive", folder / "street.sent"
+    subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
+    ours = list(told_by_frames(sent))
+    theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "street.results"))
+    for line, (a, b) in enumerate(zip(ours, theirs)):
+        if a[0] != b[0] or (a[1] is None) != (b[1] is None) or (a[1] is not None and abs(a[1] - b[1]) > 1):
+            sys.exit(f"line {line}: the template's loop tells {a}, and the desk has {b}")
+    if len(ours) != len(theirs) or not any(height for _, height in ours):
+        sys.exit(f"the template's loop told of {len(ours)} lines, and the desk of {len(theirs)}, or never of a curb")
+    print(f"{len(ours)} lines, {sum(height is not None for _, height in ours)} of them with a curb ahead")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

@@ -1,0 +1,79 @@
+"""The boards and how each is run: on this machine, under qemu-user, or in an emulated board."""
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+QUIET = ["-display", "none", "-monitor", "none", "-serial", "null"]
+
+
+@dataclass(frozen=True)
+class Board:
+    name: str
+    folder: str            # of board/
+    run: tuple             # what comes before the program: an emulator and its machine
+    core: bool = False     # a core without an operating system: fed by semihosting
+    compilers: str = ""    # prefix of its binutils
+    budget: bool = False   # its folder's budget.toml is of this core
+
+
+BOARDS = {b.name: b for b in [
+    Board("x86-64-gcc", "desk", ()),
+    Board("x86-64-gcc-avx2", "desk", ("native-or-emulated",)),
+    Board("x86-64-gcc-scalar", "desk", ()),
+    Board("x86-64-clang", "desk", ()),
+    Board("x86-64-clang-avx2", "desk", ("native-or-emulated",)),
+    Board("x86-64-clang-scalar", "desk", ()),
+    Board("aarch64-linux", "desk", ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"), compilers="aarch64-linux-gnu-"),
+    Board("armv7-linux", "desk", ("qemu-arm", "-L", "/usr/arm-linux-gnueabihf"), compilers="arm-linux-gnueabihf-"),
+    Board("cortex-m7", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-", True),
+    Board("cortex-m7-sp", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-"),
+    Board("cortex-m4f", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an386"), True, "arm-none-eabi-"),
+    Board("cortex-r5f", "zcu102_r5", ("qemu-system-aarch64", "-M", "xlnx-zcu102,canbus0=wire,canbus1=wire", "-object", "can-bus,id=wire",
+                                      "-smp", "6", "-m", "256M"), True, "arm-none-eabi-", True),  # both CAN controllers on one wire
+]}
+REFERENCE = "x86-64-gcc"
+# An emulated board's time is its instructions', 16 ns each: the same in every run, however busy this machine is.
+BY_INSTRUCTIONS = ["-icount", "shift=4,sleep=off"]
+
+
+def has_avx2():
+    flags = Path("/proc/cpuinfo").read_text().split()
+    return "avx2" in flags and "fma" in flags
+
+
+def command(board, program, words, extra=()):
+    """The command line that runs a board's program with these words."""
+    if not board.core:
+        if board.run == ("native-or-emulated",):
+            emulator = () if has_avx2() else ("qemu-x86_64", "-cpu", "max")
+        else:
+            emulator = board.run
+        return [*emulator, str(program), *words]
+    arguments = "".join(f",arg={w}" for w in (program.name, *words))
+    line = [*board.run, *QUIET, "-semihosting-config", "enable=on,target=native" + arguments, *extra]
+    if board.folder == "zcu102_r5":
+        return [*line, "-device", f"loader,file={program}", "-device", f"loader,file={program.parent / 'wake_r5.elf'},cpu-num=0"]
+    return [*line, "-kernel", str(program)]
+
+
+def run(board, program, words, extra=(), timeout_s=900):
+    """Runs it and returns what it printed. Ends with one line if it fails."""
+    line = command(board, program, words, extra)
+    environment = {**os.environ, "QEMU_AUDIO_DRV": "none"}
+    try:
+        done = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout_s, env=environment)
+    except FileNotFoundError:
+        sys.exit(f"{line[0]}: not found; expected Debian's package, which tools/setup installs")
+    except subprocess.TimeoutExpired:
+        sys.exit(f"{board.name}: {program.name} has not ended after {timeout_s} s")
+    if done.returncode != 0:
+        sys.exit(f"{board.name}: {program.name} ended with {done.returncode}: {done.stderr.strip()}")
+    said = (done.stdout + done.stderr).splitlines(keepends=True)
+    return "".join(line for line in said if not line.startswith("qemu: module audio"))  # what QEMU misses and nobody uses
+
+
+def program_of(build, name, program="drive.elf"):
+    return Path(build) / "board" / name / program

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""budget.py BUILD BOARD [--keep]: what the firmware costs: used, allowed, change since the figures that were last kept.
+
+BOARD is cortex-m7 or cortex-r5f. The figures are those of its firmware and of its last run over the drives (run_drives.py). Ends with 1
+if a budget of board/FOLDER/budget.toml is exceeded. --keep writes the figures to board/FOLDER/measured.csv.
+"""
+import csv
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import boards
+import members
+import run_drives
+import stack
+import stages
+
+PAINT_MARGIN = 160  # bytes of the frames above main(), which painting sees and the graph of main() does not
+
+
+def flash_bytes(elf, prefix):
+    """What the loader writes: every section with contents that is part of the image."""
+    out = stages.run([prefix + "objdump", "-h", elf])
+    sections = re.findall(r"^\s*\d+ (\S+)\s+([0-9a-f]+) .*\n\s+(.*)$", out, re.M)
+    return sum(int(size, 16) for _, size, flags in sections if "LOAD" in flags.split(", "))
+
+
+def stack_rows(board, elf, results):
+    """Of the pipeline by the call graph; main() by the graph and by painting, which must agree."""
+    graph = stack.CallGraph(elf.parent, elf, board.compilers)
+    pipeline, _ = graph.worst("::take(const curbline::ScanLine&)")
+    main, path = graph.worst("main")
+    painted = max(int(p.read_text()) for p in results.glob("*.stack"))
+    if painted > main + PAINT_MARGIN:
+        deepest = " > ".join(short(graph.names.get(n, n)) for n in path)
+        sys.exit(f"{board.name}: {painted} bytes of stack are painted over, and the call graph allows {main} ({deepest}); its walk is wrong")
+    return [("stack", "pipeline", pipeline), ("", "main(), by the call graph", main), ("", "main(), by painting", painted)]
+
+
+def short(name):
+    """A function's own name and class, without namespaces, arguments and templates."""
+    name = name.split(" [with")[0]
+    while (plain := re.sub(r"<[^<>]*>", "", name)) != name:
+        name = plain
+    return "::".join(name.split("(")[0].split(" ")[-1].split("::")[-2:])
+
+
+def read_counts(path):
+    """A row of counts by stage for each scan line of a drive."""
+    with path.open() as file:
+        return [[int(n) for n in row] for row in csv.reader(file)]
+
+
+def rows_by_drive(results):
+    """Where the worst line and the highest mean are."""
+    totals = {path.stem: [sum(line[1:len(stages.STAGES)]) for line in read_counts(path)] for path in results.glob("*.counts")}
+    means = {drive: sum(t) // len(t) for drive, t in totals.items()}
+    recorded = [n for drive, t in totals.items() if drive.startswith("scan-") for n in t]
+    rows = [("", f"mean of {max(means, key=means.get)}, the highest", max(means.values()))]
+    if recorded:
+        rows += [("", "recorded drives alone: worst", max(recorded)), ("", "recorded drives alone: mean", sum(recorded) // len(recorded))]
+    return rows
+
+
+def instruction_rows(results):
+    """Worst and mean of a line, and of each stage, over all drives."""
+    lines = [line for path in sorted(results.glob("*.counts")) for line in read_counts(path)]
+    if not lines:
+        sys.exit(f"{results}: no counts; run tools/boards/run_drives.py first")
+    count = len(stages.STAGES)
+    totals = [sum(line[1:count]) for line in lines]
+    worst, mean = max(totals), sum(totals) // len(totals)
+    rows = [("instructions", "worst", worst), ("", "mean", mean), *rows_by_drive(results)]
+    at_worst = lines[totals.index(worst)]
+    for s, stage in enumerate(stages.STAGES[1:], 1):
+        rows.append(("", f"{stage}: mean", sum(line[s] for line in lines) // len(lines)))
+        rows.append(("", f"{stage}: in the worst line", at_worst[s]))
+    return rows
+
+
+def measure(build, board):
+    elf = boards.program_of(build, board.name).resolve()
+    results = run_drives.results_folder(build, board.name)
+    parts = members.member_sizes(elf, "Pipeline<", board.compilers)
+    rows = [("flash", "firmware", flash_bytes(elf, board.compilers)), ("ram", "pipeline", sum(size for _, size in parts))]
+    rows += [("", name.rstrip("_"), size) for name, size in parts if size >= 64]
+    return rows + stack_rows(board, elf, results) + instruction_rows(results)
+
+
+def print_table(board, rows, budget, kept):
+    """Returns how many budgets are exceeded. A budget of what is not measured would never be: it is refused."""
+    measured = {(group, name) for group, name, _ in keyed(rows)}
+    for group, names in budget.items():
+        for name in names:
+            if (group, name) not in measured:
+                sys.exit(f"budget.toml: {group}.{name}: nothing of that name is measured; expected one of the rows of tools/budget")
+    exceeded, group = 0, ""
+    print(f"{board.name:52}{'used':>12}{'allowed':>12}{'change':>12}")
+    for head, name, used in rows:
+        group = head or group
+        allowed = budget.get(group, {}).get(name) if head or name in budget.get(group, {}) else None
+        over = allowed is not None and used > allowed
+        exceeded += over
+        before = kept.get((group, name))
+        change = "" if before is None else f"{used - before:+d}"
+        text = f"{group} {name}" if allowed is not None else f"  {name}"
+        print(f"{text:52}{used:12}{'' if allowed is None else allowed:>12}{change:>12}{'  EXCEEDED' if over else ''}")
+    return exceeded
+
+
+def keyed(rows):
+    group = ""
+    for head, name, used in rows:
+        group = head or group
+        yield group, name, used
+
+
+def main(build, name, keep):
+    board = boards.BOARDS[name]
+    folder = boards.ROOT / "board" / board.folder
+    budget = tomllib.loads((folder / "budget.toml").read_text())
+    kept_file = folder / "measured.csv"
+    kept = {(g, n): int(u) for g, n, u in list(csv.reader(kept_file.open()))[1:]} if kept_file.exists() else {}
+    rows = measure(build, board)
+    exceeded = print_table(board, rows, budget, kept)
+    if keep:
+        with kept_file.open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([("group", "name", "used"), *keyed(rows)])
+    return 1 if exceeded else 0
+
+
+if __name__ == "__main__":
+    words = [w for w in sys.argv[1:] if w != "--keep"]
+    if len(words) != 2 or words[1] not in (b.name for b in boards.BOARDS.values() if b.budget):
+        sys.exit(__doc__)
+    sys.exit(main(words[0], words[1], "--keep" in sys.argv))

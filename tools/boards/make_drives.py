@@ -1,0 +1,10 @@
+#!/usr/bin/env python3
+"""make_drives.py BUILD: makes the drives that boards are run on, in BUILD/board/drives."""
+import sys
+
+import drives
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    drives.make(sys.argv[1])

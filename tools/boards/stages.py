@@ -1,0 +1,86 @@
+"""Which instruction of a firmware belongs to which stage of the pipeline, by its debug information, inlined code included."""
+import os
+import re
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# Stage 0 is what is not the pipeline: the board, its port, the drive's records.
+STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
+HELPER = -1
+FILES = {
+    "signal.cpp": "tilt", "frame.hpp": "tilt", "tilt_decoder.hpp": "tilt", "tilt_decoder.cpp": "tilt", "pipeline.hpp": "pipeline",
+    "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "tilt_latency.cpp": "points",
+    "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes", "plane_set.hpp": "planes",
+    "label_field.hpp": "labels", "curb_tracer.hpp": "curbs", "borders.hpp": "curbs", "curb_tracer.cpp": "curbs", "line_fit.hpp": "curbs",
+}
+
+
+def run(line, text=None):
+    """Standard output of a command that must succeed."""
+    return subprocess.run([str(word) for word in line], input=text, capture_output=True, text=True, check=True).stdout
+
+
+def stage_of_frame(function, path):
+    """Stage of one frame of an inline stack, None for what any stage uses."""
+    name = Path(path).name
+    if name in ("dem.hpp", "cell.hpp"):  # stages read cells too; adding to them is a stage
+        return "cells" if re.search(r"\b(add|follow|clear_touched)\b", function) else None
+    if name == "tilt_track.hpp" and re.search(r"\bpush\b", function):
+        return "tilt"
+    if name in FILES:
+        return FILES[name]
+    return "outside" if ROOT / "board" in Path(path).parents or ROOT / "port" in Path(path).parents else None
+
+
+def stage_of_stack(frames):
+    """frames: (function, file), innermost first. What the pipeline called last decides; what that called in turn is part of it."""
+    stage = None
+    for function, path in frames:
+        here = stage_of_frame(function, path)
+        if here == "outside":
+            return stage or here
+        if here == "pipeline":
+            return stage or here
+        if here is not None:
+            stage = here
+    return stage
+
+
+def inline_stacks(elf, addresses, addr2line):
+    """{address: [(function, file), ...]}, innermost first."""
+    listing = run([addr2line, "-a", "-f", "-C", "-i", "-e", elf], "\n".join(hex(a) for a in addresses)).splitlines()
+    stacks, frames = {}, None
+    lines = iter(listing)
+    for line in lines:
+        if re.fullmatch(r"0x[0-9a-f]+", line):
+            frames = stacks.setdefault(int(line, 16), [])
+        else:
+            frames.append((line, os.path.normpath(next(lines).rsplit(":", 1)[0])))
+    return stacks
+
+
+def symbols(elf, nm):
+    """[(address, size, type, demangled name)] of what has a size."""
+    out = run([nm, "-S", "-C", elf])
+    found = re.findall(r"^([0-9a-f]+) ([0-9a-f]+) (\w) (.*)$", out, re.M)
+    return [(int(a, 16), int(s, 16), t, n) for a, s, t, n in found]
+
+
+def write_map(elf, path, prefix="arm-none-eabi-"):
+    """The count plugin's map of a firmware."""
+    functions = [(a & ~1, s, n) for a, s, t, n in symbols(elf, prefix + "nm") if t.lower() in "tw"]
+    line_end = [a for a, _, n in functions if re.search(r"\bDrive<.*::end_line\(", n)]
+    if len(line_end) != 1:
+        raise SystemExit(f"{elf}: {len(line_end)} functions Drive::end_line; expected one")
+    addresses = sorted({a for begin, size, _ in functions for a in range(begin, begin + size, 2)})
+    stacks = inline_stacks(elf, addresses, prefix + "addr2line")
+    ranges = []
+    for address in addresses:
+        stage = stage_of_stack(stacks[address])
+        number = HELPER if stage is None else STAGES.index(stage)
+        if ranges and ranges[-1][1] == address and ranges[-1][2] == number:
+            ranges[-1][1] = address + 2
+        else:
+            ranges.append([address, address + 2, number])
+    Path(path).write_text(f"line {line_end[0]:x}\n" + "".join(f"range {a:x} {b:x} {s}\n" for a, b, s in ranges))

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""undefined_symbols.py BUILD BOARD: what the optimised library and the pipeline ask of others. Ends with 1 if that is more than copying
+and comparing memory, the square root and the compiler's helpers for arithmetic: no heap, no I/O, no clock, no exceptions, no locks."""
+import re
+import sys
+
+import boards
+import stages
+
+ALLOWED = re.compile("|".join([
+    r"mem(cpy|move|set|cmp)|__aeabi_mem(cpy|move|set|clr)[48]?",
+    r"sqrtf?",
+    r"__aeabi_(?!atexit)[a-z0-9]+",  # Arm run-time ABI: integer division, 64-bit and double arithmetic
+    r"_GLOBAL_OFFSET_TABLE_",  # position-independent code
+]))
+ARCHIVES = ("curbline/lib/libcurbline.a", "common/libcurbline_drive.a")
+
+
+def asked_of_others(archives, prefix):
+    """What the archives use together and do not have."""
+    undefined, defined = set(), set()
+    for line in stages.run([prefix + "nm", *archives]).splitlines():
+        if match := re.fullmatch(r"[0-9a-f ]*\s(\w) (\S+)", line):
+            (undefined if match[1] in "Uwv" and not re.match(r"[0-9a-f]", line) else defined).add(match[2])
+    return undefined - defined
+
+
+def refused(symbols):
+    return sorted(s for s in symbols if not ALLOWED.fullmatch(s))
+
+
+def main(build, name):
+    board = boards.BOARDS[name]
+    archives = [boards.program_of(build, name).parent / archive for archive in ARCHIVES]
+    for archive in archives:
+        if not archive.exists():
+            sys.exit(f"{archive}: not there; expected the build of board {name}")
+    asked = asked_of_others(archives, board.compilers)
+    foreign = refused(asked)
+    print(f"{name}: {', '.join(sorted(asked)) or 'nothing'}")
+    if foreign:
+        sys.exit(f"{name}: the library asks for {', '.join(foreign)}; expected memcpy and its like, sqrt and the compiler's helpers alone")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3 or sys.argv[2] not in boards.BOARDS:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2])

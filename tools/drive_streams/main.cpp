@@ -1,0 +1,34 @@
+// curbline-drive-log: logs to a board's input, a board's output to curbs.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "drive_streams/drive_streams.hpp"
+#include "formats/bad_input.hpp"
+#include "formats/csv.hpp"
+
+int main(int argc, char** argv) {
+  using namespace curbline::tools;
+  CLI::App app("Makes the stream that boards are fed, and reads their results.", "curbline-drive-log");
+  app.require_subcommand(1);
+  DriveFiles files;
+  auto* write = app.add_subcommand("write", "logs to a stream");
+  write->add_option("--robot", files.robot, "robot description")->required();
+  write->add_option("--scans", files.scans, "scan lines, CARMEN log")->required();
+  write->add_option("--can", files.can, "tilt frames, candump log");
+  write->add_option("--poses", files.poses, "robot poses, TUM trajectory");
+  write->add_option("--out", files.out, "the stream")->required();
+  write->callback([&] { write_drive(files); });
+  std::string results;
+  auto* curbs = app.add_subcommand("curbs", "results to the curbs after the last scan line, as CSV");
+  curbs->add_option("RESULTS", results)->required();
+  curbs->callback([&] { write_curbs(std::cout, read_last_curbs(results)); });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const BadInput& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,110 @@
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "can/tilt_decoder.hpp"
+#include "drive_log/drive_log.hpp"
+#include "drive_streams/drive_streams.hpp"
+#include "formats/atomic_file.hpp"
+#include "formats/can_log.hpp"
+#include "formats/carmen.hpp"
+#include "formats/trajectory.hpp"
+#include "robot/robot.hpp"
+
+namespace curbline::tools {
+namespace {
+
+using drive_log::RecordHeader;
+using drive_log::RecordKind;
+
+constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
+/// The board finds the servo's latency on the way, and this many standard deviations beyond what was set are served.
+constexpr float latency_bound = 4.0f;
+
+class DriveWriter {
+ public:
+  explicit DriveWriter(const DriveFiles& files)
+      : robot_(read_robot(files.robot)), scans_(files.scans), out_(files.out) {
+    if (!files.poses.empty()) robot_.pose.still = false;
+    if (!robot_.tilt.fixed && files.can.empty())
+      throw BadInput("no tilt log for a laser that nods; expected --can LOG");
+    if (!robot_.pose.still && files.poses.empty())
+      throw BadInput("no poses for a robot that drives; expected --poses FILE");
+    if (!robot_.tilt.fixed) can_.emplace(files.can);
+    tilt_decoder_.init(robot_.tilt_signal, robot_.tilt_sync_id);
+    if (!robot_.pose.still) poses_.emplace(files.poses);
+  }
+
+  void write() {
+    const drive_log::Setup setup{pipeline_settings(robot_), robot_.tilt_signal, robot_.tilt_sync_id};
+    put(RecordKind::setup, setup);
+    while (const auto line = scans_.next()) {
+      check_geometry(*line, robot_.laser, scans_.path(), scans_.line());
+      const float duration_ns = robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line->ranges_m.size());
+      const std::int64_t last_beam_ns = line->time_ns + static_cast<std::int64_t>(duration_ns);
+      put_frames(last_beam_ns +
+                 static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
+      put_poses(last_beam_ns);
+      put_line(*line);
+    }
+    out_.commit();
+  }
+
+ private:
+  void put_bytes(std::span<const std::byte> bytes) {
+    out_.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+  template <typename T>
+  void put_value(const T& value) {
+    put_bytes(std::as_bytes(std::span(&value, 1)));
+  }
+  template <typename T>
+  void put(RecordKind kind, const T& value) {
+    put_value(RecordHeader{kind, sizeof value});
+    put_value(value);
+  }
+
+  void put_frames(std::int64_t until_ns) {
+    while (can_ && tilt_until_ns_ < until_ns) {
+      const auto frame = can_->next();
+      if (frame) put(RecordKind::can_frame, *frame);
+      if (!frame) tilt_until_ns_ = log_ended;
+      if (const auto reading = frame ? tilt_decoder_.take(*frame) : std::nullopt) tilt_until_ns_ = reading->time_ns;
+    }
+  }
+
+  void put_poses(std::int64_t until_ns) {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    while (poses_ && poses_until_ns_ < until_ns) {
+      const auto pose = poses_->next();
+      poses_until_ns_ = pose ? pose->time_ns : log_ended;
+      if (!pose) return;
+      put(RecordKind::pose, Pose{pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy),
+                                 f(pose->qz), f(pose->qw)});
+    }
+  }
+
+  void put_line(const CarmenLine& line) {
+    const drive_log::ScanLineHead head{line.time_ns};
+    const auto ranges = std::as_bytes(std::span(line.ranges_m));
+    put_value(RecordHeader{RecordKind::scan_line, static_cast<std::uint32_t>(sizeof head + ranges.size())});
+    put_value(head);
+    put_bytes(ranges);
+  }
+
+  Robot robot_;
+  CarmenReader scans_;
+  std::optional<CanLogReader> can_;
+  std::optional<TrajectoryReader> poses_;
+  AtomicFile out_;
+  can::TiltDecoder tilt_decoder_{};
+  std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest written
+};
+
+}  // namespace
+
+void write_drive(const DriveFiles& files) {
+  DriveWriter(files).write();
+}
+
+}  // namespace curbline::tools
