@@ -1,5 +1,5 @@
 // The few functions that the algorithm needs of a maths library, in float and with the same bits on every target: no
-// libm, no tables, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
+// libm, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
 #pragma once
 
 #include <bit>
