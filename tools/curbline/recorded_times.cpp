@@ -1,6 +1,7 @@
-#include <algorithm>
+#include "curbline/recorded_times.hpp"
 
-#include "curbline/tilt_frames.hpp"
+#include <algorithm>
+#include <filesystem>
 
 namespace curbline::tools {
 namespace {
@@ -33,6 +34,11 @@ bool RecordedTimes::read_one() {
   return false;
 }
 
+void RecordedTimes::read_all() {
+  while (read_one()) {
+  }
+}
+
 std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns) {
   if (ahead_.empty() && !read_one()) return std::nullopt;
   const std::int64_t front_ns = ahead_.front().time_ns;
@@ -41,10 +47,11 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
   // The first of equal frames: while a servo rests they are many, and which is which makes no difference.
-  const auto met = std::find_if(ahead_.begin(), ahead_.end(), [&](const can::Frame& recorded) {
-    return recorded.time_ns >= from_ns && recorded.time_ns <= until_ns && same(recorded, frame);
-  });
-  if (met == ahead_.end()) return std::nullopt;
+  const auto in_time = [](const can::Frame& recorded, std::int64_t time_ns) { return recorded.time_ns < time_ns; };
+  const auto first = std::lower_bound(ahead_.begin(), ahead_.end(), from_ns, in_time);
+  const auto last = std::lower_bound(first, ahead_.end(), until_ns + 1, in_time);
+  const auto met = std::find_if(first, last, [&](const can::Frame& recorded) { return same(recorded, frame); });
+  if (met == last) return std::nullopt;
   const std::int64_t time_ns = met->time_ns;
   missed_ += met - ahead_.begin();
   ahead_.erase(ahead_.begin(), met + 1);
@@ -53,6 +60,31 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
 
 bool RecordedTimes::ended() {
   return ahead_.empty() && !read_one();
+}
+
+std::optional<std::string> recording_beside(const std::string& scans) {
+  const std::filesystem::path path(scans);
+  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(log, none)) return log.string();
+  }
+  return std::nullopt;
+}
+
+LogClock LogClock::of_the_bus() {
+  LogClock clock;
+  clock.offset_ns_ = 0;
+  return clock;
+}
+
+void LogClock::set_log_time(can::Frame& frame, std::int64_t line_ns) {
+  std::optional<std::int64_t> due_ns;
+  if (offset_ns_) due_ns = frame.time_ns + *offset_ns_;
+  const auto recorded_ns = recorded_ ? recorded_->time_of(frame, due_ns) : std::nullopt;
+  if (recorded_ && !recorded_ns) ++not_recorded_;
+  const std::int64_t time_ns = recorded_ns ? *recorded_ns : due_ns.value_or(line_ns);
+  offset_ns_ = time_ns - frame.time_ns;
+  frame.time_ns = time_ns;
 }
 
 }  // namespace curbline::tools
