@@ -1,7 +1,10 @@
 #include "curbline/recorded_times.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 
 namespace curbline::tools {
 namespace {
@@ -11,6 +14,22 @@ constexpr std::int64_t reach_ns = 1'000'000'000, first_reach_ns = 10'000'000'000
 bool same(const can::Frame& a, const can::Frame& b) {
   return a.id == b.id && a.fd == b.fd && a.length == b.length &&
          std::equal(a.data.begin(), a.data.begin() + a.length, b.data.begin());
+}
+
+/// The recorded frame of those that is nearest to the time it is due: a servo that nods is twice at each angle. Of
+/// equal ones in a row, while the servo rests, the first: which is which makes no difference.
+template <typename Iterator>
+Iterator nearest_same(Iterator first, Iterator last, const can::Frame& frame, std::int64_t due_ns) {
+  Iterator nearest = last;
+  std::int64_t least_ns = std::numeric_limits<std::int64_t>::max();
+  for (Iterator at = first; at != last; ++at) {
+    const std::int64_t off_ns = std::abs(at->time_ns - due_ns);
+    if (off_ns >= least_ns || !same(*at, frame)) continue;
+    nearest = at;
+    least_ns = off_ns;
+  }
+  while (nearest != last && nearest != first && same(*std::prev(nearest), frame)) --nearest;
+  return nearest;
 }
 
 }  // namespace
@@ -46,11 +65,10 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
   const std::int64_t until_ns = due_ns ? std::max(*due_ns, front_ns) + reach_ns : front_ns + first_reach_ns;
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
-  // The first of equal frames: while a servo rests they are many, and which is which makes no difference.
   const auto in_time = [](const can::Frame& recorded, std::int64_t time_ns) { return recorded.time_ns < time_ns; };
   const auto first = std::lower_bound(ahead_.begin(), ahead_.end(), from_ns, in_time);
   const auto last = std::lower_bound(first, ahead_.end(), until_ns + 1, in_time);
-  const auto met = std::find_if(first, last, [&](const can::Frame& recorded) { return same(recorded, frame); });
+  const auto met = nearest_same(first, last, frame, due_ns.value_or(front_ns));
   if (met == last) return std::nullopt;
   const std::int64_t time_ns = met->time_ns;
   missed_ += met - ahead_.begin();
