@@ -112,8 +112,10 @@ class Dem {
 
   /// The laser sweeps over the ground anew.
   void begin_sweep() { sweep_ = static_cast<std::uint8_t>(sweep_ + 2); }
-  /// The cell under a point, if an earlier sweep has seen it and this one not yet; -1 if not.
-  int mapped_before(float x_m, float y_m) const;
+  /// Has an earlier sweep seen the cell, and this one not yet?
+  bool mapped_before(int slot) const { return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) > 1; }
+  /// The cell under a point; -1 outside the window.
+  int slot_at(float x_m, float y_m) const;
 
   /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells, at most
   /// max_link_reach. O(1).
@@ -230,11 +232,10 @@ void Dem<limits>::leave(int i, int j) {
 }
 
 template <Limits limits>
-int Dem<limits>::mapped_before(float x_m, float y_m) const {
+int Dem<limits>::slot_at(float x_m, float y_m) const {
   const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return -1;
-  const int s = slot(static_cast<int>(u), static_cast<int>(v));
-  return cell(s).valid() && (touched_[static_cast<std::size_t>(s)] ^ sweep_) > 1 ? s : -1;
+  return slot(static_cast<int>(u), static_cast<int>(v));
 }
 
 template <Limits limits>

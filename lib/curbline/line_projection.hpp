@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "curbline/counters.hpp"
 #include "curbline/frames.hpp"
@@ -25,6 +26,24 @@ struct LineMotion {
   bool still = true;  ///< both are the identity
 };
 
+struct ProjectedPoint {
+  Point point;
+  float growth_m_s;  ///< of its height, by a second of tilt latency
+};
+
+/// The points of a line, in the order of the beams; those that did not return are left out.
+template <Limits limits>
+class ProjectedLine {
+ public:
+  ProjectedLine() {}
+  void add(const ProjectedPoint& point) { points_[count_++] = point; }
+  std::span<const ProjectedPoint> points() const { return {points_.data(), count_}; }
+
+ private:
+  std::array<ProjectedPoint, limits.beams> points_;
+  std::size_t count_ = 0;
+};
+
 template <Limits limits>
 class LineProjection {
  public:
@@ -33,10 +52,9 @@ class LineProjection {
   /// Time from the first beam to the last, and the time of beam i after the first.
   std::int64_t duration_ns(std::size_t beams) const { return beams == 0 ? 0 : beam_ns(beams - 1); }
 
-  /// Calls take(const Point&, float growth_m_s) for each beam that returned, in the order of the beams; growth: of its height by a
-  /// second of tilt latency. `tilt` is not read with a fixed tilt.
-  template <typename Take>
-  void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters, Take&& take) const;
+  /// Adds a point to `out` for each beam that returned. `tilt` is not read with a fixed tilt. The line has at most limits.beams.
+  void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
+               ProjectedLine<limits>& out) const;
 
  private:
   std::int64_t beam_ns(std::size_t beam) const { return static_cast<std::int64_t>(beam) * beam_interval_ns_; }
@@ -69,9 +87,8 @@ void LineProjection<limits>::init(const Settings& settings) {
 }
 
 template <Limits limits>
-template <typename Take>
 void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
-                                     Take&& take) const {
+                                     ProjectedLine<limits>& out) const {
   const std::size_t beams = line.ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
   // Gradient of the map's z in the tilt axis' frame.
@@ -104,8 +121,8 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
-    take(Point{p_map.x(), p_map.y(), p_map.z(), height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s)},
-         by_tilt * angle.rate_rad_s);
+    const float variance_m2 = height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
+    out.add({{p_map.x(), p_map.y(), p_map.z(), variance_m2}, by_tilt * angle.rate_rad_s});
   }
 }
 

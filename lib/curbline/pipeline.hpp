@@ -82,7 +82,8 @@ class Pipeline {
 
  private:
   Status place_line(const ScanLine& line, LineMotion& motion);
-  void compare_with_map(const Point& point, float growth_m_s);
+  void compare_with_map(const ProjectedLine<limits>& line);
+  void compare_with_cell(const ProjectedPoint& p, int slot);
   void move_window(float x_m, float y_m);
   void take_point(const Point& point);
   void follow_regions();
@@ -170,29 +171,40 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
     move_window(robot.x(), robot.y());
   }
-  line_projection_.project(line, tilt_snapshot_, motion, counters_, [&](const Point& point, float growth_m_s) {
-    compare_with_map(point, growth_m_s);
-    take(point);
-  });
-  tilt_latency_.end_line(tilt_rate_rad_s_);
+  auto& projected = workspace_.line();
+  line_projection_.project(line, tilt_snapshot_, motion, counters_, projected);
+  if (!settings_.tilt.fixed) compare_with_map(projected);
+  for (const ProjectedPoint& p : projected.points()) take(p.point);
   return Status::ok;
 }
 
-/// Where an earlier sweep has been: by the slope of the cell's plane from its centroid to the point.
+/// The points that the line has where an earlier sweep has been, and this one not yet. Whether it has is asked at the neighbour: a point's
+/// own error in range moves it up or down and into the next cell or not, so that those just over a border would all be too low.
 template <Limits limits>
-void Pipeline<limits>::compare_with_map(const Point& point, float growth_m_s) {
-  const int slot = dem_.mapped_before(point.x_m, point.y_m);
-  if (slot < 0) return;
-  const Cell& cell = dem_.cell(slot);
+void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
+  bool neighbour = false;
+  for (const ProjectedPoint& p : line.points()) {
+    const int slot = p.point.z_m <= ceiling_m_ ? dem_.slot_at(p.point.x_m, p.point.y_m) : -1;
+    if (neighbour && slot >= 0 && dem_.cell(slot).valid()) compare_with_cell(p, slot);
+    neighbour = slot >= 0 && dem_.mapped_before(slot);
+  }
+  tilt_latency_.end_line(tilt_rate_rad_s_);
+}
+
+/// By the slope of the cell's plane from its centroid to the point.
+template <Limits limits>
+void Pipeline<limits>::compare_with_cell(const ProjectedPoint& p, int slot) {
   const Label<limits> label = label_field_.label(slot);
   if (label == no_label<limits>) return;
+  const Cell& cell = dem_.cell(slot);
+  const PlanePrior& prior = settings_.planes.prior;
+  if (cell.scatter_m2 > 4.0f * prior.noise_m2 * cell.points) return;  // more than one surface, or a steep one
   const Plane& plane = plane_mixture_.plane(label);
-  const float x = point.x_m - dem_.origin_x_m(), y = point.y_m - dem_.origin_y_m();
+  const float x = p.point.x_m - dem_.origin_x_m(), y = p.point.y_m - dem_.origin_y_m();
   const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
   const float rise = plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
-  const PlanePrior& prior = settings_.planes.prior;
-  const float variance_m2 = point.variance_m2 + prior.texture_m2 + prior.noise_m2 / cell.weight;
-  tilt_latency_.compare(point.z_m - cell.height_m - rise, variance_m2, growth_m_s);
+  const float variance_m2 = p.point.variance_m2 + prior.texture_m2 + prior.noise_m2 / cell.weight;
+  tilt_latency_.compare(p.point.z_m - cell.height_m - rise, variance_m2, p.growth_m_s);
 }
 
 /// Everything that can be wrong with a line, before anything is changed; the tilt snapshot and the motion for it.

@@ -1,7 +1,9 @@
 // How late the tilt readings are, found on the way: a servo's stamps lag or lead the beams by some milliseconds, and not by the same
 // amount in every sweep. Where a sweep looks at ground that an earlier one has mapped, heights differ by the sweep's tilt rate times
 // what is missing in the latency. A Kalman filter with one state for upward and one for downward sweeps makes each agree with the
-// map; the first sweep is the datum. Cost: 20 operations a point.
+// map; the first sweep is the datum. Each sweep may have a latency of its own, except on a robot that drives: there the datum stays
+// behind, and offsets that were free to change would wander, upward and downward sweeps agreeing on a tilted ground. Cost: 20 operations
+// a point.
 #pragma once
 
 #include <array>
@@ -43,10 +45,11 @@ class TiltLatency {
     float variance_s2 = 0.0f;
   };
 
-  float prior_variance_s2_ = 0.0f;
+  float new_sweep_variance_s2_ = 0.0f;  ///< by how much a sweep's latency differs from the last one's of its direction
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float slow_rad_s_ = 0.0f;     ///< below it a wrong latency is less than the error of an angle
-  float turned_at_rad_ = 1e6f;  ///< where the sweep began
+  bool begun_ = false;
+  float turned_at_rad_ = 0.0f;  ///< where the sweep began
   std::size_t sweep_ = 0;      ///< 0: upward (the angle falls), 1: downward
   std::array<State, 2> state_{};
   float precision_ = 0.0f, weighted_ = 0.0f, growth_ = 0.0f, points_ = 0.0f;  ///< sums of a line

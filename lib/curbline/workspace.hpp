@@ -1,11 +1,12 @@
-// Memory that stages use one after the other within a call: the segmentation's region graph, the cells that the label field visits,
-// the border points of curbs. None outlives the call.
+// Memory that stages use one after the other within a call: the points of a line, the segmentation's region graph, the cells that the
+// label field visits, the border points of curbs. None outlives the call.
 #pragma once
 
 #include <new>
 
 #include "curbline/borders.hpp"
 #include "curbline/label_field.hpp"
+#include "curbline/line_projection.hpp"
 #include "curbline/segmentation.hpp"
 
 namespace curbline {
@@ -16,6 +17,7 @@ class Workspace {
   Workspace() {}
 
   /// Each begins anew and ends what another holds.
+  ProjectedLine<limits>& line() { return *::new (static_cast<void*>(&line_)) ProjectedLine<limits>; }
   typename Segmentation<limits>::Work& segmentation() {
     return *::new (static_cast<void*>(&segmentation_)) typename Segmentation<limits>::Work;
   }
@@ -26,6 +28,7 @@ class Workspace {
 
  private:
   union {
+    ProjectedLine<limits> line_;
     typename Segmentation<limits>::Work segmentation_;
     typename LabelField<limits>::Visits visits_;
     Borders<limits> borders_;

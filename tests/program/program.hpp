@@ -47,6 +47,7 @@ void check_wrong_usage(const Outcome& outcome, const std::string& part);
 /// Logs of a simulated scene, in a directory that is removed at the end.
 class Recording {
  public:
+  /// robot: one that ships, by name, or a file (.toml).
   Recording(const std::string& scene, const std::string& robot, const Words& more = {});
 
   std::string path(const std::string& name) const { return directory_.path(name); }

@@ -28,7 +28,9 @@ struct Bench {
   std::vector<Point> project(const std::vector<float>& ranges, std::int64_t time_ns = t0) {
     std::vector<Point> points;
     track.snapshot(snapshot);
-    projection.project({time_ns, ranges}, snapshot, motion, counters, [&](const Point& p, float) { points.push_back(p); });
+    ProjectedLine<limits> line;
+    projection.project({time_ns, ranges}, snapshot, motion, counters, line);
+    for (const ProjectedPoint& p : line.points()) points.push_back(p.point);
     return points;
   }
 

@@ -1,0 +1,125 @@
+// A servo's latency, from ground that is seen twice.
+#include "curbline/tilt_latency.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/terrain.hpp"
+
+namespace curbline {
+namespace {
+
+using Turn = TiltLatency::Turn;
+
+constexpr float rate_rad_s = 0.5f, range_m = 2.0f, point_sd_m = 0.01f;
+
+TiltSettings tilt_settings() {
+  TiltSettings tilt;
+  tilt.latency_sd_s = 0.01f;
+  tilt.time_sd_s = 0.001f;
+  tilt.angle_sd_rad = 0.0005f;
+  return tilt;
+}
+
+TiltLatency started(const PoseSettings& pose = {}) {
+  TiltLatency latency;
+  latency.init(tilt_settings(), pose);
+  return latency;
+}
+
+/// A sweep of 40 lines from 0.2 to 1.2 rad or back, over ground that lies where a latency of lag_s makes it lie.
+void sweep(TiltLatency& latency, bool downward, float lag_s, test::Noise& noise, float outliers_m = 0.0f) {
+  const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
+  for (int line = 0; line < 40; ++line) {
+    const float advance = 0.025f * static_cast<float>(line);
+    latency.follow(downward ? 0.2f + advance : 1.2f - advance, rate);
+    const float missing_s = lag_s - latency.offset_s();
+    for (int point = 0; point < 20; ++point) {
+      const float other = point % 5 == 0 ? outliers_m : 0.0f;
+      latency.compare(-growth * missing_s + point_sd_m * static_cast<float>(noise.normal()) + other, point_sd_m * point_sd_m, growth);
+    }
+    latency.end_line(rate);
+  }
+}
+
+TEST_CASE("tilt latency: the lag of a sweep is found, within its standard deviation") {
+  const float lag_s = GENERATE(-0.015f, 0.004f, 0.02f);
+  TiltLatency latency = started();
+  test::Noise noise(1);
+  latency.follow(0.2f, rate_rad_s);
+  sweep(latency, false, lag_s, noise);
+  CHECK(latency.sd_s() < 0.001f);
+  CHECK(std::abs(latency.offset_s() - lag_s) < 4.0f * latency.sd_s());
+}
+
+TEST_CASE("tilt latency: upward and downward sweeps have their own, which may change from sweep to sweep") {
+  TiltLatency latency = started();
+  test::Noise noise(2);
+  for (int k = 0; k < 4; ++k) {
+    const float up_s = 0.010f + 0.005f * static_cast<float>(k), down_s = -0.004f * static_cast<float>(k);
+    sweep(latency, true, down_s, noise);
+    CHECK(latency.offset_s() == Approx(down_s).margin(0.0015));
+    sweep(latency, false, up_s, noise);
+    CHECK(latency.offset_s() == Approx(up_s).margin(0.0015));
+  }
+}
+
+TEST_CASE("tilt latency: on a drive many sweeps know it better than one, and what is known does not wander") {
+  PoseSettings pose;
+  pose.still = false;
+  TiltLatency latency = started(pose);
+  test::Noise noise(3);
+  sweep(latency, false, 0.006f, noise);
+  const float of_one_s = latency.sd_s();
+  for (int k = 0; k < 5; ++k) {
+    sweep(latency, true, 0.006f, noise);
+    sweep(latency, false, 0.006f, noise);
+  }
+  CHECK(latency.sd_s() < 0.5f * of_one_s);
+  CHECK(latency.offset_s() == Approx(0.006f).margin(0.001));
+}
+
+TEST_CASE("tilt latency: another surface in a fifth of the points does not move it") {
+  TiltLatency latency = started();
+  test::Noise noise(4);
+  sweep(latency, false, 0.005f, noise, 0.15f);
+  CHECK(latency.offset_s() == Approx(0.005f).margin(0.001));
+}
+
+TEST_CASE("tilt latency: a line that disagrees by more than latency can explain is left out") {
+  TiltLatency latency = started();
+  for (int point = 0; point < 100; ++point) latency.compare(0.03f, 1e-4f, 0.05f);  // 0.6 s
+  latency.end_line(rate_rad_s);
+  CHECK(latency.offset_s() == 0.0f);
+  CHECK(latency.sd_s() == Approx(0.01f));
+}
+
+TEST_CASE("tilt latency: the first sweep is no new one, a turn is, a damaged reading is not") {
+  TiltLatency latency = started();
+  CHECK(latency.follow(0.20f, rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.60f, rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.61f, -rate_rad_s) == Turn::new_sweep);
+  CHECK(latency.follow(0.60f, rate_rad_s) == Turn::back);
+  CHECK(latency.follow(0.59f, -rate_rad_s) == Turn::back);
+  CHECK(latency.follow(0.30f, -rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.30f, rate_rad_s) == Turn::new_sweep);
+}
+
+TEST_CASE("tilt latency: a servo that stands still turns nowhere") {
+  TiltLatency latency = started();
+  latency.follow(0.5f, rate_rad_s);
+  for (const float rate : {1e-3f, -1e-3f, 0.0f, -0.02f}) CHECK(latency.follow(1.0f, rate) == Turn::none);
+}
+
+TEST_CASE("tilt latency: a standard deviation of 0 turns it off") {
+  TiltSettings tilt = tilt_settings();
+  tilt.latency_sd_s = 0.0f;
+  TiltLatency latency;
+  latency.init(tilt, {});
+  test::Noise noise(5);
+  sweep(latency, false, 0.002f, noise);
+  CHECK(latency.offset_s() == 0.0f);
+}
+
+}  // namespace
+}  // namespace curbline
