@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 using socketcan::SocketCan;
 
 const Recording& recording() {
-  static const Recording made("curb_above_below", "utm30lx", {"--duration", "8"});
+  static const Recording made("curb_above_below", "utm30lx", {"--duration", "6"});
   return made;
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("daemon: beside canplayer it gives the curbs of replay, every one, and
   check_same(distinct_curbs(service.lines()), undisturbed());
   CHECK(undisturbed().size() > 20);
   const auto scan_lines = status.at("pipeline").at("lines").get<int>();
-  CHECK(scan_lines == 320);
+  CHECK(scan_lines == 240);
   CHECK(status.at("pipeline").at("lines_dropped") == 0);
   CHECK(status.at("scans").at("overdue") == 0);
   CHECK(status.at("microseconds").at("pipeline").at("samples") == scan_lines);
@@ -228,7 +228,7 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
   });
   const nlohmann::json status = status_of(disturbed.outcome);
   CHECK(status.at("tilt").at("malformed") == cut_short);
-  CHECK(status.at("scans").at("lines") == 320);
+  CHECK(status.at("scans").at("lines") == 240);
   CHECK(times_said(disturbed.outcome.err, "damaged tilt frames") == 1);
   CHECK(times_said(disturbed.outcome.err, "tilt frames that the recording does not have") == 1);
   check_alike(last_curbs(disturbed.lines), undisturbed_end());

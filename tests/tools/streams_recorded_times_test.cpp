@@ -43,6 +43,18 @@ TEST_CASE("recorded times: after a gap in which the servo turned, a frame is not
   CHECK(clock.recorded()->missed() == 35);
 }
 
+TEST_CASE("recorded times: a frame that comes twice is not taken for the one of its angle on the way back") {
+  const TemporaryDirectory directory;
+  const auto nods = [](int k) { return 0.01 * std::abs(k - 60); };
+  LogClock clock = clock_of(directory, 120, nods);
+  for (int k = 0; k < 120; ++k) {
+    REQUIRE(given(clock, k, nods) == k);
+    if (k == 20) CHECK(given(clock, k, nods, 1) == Approx(20.1));  // 100 is 20 again
+  }
+  CHECK(clock.not_recorded() == 1);
+  CHECK(clock.recorded()->missed() == 0);
+}
+
 TEST_CASE("recorded times: while a servo rests its equal frames are met one by one, however late they come") {
   const TemporaryDirectory directory;
   const auto rests = [](int) { return 0.3; };

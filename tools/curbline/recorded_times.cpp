@@ -9,7 +9,8 @@
 namespace curbline::tools {
 namespace {
 
-constexpr std::int64_t reach_ns = 1'000'000'000, first_reach_ns = 10'000'000'000;
+/// A player sends late, never early; but a due time is taken from the frame before, which may have been late itself.
+constexpr std::int64_t late_ns = 1'000'000'000, early_ns = 200'000'000, first_reach_ns = 10'000'000'000;
 
 bool same(const can::Frame& a, const can::Frame& b) {
   return a.id == b.id && a.fd == b.fd && a.length == b.length &&
@@ -61,8 +62,8 @@ void RecordedTimes::read_all() {
 std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns) {
   if (ahead_.empty() && !read_one()) return std::nullopt;
   const std::int64_t front_ns = ahead_.front().time_ns;
-  const std::int64_t from_ns = due_ns ? *due_ns - reach_ns : front_ns;
-  const std::int64_t until_ns = due_ns ? std::max(*due_ns, front_ns) + reach_ns : front_ns + first_reach_ns;
+  const std::int64_t from_ns = due_ns ? *due_ns - late_ns : front_ns;
+  const std::int64_t until_ns = due_ns ? *due_ns + early_ns : front_ns + first_reach_ns;
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
   const auto in_time = [](const can::Frame& recorded, std::int64_t time_ns) { return recorded.time_ns < time_ns; };
