@@ -234,6 +234,26 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
   check_alike(last_curbs(disturbed.lines), undisturbed_end());
 }
 
+TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus on the host's clock", "[daemon]") {
+  const std::string command = CURBLINE_SCANNER " scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
+  std::FILE* const scanner = ::popen(command.c_str(), "r");
+  std::array<char, 80> address{};
+  REQUIRE(std::fgets(address.data(), address.size(), scanner) != nullptr);
+  const std::string scans = lines_of(address.data()).front();
+  Service service({"--can", "vcan0", "--scans", scans, "--robot", recording().path("robot.toml")});
+  CHECK(service.says("the scanner gives scan lines"));
+  play(recording().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  CHECK(service.says("no scan lines from the scanner"));  // its feed has ended
+  service.signal(SIGINT);
+  const Outcome outcome = service.end();
+  ::pclose(scanner);
+  const nlohmann::json status = status_of(outcome);
+  CHECK(status.at("pipeline").at("lines") > 150);
+  CHECK(status.at("scans").at("other_beams") == 0);
+  CHECK(status.at("scans").at("damaged") == 0);
+  CHECK(times_said(outcome.err, "stopped by SIGINT") == 1);
+}
+
 TEST_CASE("daemon: a scanner is waited for, an interface that is removed too; SIGTERM ends it cleanly", "[daemon]") {
   const socketcan::testing::Interface other("vcan8");
   Service service({"--can", "vcan8", "--scans", "scip2:127.0.0.1:7", "--robot", recording().path("robot.toml")});
