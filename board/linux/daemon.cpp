@@ -204,8 +204,8 @@ void Daemon::take_lines() {
 
 void Daemon::take_line(const ScanLine& line) {
   const std::int64_t before_ns = scanner::host_now().steady_ns;
-  const curbline::Status status = pipeline_->take(line);
-  if (status == curbline::Status::ok) work_.add(scanner::host_now().steady_ns - before_ns);
+  const Status status = pipeline_->take(line);
+  if (status == Status::ok) work_.add(scanner::host_now().steady_ns - before_ns);
   last_line_ns_ = line.time_ns;
   give_curbs(line.time_ns);
   if (can_out_) send_curbs();
@@ -236,7 +236,7 @@ void Daemon::look_around() {
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
   const TiltEvent tilt = tilt_settings_.fixed ? TiltEvent::none : tilt_watch_.update(newest_arrival_ns_, now_ns);
-  const Status status = make_status();
+  const Report status = make_report();
   troubles_.tell(status, tilt, now_ns);
   const std::string_view state = state_of(status);
   if (state == told_state_ && now_ns < next_status_ns_) return;
@@ -256,12 +256,12 @@ void Daemon::give_status() {
 }
 
 std::string_view Daemon::status() {
-  return status_line(make_status(), status_text_);
+  return status_line(make_report(), status_text_);
 }
 
-Status Daemon::make_status() {
+Report Daemon::make_report() {
   const scanner::Now now = scanner::host_now();
-  Status s;
+  Report s;
   s.time_ns = now.host_ns;
   s.uptime_s = 1e-9 * static_cast<double>(now.steady_ns - started_ns_);
   s.scan_line_s = scan_line_s_;

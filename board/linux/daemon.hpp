@@ -68,7 +68,7 @@ class Daemon {
   void send_curbs();
   void look_around();
   void give_status();
-  Status make_status();
+  Report make_report();
   std::optional<std::int64_t> log_offset_ns() const;
 
   TiltSettings tilt_settings_;

@@ -1,5 +1,6 @@
 // curblined: curbs while the robot runs. README.md beside it is its manual.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")->required();
   app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too: tools/robots/curb_ahead.dbc")
       ->needs(can);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
   try {
     app.parse(argc, argv);
     const auto running = std::make_unique<daemon::Daemon>(tools::read_robot(robot), options);

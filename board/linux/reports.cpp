@@ -25,7 +25,7 @@ void put(JsonLine& json, std::string_view key, std::uint64_t count) {
   json.key(key).whole(static_cast<std::int64_t>(count));
 }
 
-void put_tilt(JsonLine& json, const Status& s) {
+void put_tilt(JsonLine& json, const Report& s) {
   json.key("tilt").open('{').key("state").text(word_of(s.tilt->state()));
   put(json, "times_lost", s.tilt->times_lost());
   json.key("longest_silence_s").metres(1e-9 * static_cast<double>(s.tilt->longest_silence_ns()));
@@ -57,7 +57,7 @@ void put_bus(JsonLine& json, const socketcan::SocketCan& bus) {
   json.close('}');
 }
 
-void put_lines(JsonLine& json, const Status& s) {
+void put_lines(JsonLine& json, const Report& s) {
   json.key("scans").open('{');
   if (s.scanner != nullptr) {
     json.key("connected").boolean(s.scanner->connected);
@@ -73,7 +73,7 @@ void put_lines(JsonLine& json, const Status& s) {
   json.close('}');
 }
 
-void put_pipeline(JsonLine& json, const Status& s) {
+void put_pipeline(JsonLine& json, const Report& s) {
   json.key("pipeline").open('{');
   put(json, "lines", s.pipeline.lines);
   put(json, "lines_dropped", s.pipeline.lines_dropped);
@@ -84,7 +84,7 @@ void put_pipeline(JsonLine& json, const Status& s) {
   json.close('}');
 }
 
-void put_clients(JsonLine& json, const Status& s) {
+void put_clients(JsonLine& json, const Report& s) {
   json.key("clients").open('{');
   put(json, "connected", static_cast<std::uint64_t>(s.clients));
   put(json, "accepted", s.server.accepted);
@@ -117,7 +117,7 @@ void put_curb(JsonLine& json, const Curb& c) {
 
 }  // namespace
 
-std::string_view state_of(const Status& s) {
+std::string_view state_of(const Report& s) {
   if (s.bus != nullptr && s.bus->link() != socketcan::LinkState::up) return "can_down";
   if (s.bus != nullptr && s.bus->bus() == socketcan::BusState::off) return "bus_off";
   if (s.tilt != nullptr && s.tilt->state() != TiltState::ok) {
@@ -127,7 +127,7 @@ std::string_view state_of(const Status& s) {
   return "ok";
 }
 
-std::string_view status_line(const Status& s, std::span<char> buffer) {
+std::string_view status_line(const Report& s, std::span<char> buffer) {
   JsonLine json(buffer);
   json.open('{').key("status").open('{').key("state").text(state_of(s)).key("time_s").seconds(s.time_ns);
   json.key("uptime_s").metres(s.uptime_s);

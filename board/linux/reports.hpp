@@ -18,7 +18,7 @@
 namespace curbline::daemon {
 
 /// What a status line is made of. What is nullptr the robot has not.
-struct Status {
+struct Report {
   std::int64_t time_ns = 0;
   double uptime_s = 0, scan_line_s = 0;
   const TiltWatch* tilt = nullptr;
@@ -38,9 +38,9 @@ struct Status {
 };
 
 /// The worst that is the matter, in a word: ok, tilt_missing, tilt_stale, can_down, bus_off or scanner_lost.
-std::string_view state_of(const Status& status);
+std::string_view state_of(const Report& status);
 
-std::string_view status_line(const Status& status, std::span<char> buffer);
+std::string_view status_line(const Report& status, std::span<char> buffer);
 
 /// All curbs of the window after a scan line, in the order of the pipeline. `left_out` counts those that do not fit.
 std::string_view curbs_line(std::int64_t time_ns, std::span<const Curb> curbs, std::span<char> buffer,

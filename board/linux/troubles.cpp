@@ -22,7 +22,7 @@ void tell_tilt(TiltEvent event) {
 
 }  // namespace
 
-void Troubles::tell(const Status& status, TiltEvent tilt, std::int64_t now_ns) {
+void Troubles::tell(const Report& status, TiltEvent tilt, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
   tell_tilt(tilt);
   if (status.scanner != nullptr) tell_scanner(*status.scanner);
@@ -50,7 +50,7 @@ void Troubles::tell_scanner(const ScannerState& scanner) {
       scanner.problem.empty() ? "" : "; ", scanner.problem);
 }
 
-void Troubles::tell_counters(const Status& s, std::int64_t now_ns) {
+void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
   const socketcan::Counters none{};
   const socketcan::Counters& can = s.bus == nullptr ? none : s.bus->counters();
   const can::TiltDecoderCounters frames = s.tilt_frames == nullptr ? can::TiltDecoderCounters{} : *s.tilt_frames;

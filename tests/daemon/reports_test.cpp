@@ -61,7 +61,7 @@ TEST_CASE("reports: the fullest status fits") {
   for (std::size_t i = 0; i < LatencyHistogram::buckets; ++i) {
     for (int k = 0; k < 100; ++k) full.add(static_cast<std::int64_t>(LatencyHistogram::end_us(i) - 1) * 1000);
   }
-  Status status;
+  Report status;
   const TiltWatch watch;
   const can::TiltDecoderCounters frames{~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
   const auto bus = std::make_unique<socketcan::SocketCan>();
