@@ -33,16 +33,17 @@ Signal vesc_status_4(std::uint8_t node) {
           .scale = degree / 50.0};
 }
 
-// CubeMars AK Series Actuator Driver Manual V1.0.8, 5.2.1: 8 bytes, bytes 0-1 position, -32000 to 32000 for -3200 to
-// 3200 degrees; bits 7-0 of the id are the motor's. What stands above them differs between firmware versions.
+// CubeMars AK Series Actuator Driver Manual, servo mode, 5.1 and 5.2: status 0x29 << 8 | motor, 8 bytes, bytes 0-1
+// position, -32000 to 32000 for -3200 to 3200 degrees. The host's commands are mode << 8 | motor, modes 0 to 6, the
+// last of 8 bytes too: so the whole id must agree.
 Signal cubemars_servo(std::uint8_t node) {
-  return {.id = node,
-          .id_mask = 0xFFu,
+  return {.id = (0x29u << 8) | node,
           .extended = true,
           .start_bit = 7,
           .length = 16,
           .order = ByteOrder::big,
-          .scale = degree / 10.0};
+          .scale = degree / 10.0,
+          .min_bytes = 8};
 }
 
 // CyberGear instruction manual, 4.1.3, and RobStride manuals: communication type 2; id bits 28-24 type, 23-22 mode,
@@ -60,7 +61,7 @@ Signal robstride_feedback(std::uint8_t motor) {
 }
 
 // Mini-cheetah motor controller, CAN_com: pack_reply(), byte 0 the motor, bytes 1-2 the position; P_MAX is 12.5 or 95.5
-// rad by firmware. CubeMars manual, 5.3: the same reply, under the motor's own id.
+// rad by firmware; 6 bytes, while a command has 8. CubeMars manual, 5.3: the same reply, under the motor's own id.
 Signal mini_cheetah_reply(std::uint16_t id, double p_max_rad) {
   return {.id = id,
           .start_bit = 15,
@@ -68,7 +69,9 @@ Signal mini_cheetah_reply(std::uint16_t id, double p_max_rad) {
           .order = ByteOrder::big,
           .is_signed = false,
           .scale = 2.0 * p_max_rad / 65535.0,
-          .offset = -p_max_rad};
+          .offset = -p_max_rad,
+          .min_bytes = 6,
+          .max_bytes = 6};
 }
 
 }  // namespace curbline::can

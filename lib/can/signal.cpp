@@ -102,17 +102,19 @@ bool valid(const Signal& s) {
     const Bits bits = bits_of(*s.multiplexor);
     if (!fits_a_frame(bits) || (bits.length < 64 && s.multiplexor->value >> bits.length != 0)) return false;
   }
+  if (s.max_bytes > 64 || bytes_needed(s) > s.max_bytes) return false;
   return std::isfinite(s.scale) && s.scale != 0.0 && std::isfinite(s.offset);
 }
 
 int bytes_needed(const Signal& s) {
   const int own = bytes_of(bits_of(s)), selector = s.multiplexor ? bytes_of(bits_of(*s.multiplexor)) : 0;
-  return own > selector ? own : selector;
+  const int longer = own > selector ? own : selector;
+  return longer > s.min_bytes ? longer : s.min_bytes;
 }
 
 bool carries(const Signal& signal, const Frame& frame) {
   if (frame.extended != signal.extended || frame.remote || frame.error) return false;
-  if (((frame.id ^ signal.id) & signal.id_mask) != 0) return false;
+  if (((frame.id ^ signal.id) & signal.id_mask) != 0 || frame.length > signal.max_bytes) return false;
   if (!signal.multiplexor) return true;
   const Bits selector = bits_of(*signal.multiplexor);
   return frame.length < bytes_of(selector) || read_bits(selector, frame) == signal.multiplexor->value;

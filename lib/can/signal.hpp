@@ -39,18 +39,21 @@ struct Signal {
   double scale = 1.0;     ///< radians a count for a tilt signal; below 0 if the servo turns the other way
   double offset = 0.0;
   std::optional<Multiplexor> multiplexor{};  ///< nothing: the signal is in every frame of its id
+  std::uint8_t min_bytes = 0;   ///< a shorter frame is damaged, even where the bits are there; see bytes_needed()
+  std::uint8_t max_bytes = 64;  ///< a longer frame of the id is another one: a command to the servo, say
 };
 
-/// True if the bits lie in the 64 bytes of a frame, the id fits 11 or 29 bits, scale and offset are finite, scale is
-/// not 0, and the multiplexor can have its value. The functions below want a valid signal: ask once, when it comes in.
+/// True if the bits lie in the 64 bytes of a frame and within max_bytes, the id fits 11 or 29 bits, scale and offset
+/// are finite, scale is not 0, and the multiplexor can have its value. The functions below want a valid signal: ask
+/// once, when it comes in.
 bool valid(const Signal& signal);
 
 /// Bytes that a frame with the signal has at least, 1 to 64.
 int bytes_needed(const Signal& signal);
 
-/// Whether the frame is one of the signal's: a data frame of its id whose multiplexor, if it is long enough to tell,
-/// has the signal's value. What decode() makes nothing of although this is true is damaged. May be called from an
-/// interrupt.
+/// Whether the frame is one of the signal's: a data frame of its id, of max_bytes at most, whose multiplexor, if it is
+/// long enough to tell, has the signal's value. What decode() makes nothing of although this is true is damaged. May be
+/// called from an interrupt.
 bool carries(const Signal& signal, const Frame& frame);
 
 /// The value, or nothing if the frame is another one (see carries()), too short, or the value not finite. No state: may

@@ -8,6 +8,9 @@ namespace {
 /// No servo winds further (TiltTrack drops it too); a float holds it.
 constexpr double max_angle_rad = 1e6;
 
+/// How long a position may take after the first SYNC of all: a full bus delays it by a few frames, a millisecond.
+constexpr std::int64_t longest_first_delay_ns = 5'000'000;
+
 /// One writer.
 void count(std::uint32_t& counter) {
   const std::atomic_ref<std::uint32_t> shared(counter);
@@ -61,10 +64,27 @@ bool TiltDecoder::is_sync(const Frame& frame) const {
 }
 
 void TiltDecoder::note_sync(std::int64_t time_ns) {
-  sync_period_ns_.reset();
-  if (sync_ns_ && time_ns > *sync_ns_) sync_period_ns_ = time_ns - *sync_ns_;
+  if (sync_ns_ && time_ns > *sync_ns_) {
+    gaps_ns_[next_gap_] = time_ns - *sync_ns_;
+    next_gap_ = (next_gap_ + 1) % gaps_ns_.size();
+    if (gaps_ < gaps_ns_.size()) ++gaps_;
+  }
   sync_ns_ = time_ns;
   sync_pending_ = true;
+}
+
+/// The median of the newest gaps, the lower of the middle two; longest_first_delay_ns before there is one.
+std::int64_t TiltDecoder::sync_period_ns() const {
+  for (std::size_t i = 0; i < gaps_; ++i) {
+    std::size_t below = 0, equal = 0;
+    for (std::size_t k = 0; k < gaps_; ++k) {
+      below += gaps_ns_[k] < gaps_ns_[i];
+      equal += gaps_ns_[k] == gaps_ns_[i];
+    }
+    const std::size_t middle = (gaps_ - 1) / 2;
+    if (below <= middle && middle < below + equal) return gaps_ns_[i];
+  }
+  return longest_first_delay_ns;
 }
 
 /// Its SYNC's time, which then is used up, or that of its arrival where there are none; nothing if the SYNC was not
@@ -74,7 +94,7 @@ std::optional<std::int64_t> TiltDecoder::time_of_position(std::int64_t arrival_n
   if (!sync_pending_) return std::nullopt;
   sync_pending_ = false;
   const std::int64_t delay_ns = arrival_ns - *sync_ns_;
-  if (delay_ns < 0 || (sync_period_ns_ && delay_ns >= *sync_period_ns_)) return std::nullopt;
+  if (delay_ns < 0 || delay_ns >= sync_period_ns()) return std::nullopt;
   return sync_ns_;
 }
 

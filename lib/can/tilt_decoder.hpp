@@ -1,15 +1,20 @@
 // Frames of a bus in, tilt readings out: the step between a CAN port and Pipeline::add_tilt(). What is not the servo's
-// is passed over, what is damaged is dropped, and both are counted. One object of about 120 bytes, no heap, at most
+// is passed over, what is damaged is dropped, and both are counted. One object of about 200 bytes, no heap, at most
 // 128 steps a frame.
 //
 // CANopen drives can sample their position on the SYNC frame and send it when the bus is free: then the angle is that
 // of the SYNC's time, not of its own arrival, which comes up to a millisecond later and jitters. A position whose SYNC
 // was not seen is dropped, since its time is unknown: one that comes with no SYNC since the one before, or later after
-// its SYNC than the SYNCs are apart. (CiA 301, SYNC object 0x1005; TPDO transmission types 1 to 240.)
+// its SYNC than SYNCs are apart. How far they are is the median of the last five gaps, which a lost or repeated SYNC
+// does not move; before the second SYNC 5 ms are allowed. (CiA 301, SYNC object 0x1005; TPDO
+// transmission types 1 to 240.)
 //
 // take() may be called from an interrupt or a receive thread, one of them; counters() from anywhere, at any time.
+// init() must not run beside take(): before the interrupt is enabled, or with it masked.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -48,13 +53,16 @@ class TiltDecoder {
   bool is_sync(const Frame& frame) const;
   void note_sync(std::int64_t time_ns);
   std::optional<std::int64_t> time_of_position(std::int64_t arrival_ns);
+  std::int64_t sync_period_ns() const;
 
   Signal signal_{};
   std::optional<std::uint16_t> sync_id_{};
   bool ready_ = false;
-  bool sync_pending_ = false;                     ///< a SYNC has come since the last position
-  std::optional<std::int64_t> sync_ns_{};         ///< time of the newest SYNC
-  std::optional<std::int64_t> sync_period_ns_{};  ///< between the newest two
+  bool sync_pending_ = false;              ///< a SYNC has come since the last position
+  std::optional<std::int64_t> sync_ns_{};  ///< time of the newest SYNC
+  std::array<std::int64_t, 5> gaps_ns_{};  ///< between the newest ones, a ring
+  std::size_t gaps_ = 0;                   ///< in the ring
+  std::size_t next_gap_ = 0;               ///< which is replaced next
   mutable TiltDecoderCounters counters_{};
 };
 

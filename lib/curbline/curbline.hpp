@@ -8,6 +8,8 @@
 #include "curbline/frames.hpp"           // map <- base <- tilt <- laser
 #include "curbline/scan_line.hpp"        // in: ranges
 #include "curbline/tilt_track.hpp"       // in: servo angles
+#include "curbline/tilt_watch.hpp"       // whether the servo is alive
+#include "curbline/line_queue.hpp"       // lines that wait for their tilt
 #include "curbline/pose_track.hpp"       // in: robot poses
 #include "curbline/line_projection.hpp"  // beams to points with variance
 #include "curbline/point.hpp"            //

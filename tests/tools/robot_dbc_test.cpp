@@ -44,7 +44,7 @@ TEST_CASE("robot dbc: the angle of every servo is the same after DBC and TOML, f
       can::Frame frame;
       for (auto& byte : frame.data) byte = static_cast<std::uint8_t>(random());
       can::encode(in.tilt_signal, 0.01 * k - 1.0, frame);
-      frame.length = 8;
+      frame.length = std::min<std::uint8_t>(8, in.tilt_signal.max_bytes);
       const auto angle = can::decode(in.tilt_signal, frame);
       REQUIRE(angle);
       REQUIRE(can::decode(out.tilt_signal, frame) == angle);

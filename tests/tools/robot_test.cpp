@@ -93,7 +93,9 @@ TEST_CASE("robot: a servo is a preset, the words of a DBC file, or one changed b
   const auto signal = [](const std::string& keys) { return parsed("[tilt.signal]\n" + keys).tilt_signal; };
   CHECK(signal("servo = \"odrive\"\nnode = 3\n").id == 0x69);
   CHECK(signal("servo = \"vesc\"\nnode = 10\n").id == 0x100A);
-  CHECK(signal("servo = \"cubemars\"\nnode = 0x68\n").id_mask == 0xFF);
+  CHECK(signal("servo = \"cubemars\"\nnode = 0x68\n").id == 0x2968);
+  CHECK(signal("servo = \"mini-cheetah\"\nmax_bytes = 8\n").max_bytes == 8);
+  CHECK(signal("servo = \"mini-cheetah\"\n").min_bytes == 6);
   CHECK(signal("servo = \"robstride\"\nnode = 127\n").id == 0x02007F00);
   const can::Signal cheetah = signal("servo = \"mini-cheetah\"\nid = 7\np_max_rad = 95.5\n");
   CHECK(cheetah.id == 7);

@@ -124,3 +124,27 @@ TEST_CASE("curb frames: fields do not share a bit and are valid signals") {
       CHECK(++bits[static_cast<std::size_t>(field.signal.start_bit + b)] == 1);
   }
 }
+
+TEST_CASE("curb ahead: the nearest of those that reach into the way, at the point where they do") {
+  const auto curb = [](float x0, float y0, float x1, float y1, float height) {
+    Curb c{};
+    c.x0_m = x0, c.y0_m = y0, c.x1_m = x1, c.y1_m = y1;
+    c.height_m = height, c.height_sd_m = 0.01f, c.probability = 0.9f, c.kind = CurbKind::step_up;
+    return c;
+  };
+  const Curb across = curb(3.0f, -2.0f, 3.0f, 2.0f, 0.12f), beside = curb(0.5f, 0.6f, 6.0f, 0.6f, 0.1f);
+  const Curb slanting = curb(5.0f, 0.0f, 3.0f, 1.0f, 0.08f), behind = curb(-1.0f, -2.0f, -1.0f, 2.0f, 0.2f);
+  CHECK_FALSE(nearest_ahead({}, 0.5f));
+  CHECK_FALSE(nearest_ahead(std::array{beside, behind}, 0.5f));
+  const auto all = nearest_ahead(std::array{beside, slanting, behind, across}, 0.5f);
+  REQUIRE(all);
+  CHECK(all->distance_m == 3.0f);
+  CHECK(all->height_m == 0.12f);
+  const auto at_edge = nearest_ahead(std::array{slanting}, 0.5f);
+  REQUIRE(at_edge);
+  CHECK(at_edge->distance_m == Approx(4.0f));
+  CHECK(at_edge->lateral_m == Approx(0.5f));
+  const auto from_behind = nearest_ahead(std::array{curb(-1.0f, 0.1f, 4.0f, 0.1f, 0.1f)}, 0.5f);
+  REQUIRE(from_behind);
+  CHECK(from_behind->distance_m == Approx(0.0f).margin(1e-6));
+}

@@ -183,6 +183,25 @@ TEST_CASE("can signal: a frame cut before its signal or its multiplexor is one o
   }
 }
 
+TEST_CASE("can signal: a frame longer than the signal's is another one, a shorter one damaged") {
+  Signal signal{.id = 0x181, .length = 16};
+  signal.min_bytes = 6;
+  signal.max_bytes = 7;
+  REQUIRE(valid(signal));
+  CHECK(bytes_needed(signal) == 6);
+  Frame frame;
+  frame.id = 0x181;
+  for (frame.length = 0; frame.length <= 8; ++frame.length) {
+    CHECK(carries(signal, frame) == (frame.length <= 7));
+    CHECK(decode(signal, frame).has_value() == (frame.length == 6 || frame.length == 7));
+  }
+  Frame written;
+  encode(signal, 1.0, written);
+  CHECK(written.length == 6);
+  signal.max_bytes = 5;
+  CHECK_FALSE(valid(signal));
+}
+
 TEST_CASE("can signal: writing a multiplexed signal sets the multiplexor") {
   Signal signal{.id = 1, .start_bit = 8, .length = 8};
   signal.multiplexor = Multiplexor{.start_bit = 31, .length = 12, .order = ByteOrder::big, .value = 0xABC};

@@ -134,9 +134,7 @@ TEST_CASE("tilt decoder: a drive may answer every n-th SYNC") {
 
 TEST_CASE("tilt decoder: a position whose SYNC was not seen is dropped and counted, the next is good again") {
   TiltDecoder tilt = decoder(default_sync_id);
-  SECTION("the first of all") {
-    CHECK_FALSE(tilt.take(position(t0 + 300 * us, 0.5)));
-  }
+  for (int k = 6; k >= 2; --k) tilt.take(sync(t0 - 10 * ms * k));
   SECTION("one SYNC lost") {
     tilt.take(sync(t0 - 10 * ms));
     REQUIRE(tilt.take(position(t0 - 10 * ms + 300 * us, 0.5)));
@@ -148,8 +146,19 @@ TEST_CASE("tilt decoder: a position whose SYNC was not seen is dropped and count
     CHECK_FALSE(tilt.take(position(t0 + 310 * us, 0.5)));
   }
   SECTION("a position lost, and the next one's SYNC") {
-    tilt.take(sync(t0 - 20 * ms));
     tilt.take(sync(t0 - 10 * ms));
+    CHECK_FALSE(tilt.take(position(t0 + 300 * us, 0.5)));
+  }
+  SECTION("the same just after another SYNC was lost") {
+    tilt.take(sync(t0 - 20 * ms + 10 * ms));
+    tilt.take(position(t0 - 10 * ms + 300 * us, 0.5));
+    tilt.take(sync(t0 + 10 * ms));  // 20 ms after the one before
+    CHECK_FALSE(tilt.take(position(t0 + 20 * ms + 300 * us, 0.5)));
+  }
+  SECTION("the same just after a SYNC was repeated") {
+    tilt.take(sync(t0 - 10 * ms));
+    tilt.take(sync(t0 - 10 * ms + 100 * us));
+    CHECK(tilt.take(position(t0 - 10 * ms + 300 * us, 0.5)));
     CHECK_FALSE(tilt.take(position(t0 + 300 * us, 0.5)));
   }
   SECTION("a position older than its SYNC") {
@@ -157,9 +166,32 @@ TEST_CASE("tilt decoder: a position whose SYNC was not seen is dropped and count
     CHECK_FALSE(tilt.take(position(t0 - 1, 0.5)));
   }
   CHECK(tilt.counters().without_sync == 1);
-  tilt.take(sync(t0 + 10 * ms));
-  CHECK(tilt.take(position(t0 + 10 * ms + 300 * us, 0.5))->time_ns == t0 + 10 * ms);
+  tilt.take(sync(t0 + 40 * ms));
+  CHECK(tilt.take(position(t0 + 40 * ms + 300 * us, 0.5))->time_ns == t0 + 40 * ms);
   CHECK(adds_up(tilt.counters()));
+}
+
+TEST_CASE("tilt decoder: before the second SYNC a position is taken within 5 ms, later ones are dropped") {
+  TiltDecoder tilt = decoder(default_sync_id);
+  CHECK_FALSE(tilt.take(position(t0 - 1 * ms, 0.5)));
+  tilt.take(sync(t0));
+  SECTION("soon") {
+    CHECK(tilt.take(position(t0 + 4 * ms, 0.5)));
+  }
+  SECTION("late: of another SYNC that was lost") {
+    CHECK_FALSE(tilt.take(position(t0 + 900 * ms, 0.5)));
+    CHECK(tilt.counters().without_sync == 2);
+  }
+  tilt.take(sync(t0 + 1000 * ms));
+  CHECK(tilt.take(position(t0 + 1000 * ms + 300 * us, 0.5)));
+}
+
+TEST_CASE("tilt decoder: after a silence of the bus positions are taken as before") {
+  TiltDecoder tilt = decoder(default_sync_id);
+  for (int k = 0; k < 5; ++k) tilt.take(sync(t0 + 10 * ms * k));
+  tilt.take(sync(t0 + 9000 * ms));
+  CHECK(tilt.take(position(t0 + 9000 * ms + 300 * us, 0.5)));
+  CHECK_FALSE(tilt.take(position(t0 + 9010 * ms + 300 * us, 0.5)));  // whose SYNC was lost
 }
 
 TEST_CASE("tilt decoder: a damaged position uses its SYNC up") {

@@ -1,15 +1,36 @@
-#include <algorithm>
+#include "curbline/recorded_times.hpp"
 
-#include "curbline/tilt_frames.hpp"
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <limits>
 
 namespace curbline::tools {
 namespace {
 
-constexpr std::int64_t reach_ns = 1'000'000'000, first_reach_ns = 10'000'000'000;
+/// A player sends late, never early; but a due time is taken from the frame before, which may have been late itself.
+constexpr std::int64_t late_ns = 1'000'000'000, early_ns = 200'000'000, first_reach_ns = 10'000'000'000;
 
 bool same(const can::Frame& a, const can::Frame& b) {
   return a.id == b.id && a.fd == b.fd && a.length == b.length &&
          std::equal(a.data.begin(), a.data.begin() + a.length, b.data.begin());
+}
+
+/// The recorded frame of those that is nearest to the time it is due: a servo that nods is twice at each angle. Of
+/// equal ones in a row, while the servo rests, the first: which is which makes no difference.
+template <typename Iterator>
+Iterator nearest_same(Iterator first, Iterator last, const can::Frame& frame, std::int64_t due_ns) {
+  Iterator nearest = last;
+  std::int64_t least_ns = std::numeric_limits<std::int64_t>::max();
+  for (Iterator at = first; at != last; ++at) {
+    const std::int64_t off_ns = std::abs(at->time_ns - due_ns);
+    if (off_ns >= least_ns || !same(*at, frame)) continue;
+    nearest = at;
+    least_ns = off_ns;
+  }
+  while (nearest != last && nearest != first && same(*std::prev(nearest), frame)) --nearest;
+  return nearest;
 }
 
 }  // namespace
@@ -33,18 +54,23 @@ bool RecordedTimes::read_one() {
   return false;
 }
 
+void RecordedTimes::read_all() {
+  while (read_one()) {
+  }
+}
+
 std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns) {
   if (ahead_.empty() && !read_one()) return std::nullopt;
   const std::int64_t front_ns = ahead_.front().time_ns;
-  const std::int64_t from_ns = due_ns ? *due_ns - reach_ns : front_ns;
-  const std::int64_t until_ns = due_ns ? std::max(*due_ns, front_ns) + reach_ns : front_ns + first_reach_ns;
+  const std::int64_t from_ns = due_ns ? *due_ns - late_ns : front_ns;
+  const std::int64_t until_ns = due_ns ? *due_ns + early_ns : front_ns + first_reach_ns;
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
-  // The first of equal frames: while a servo rests they are many, and which is which makes no difference.
-  const auto met = std::find_if(ahead_.begin(), ahead_.end(), [&](const can::Frame& recorded) {
-    return recorded.time_ns >= from_ns && recorded.time_ns <= until_ns && same(recorded, frame);
-  });
-  if (met == ahead_.end()) return std::nullopt;
+  const auto in_time = [](const can::Frame& recorded, std::int64_t time_ns) { return recorded.time_ns < time_ns; };
+  const auto first = std::lower_bound(ahead_.begin(), ahead_.end(), from_ns, in_time);
+  const auto last = std::lower_bound(first, ahead_.end(), until_ns + 1, in_time);
+  const auto met = nearest_same(first, last, frame, due_ns.value_or(front_ns));
+  if (met == last) return std::nullopt;
   const std::int64_t time_ns = met->time_ns;
   missed_ += met - ahead_.begin();
   ahead_.erase(ahead_.begin(), met + 1);
@@ -53,6 +79,31 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
 
 bool RecordedTimes::ended() {
   return ahead_.empty() && !read_one();
+}
+
+std::optional<std::string> recording_beside(const std::string& scans) {
+  const std::filesystem::path path(scans);
+  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(log, none)) return log.string();
+  }
+  return std::nullopt;
+}
+
+LogClock LogClock::of_the_bus() {
+  LogClock clock;
+  clock.offset_ns_ = 0;
+  return clock;
+}
+
+void LogClock::set_log_time(can::Frame& frame, std::int64_t line_ns) {
+  std::optional<std::int64_t> due_ns;
+  if (offset_ns_) due_ns = frame.time_ns + *offset_ns_;
+  const auto recorded_ns = recorded_ ? recorded_->time_of(frame, due_ns) : std::nullopt;
+  if (recorded_ && !recorded_ns) ++not_recorded_;
+  const std::int64_t time_ns = recorded_ns ? *recorded_ns : due_ns.value_or(line_ns);
+  offset_ns_ = time_ns - frame.time_ns;
+  frame.time_ns = time_ns;
 }
 
 }  // namespace curbline::tools

@@ -3,23 +3,16 @@
 #include <signal.h>
 
 #include <atomic>
-#include <charconv>
 #include <cstring>
 #include <iostream>
 
-#include "cola/session.hpp"
 #include "formats/bad_input.hpp"
-#include "lms200/session.hpp"
 #include "scanner/live_scanner.hpp"
-#include "scip2/session.hpp"
 
 namespace curbline::tools {
 namespace {
 
-using port::ByteStream, port::Milliseconds, scanner::LiveScanner;
-
-constexpr Milliseconds tcp_silence{5'000}, serial_silence{10'000};  // an LMS200 is first looked for at four speeds
-constexpr std::string_view scip2_scheme = "scip2:", cola_scheme = "cola:", lms200_scheme = "lms200:";
+using port::Milliseconds, scanner::LiveScanner;
 
 std::atomic<bool> interrupted = false;
 
@@ -62,14 +55,13 @@ class LogSource final : public ScanSource {
 
 class LiveSource final : public ScanSource {
  public:
-  template <typename Protocol>
-  LiveSource(const std::string& name, std::shared_ptr<Protocol> session, ByteStream stream, Milliseconds silence,
-             const LaserSettings& laser, std::optional<std::int64_t> log_time_ns)
+  LiveSource(const std::string& name, ScannerLink link, const LaserSettings& laser,
+             std::optional<std::int64_t> log_time_ns)
       : name_(name),
-        owner_(session),
-        session_(*session),
-        scanner_(session_, std::move(stream), {.reconnect = false, .silence = silence}),
-        silence_(silence),
+        owner_(link.session),
+        session_(*owner_),
+        scanner_(session_, std::move(link.stream), {.reconnect = false, .silence = link.silence}),
+        silence_(link.silence),
         laser_(laser),
         log_time_ns_(log_time_ns) {
     if (const int failed = scanner_.open(); failed != 0) {
@@ -121,7 +113,7 @@ class LiveSource final : public ScanSource {
   }
 
   std::string name_;
-  std::shared_ptr<void> owner_;
+  std::shared_ptr<scanner::Session> owner_;
   scanner::Session& session_;
   LiveScanner scanner_;
   Milliseconds silence_;
@@ -131,67 +123,18 @@ class LiveSource final : public ScanSource {
   InterruptWatch watch_;
 };
 
-struct Endpoint {
-  std::string host;
-  std::uint16_t port;
-};
-
-/// HOST, HOST:PORT, [IPV6] or [IPV6]:PORT behind the scheme.
-Endpoint parse_endpoint(const std::string& name, std::size_t scheme_size, std::uint16_t default_port) {
-  std::string host = name.substr(scheme_size), port;
-  const std::size_t bracket = host.find(']');
-  if (const std::size_t colon = host.rfind(':');
-      colon != std::string::npos && (bracket == std::string::npos || colon > bracket)) {
-    port = host.substr(colon + 1);
-    host.resize(colon);
-    const auto [end, failed] = std::from_chars(port.data(), port.data() + port.size(), default_port);
-    if (failed != std::errc{} || end != port.data() + port.size() || default_port == 0) {
-      throw BadInput(name + ": port is \"" + port + "\"; expected a number from 1 to 65535");
-    }
-  }
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  if (host.empty())
-    throw BadInput(name + ": no host; expected " + name.substr(0, scheme_size) + "HOST or " +
-                   name.substr(0, scheme_size) + "HOST:PORT");
-  return {host, default_port};
-}
-
-ByteStream tcp_stream(const std::string& name, const Endpoint& endpoint) {
-  std::string error;
-  auto stream = ByteStream::tcp(endpoint.host, endpoint.port, error);
-  if (!stream) throw BadInput(name + ": " + error + "; expected the name or address of a scanner");
-  return std::move(*stream);
-}
-
 }  // namespace
-
-bool is_scanner(const std::string& scans) {
-  return scans.starts_with(scip2_scheme) || scans.starts_with(cola_scheme) || scans.starts_with(lms200_scheme);
-}
 
 std::unique_ptr<ScanSource> open_scan_source(const std::string& scans, const LaserSettings& laser,
                                              std::optional<std::int64_t> log_time_ns) {
-  if (scans.starts_with(scip2_scheme)) {
-    auto stream = tcp_stream(scans, parse_endpoint(scans, scip2_scheme.size(), scip2::tcp_port));
-    return std::make_unique<LiveSource>(scans, std::make_shared<scip2::Session>(), std::move(stream), tcp_silence,
-                                        laser, log_time_ns);
+  if (!is_scanner(scans)) return std::make_unique<LogSource>(scans, laser);
+  ScannerLink link = scanner_link(scans, laser);
+  if (log_time_ns && !link.has_stamps) {
+    throw BadInput(scans +
+                   ": its telegrams bear no time that a log could be joined by; expected --can can:IFACE, or a robot "
+                   "without CAN and poses");
   }
-  if (scans.starts_with(cola_scheme)) {
-    auto stream = tcp_stream(scans, parse_endpoint(scans, cola_scheme.size(), cola::tcp_port));
-    return std::make_unique<LiveSource>(scans, std::make_shared<cola::Session>(), std::move(stream), tcp_silence, laser,
-                                        log_time_ns);
-  }
-  if (scans.starts_with(lms200_scheme)) {
-    if (log_time_ns)
-      throw BadInput(scans +
-                     ": its telegrams bear no time that a log could be joined by; expected --can can:IFACE, or a robot "
-                     "without CAN and poses");
-    auto session = std::make_shared<lms200::Session>(static_cast<std::size_t>(laser.beams));
-    return std::make_unique<LiveSource>(scans, std::move(session),
-                                        ByteStream::serial(scans.substr(lms200_scheme.size())), serial_silence, laser,
-                                        log_time_ns);
-  }
-  return std::make_unique<LogSource>(scans, laser);
+  return std::make_unique<LiveSource>(scans, std::move(link), laser, log_time_ns);
 }
 
 }  // namespace curbline::tools

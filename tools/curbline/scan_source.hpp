@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "curbline/scanner_link.hpp"
 #include "formats/carmen.hpp"
 #include "robot/robot.hpp"
 
@@ -30,9 +31,6 @@ class ScanSource {
   /// robot's.
   virtual std::optional<CarmenLine> next() = 0;
 };
-
-/// True for the live sources above.
-bool is_scanner(const std::string& scans);
 
 /// `log_time_ns`: a time in the logs that belong to the lines; nothing if there is none, or CAN is live. Throws
 /// BadInput if it cannot be opened.

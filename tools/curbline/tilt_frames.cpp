@@ -3,9 +3,9 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <filesystem>
 #include <span>
 
+#include "curbline/recorded_times.hpp"
 #include "formats/bad_input.hpp"
 #include "socketcan/socketcan.hpp"
 
@@ -30,15 +30,6 @@ class LogFrames final : public TiltFrames {
   bool ended_ = false;
 };
 
-std::optional<std::string> recording_beside(const std::string& scans) {
-  const std::filesystem::path path(scans);
-  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
-    std::error_code none;
-    if (std::filesystem::is_regular_file(log, none)) return log.string();
-  }
-  return std::nullopt;
-}
-
 class LiveFrames final : public TiltFrames {
  public:
   LiveFrames(const std::string& interface_name, const can::Signal& signal, std::optional<std::uint16_t> sync_id,
@@ -49,9 +40,9 @@ class LiveFrames final : public TiltFrames {
       throw BadInput(name_ + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
     }
     if (!scan_log) {
-      offset_ns_ = 0;
+      clock_ = LogClock::of_the_bus();
     } else if (const auto log = recording_beside(*scan_log)) {
-      recorded_.emplace(*log, signal, sync_id);
+      clock_ = LogClock(RecordedTimes(*log, signal, sync_id));
     }
   }
 
@@ -59,7 +50,7 @@ class LiveFrames final : public TiltFrames {
     if (taken_ == held_) receive();
     if (taken_ == held_) return std::nullopt;
     can::Frame frame = frames_[taken_++];
-    set_log_time(frame, line_ns);
+    clock_.set_log_time(frame, line_ns);
     return frame;
   }
 
@@ -70,7 +61,7 @@ class LiveFrames final : public TiltFrames {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), signal_.id, 16).ptr;
     const bool down = bus_.link() != socketcan::LinkState::up;
     throw BadInput(name_ + (down ? ": the interface is down or gone, and" : ":") + " no tilt frame for " +
-                   std::to_string((offset_ns_ ? silence_ms : first_silence_ms) / 1000) + " s; expected id 0x" +
+                   std::to_string((clock_.offset_ns() ? silence_ms : first_silence_ms) / 1000) + " s; expected id 0x" +
                    std::string(digits.data(), end) + " as the robot's description has it");
   }
 
@@ -82,9 +73,9 @@ class LiveFrames final : public TiltFrames {
     };
     remark(counters.frames_lost, "frames lost in this machine's receive buffer");
     remark(counters.times_down + counters.times_gone, "times the interface was down or gone");
-    if (recorded_) {
-      remark(recorded_->missed(), "tilt frames of " + recorded_->path() + " did not come");
-      remark(not_recorded_, "came that it does not have");
+    if (const RecordedTimes* recorded = clock_.recorded()) {
+      remark(recorded->missed(), "tilt frames of " + recorded->path() + " did not come");
+      remark(clock_.not_recorded(), "came that it does not have");
     }
     return text;
   }
@@ -92,9 +83,9 @@ class LiveFrames final : public TiltFrames {
  private:
   /// Waits for frames; a bus that has fallen silent is asked once more for each line, not waited for.
   void receive() {
-    ended_ = offset_ns_ && recorded_ && recorded_->ended();
+    ended_ = clock_.offset_ns() && clock_.recorded() != nullptr && clock_.recorded()->ended();
     taken_ = held_ = 0;
-    int left_ms = ended_ || silent_ ? 0 : offset_ns_ ? silence_ms : first_silence_ms;
+    int left_ms = ended_ || silent_ ? 0 : clock_.offset_ns() ? silence_ms : first_silence_ms;
     do {
       const auto before = std::chrono::steady_clock::now();
       held_ = static_cast<std::size_t>(bus_.receive(frames_, left_ms));
@@ -103,25 +94,13 @@ class LiveFrames final : public TiltFrames {
     silent_ = held_ == 0;
   }
 
-  void set_log_time(can::Frame& frame, std::int64_t line_ns) {
-    std::optional<std::int64_t> due_ns;
-    if (offset_ns_) due_ns = frame.time_ns + *offset_ns_;
-    const auto recorded_ns = recorded_ ? recorded_->time_of(frame, due_ns) : std::nullopt;
-    if (recorded_ && !recorded_ns) ++not_recorded_;
-    const std::int64_t time_ns = recorded_ns ? *recorded_ns : due_ns.value_or(line_ns);
-    offset_ns_ = time_ns - frame.time_ns;
-    frame.time_ns = time_ns;
-  }
-
   std::string name_;
   can::Signal signal_;
   socketcan::SocketCan bus_;
-  std::optional<RecordedTimes> recorded_;
-  std::optional<std::int64_t> offset_ns_;  ///< log time less bus time, since the first frame
+  LogClock clock_;
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::size_t taken_ = 0, held_ = 0;
   bool silent_ = false, ended_ = false;
-  long not_recorded_ = 0;
 };
 
 }  // namespace

@@ -10,7 +10,6 @@
 // A frame that is not in the log has the time of 2, the constant being that of the last one that is.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,33 +47,5 @@ std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const
 
 /// "vcan0" of "can:vcan0"; nothing if the text names a file.
 std::optional<std::string> live_interface(const std::string& can);
-
-/// The times at which the frames of a signal were recorded, given again to the same frames as they come in the same
-/// order.
-class RecordedTimes {
- public:
-  RecordedTimes(const std::string& log, const can::Signal& signal, std::optional<std::uint16_t> sync_id)
-      : log_(log), signal_(signal), sync_id_(sync_id) {}
-
-  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s).
-  /// Nothing if there is no such frame within a second of it. Recorded frames before it have been missed.
-  std::optional<std::int64_t> time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns);
-
-  /// Whether every recorded frame has been met or missed.
-  bool ended();
-  long missed() const { return missed_; }
-  const std::string& path() const { return log_.path(); }
-
- private:
-  bool read_one();
-  bool wanted(const can::Frame& frame) const;
-
-  CanLogReader log_;
-  can::Signal signal_;
-  std::optional<std::uint16_t> sync_id_;
-  std::deque<can::Frame> ahead_;  ///< read and not met yet
-  bool at_end_ = false;
-  long missed_ = 0;
-};
 
 }  // namespace curbline::tools

@@ -68,6 +68,12 @@ void check_signal(const TomlTable& table, const can::Signal& signal) {
   if (signal.id > (signal.extended ? 0x1FFFFFFFu : 0x7FFu)) {
     table.refuse("id", "is too large; expected 11 bits (0x7FF), or 29 and extended = true");
   }
+  can::Signal anywhere = signal;
+  anywhere.max_bytes = 64;
+  if (can::valid(anywhere) && !can::valid(signal)) {
+    table.refuse("max_bytes", "is " + std::to_string(signal.max_bytes) + "; expected " +
+                                  std::to_string(can::bytes_needed(signal)) + " or more, which the signal needs");
+  }
   if (!can::valid(signal)) table.refuse("start_bit", "does not fit; expected bits within the 64 bytes of a frame");
 }
 
@@ -85,6 +91,8 @@ void read_tilt_signal(TomlTable table, Robot& robot) {
   table.read("float", signal.is_float);
   table.read("scale", signal.scale, {-farthest_rad, farthest_rad});
   table.read("offset", signal.offset, {-farthest_rad, farthest_rad});
+  table.read_whole("min_bytes", signal.min_bytes, 0, 64);
+  table.read_whole("max_bytes", signal.max_bytes, 1, 64);
   read_multiplexor(table, signal);
   check_signal(table, signal);
   robot.tilt_sync_id = read_sync_id(table, signal);

@@ -1,0 +1,61 @@
+// Lines of text for everybody who connects to a socket: what the daemon gives its curbs out by.
+//
+// A client is never waited for. The kernel keeps up to send_buffer_bytes for each; one that is further behind is
+// dropped in the middle of a line, and may connect anew. What a client sends is not read. After open() nothing is
+// allocated. One context.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace curbline::daemon {
+
+/// Only grow.
+struct ServerCounters {
+  std::uint32_t accepted = 0, gone = 0;
+  std::uint32_t too_slow = 0;  ///< dropped
+  std::uint32_t refused = 0;   ///< more than max_clients
+};
+
+class CurbServer {
+ public:
+  static constexpr int max_clients = 16;
+  static constexpr int send_buffer_bytes = 256 << 10;
+
+  CurbServer() { clients_.fill(-1); }
+  ~CurbServer();
+  CurbServer(const CurbServer&) = delete;
+  CurbServer& operator=(const CurbServer&) = delete;
+
+  /// Listens at unix:PATH or tcp:HOST:PORT (port 0: any). A socket file that nobody listens to any more is replaced.
+  /// Throws BadInput.
+  void open(const std::string& address);
+
+  /// The address with the port that was given.
+  const std::string& address() const { return address_; }
+  int descriptor() const { return listener_; }  ///< for poll(2), POLLIN; then accept_client()
+
+  /// The next client that waits, for send_to(); -1 if there is none.
+  int accept_client();
+
+  void send_to(int client, std::string_view line);
+  void send(std::string_view line);
+
+  int clients() const { return connected_; }
+  const ServerCounters& counters() const { return counters_; }
+
+ private:
+  void listen_unix(const std::string& path);
+  void listen_tcp(const std::string& host, const std::string& port);
+  void drop(int client);
+
+  std::string address_, path_;  ///< path_: of the socket file, to be removed
+  int listener_ = -1;
+  int connected_ = 0;
+  std::array<int, max_clients> clients_{};  ///< descriptors, -1 where there is none
+  ServerCounters counters_{};
+};
+
+}  // namespace curbline::daemon

@@ -1,0 +1,292 @@
+#include "daemon.hpp"
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "can/curb_frames.hpp"
+#include "formats/bad_input.hpp"
+#include "heap_trap.hpp"
+
+namespace curbline::daemon {
+namespace {
+
+using tools::BadInput;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t status_period_ns = 1000 * ms, look_period_ns = 50 * ms;
+/// A line without tilt is of no use, but costs nothing: as long as a busy machine may hold a frame back.
+constexpr float longest_wait_s = 1.0f;
+/// A servo that a user should know of is silent for longer than a busy machine's hiccup.
+constexpr float least_stale_s = 0.5f;
+/// Of the way ahead, to each side: a robot of pavements and doors.
+constexpr float half_way_m = 0.4f;
+constexpr int most_batches = 16;  ///< of frames, before other things have their turn
+
+int signal_descriptor() {
+  sigset_t stop;
+  sigemptyset(&stop);
+  sigaddset(&stop, SIGTERM);
+  sigaddset(&stop, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &stop, nullptr);
+  return ::signalfd(-1, &stop, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+std::unique_ptr<tools::HostPipeline> pipeline_of(const tools::Robot& robot) {
+  if (!robot.pose.still) {
+    throw BadInput(robot.file +
+                   ": the robot drives, and there is no live source of poses yet; expected pose.still = true");
+  }
+  try {
+    return tools::make_host_pipeline(tools::pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+Daemon::Daemon(const tools::Robot& robot, const Options& options)
+    : tilt_settings_(robot.tilt),
+      scan_line_s_(1.0 / robot.scan_rate_hz),
+      signals_(signal_descriptor()),
+      pipeline_(pipeline_of(robot)) {
+  inbox_.init(robot.laser, robot.tilt, longest_wait_s);
+  open_scans(robot, options);
+  open_bus(robot, options);
+  tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
+  tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s));
+  server_.open(options.curbs);
+}
+
+Daemon::~Daemon() {
+  ::close(signals_);
+}
+
+void Daemon::open_scans(const tools::Robot& robot, const Options& options) {
+  if (tools::is_scanner(options.scans)) {
+    scanner_ = std::make_unique<ScannerThread>(tools::scanner_link(options.scans, robot.laser), robot.laser, inbox_);
+    return;
+  }
+  log_.emplace(options.scans, robot.laser);
+  if (robot.tilt.fixed) return;
+  std::optional<tools::RecordedTimes> recorded;
+  if (const auto can_log = tools::recording_beside(options.scans)) {
+    recorded.emplace(*can_log, robot.tilt_signal, robot.tilt_sync_id);
+    recorded->read_all();
+  }
+  clock_ = tools::LogClock(std::move(recorded));
+}
+
+void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
+  has_bus_ = !options.can.empty();
+  can_out_ = options.can_out;
+  if (!has_bus_) {
+    if (robot.tilt.fixed) return;
+    throw BadInput(robot.file + ": the laser nods; expected --can IFACE, or tilt.fixed = true");
+  }
+  const std::array filters{socketcan::filter_of(robot.tilt_signal),
+                           socketcan::Filter{robot.tilt_sync_id.value_or(0), CAN_SFF_MASK, false}};
+  const std::size_t wanted = robot.tilt.fixed ? 0 : robot.tilt_sync_id ? 2 : 1;
+  const auto status = bus_.open(options.can.c_str(), std::span(filters).first(wanted));
+  if (status != socketcan::Status::ok) {
+    throw BadInput(options.can + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
+  }
+}
+
+void Daemon::run() {
+  const scanner::Now now = scanner::host_now();
+  started_ns_ = now.steady_ns;
+  if (log_ && tilt_settings_.fixed) fixed_offset_ns_ = log_->front_ns() - now.host_ns;
+  if (scanner_) scanner_->start();
+  say("ready, curbs at ", server_.address());
+  service_.notify("READY=1");
+  heap_calls_before_ = heap_calls();
+  while (wait()) {
+    take_clients();
+    if (has_bus_) take_frames();
+    if (log_) take_log();
+    take_lines();
+    look_around();
+    if (log_ && log_->ended() && inbox_.empty()) {
+      say("the log of scan lines has ended");
+      break;
+    }
+  }
+  service_.notify("STOPPING=1");
+  give_status();
+}
+
+/// Until something is to do. False when a signal says stop.
+bool Daemon::wait() {
+  const bool listens = has_bus_ && bus_.link() == socketcan::LinkState::up;  // else its descriptor is ready for ever
+  std::array<pollfd, 4> ready{{{signals_, POLLIN, 0},
+                               {server_.descriptor(), POLLIN, 0},
+                               {inbox_.descriptor(), POLLIN, 0},
+                               {listens ? bus_.descriptor() : -1, POLLIN, 0}}};
+  ::poll(ready.data(), ready.size(), time_to_wait_ms());
+  if ((ready[2].revents & POLLIN) != 0) inbox_.quiet();
+  if ((ready[0].revents & POLLIN) == 0) return true;
+  signalfd_siginfo signal{};
+  if (::read(signals_, &signal, sizeof signal) != sizeof signal) return true;
+  say("stopped by ", signal.ssi_signo == SIGINT ? "SIGINT" : "SIGTERM");
+  return false;
+}
+
+int Daemon::time_to_wait_ms() const {
+  const scanner::Now now = scanner::host_now();
+  std::int64_t until_ns = next_look_ns_ - now.steady_ns;
+  if (const auto offset_ns = log_offset_ns(); log_ && offset_ns && !log_->ended()) {
+    until_ns = std::min(until_ns, log_->due_ns() - *offset_ns - now.host_ns);
+  }
+  return static_cast<int>(std::clamp<std::int64_t>((until_ns + ms - 1) / ms, 0, look_period_ns / ms));
+}
+
+void Daemon::take_clients() {
+  for (int client = 0; (client = server_.accept_client()) >= 0;) {
+    server_.send_to(client, status());
+    if (!curbs_given_.empty()) server_.send_to(client, curbs_given_);
+  }
+}
+
+void Daemon::take_frames() {
+  for (int batch = 0; batch < most_batches; ++batch) {
+    const int count = bus_.receive(frames_, 0);
+    for (int i = 0; i < count; ++i) take_frame(frames_[static_cast<std::size_t>(i)]);
+    if (count < static_cast<int>(frames_.size())) return;
+  }
+}
+
+void Daemon::take_frame(can::Frame frame) {
+  const std::int64_t received_ns = frame.time_ns;
+  clock_.set_log_time(frame, log_ && !log_->ended() ? log_->front_ns() : frame.time_ns);
+  const auto reading = tilt_decoder_.take(frame);
+  if (!reading || !pipeline_->add_tilt(*reading)) return;
+  newest_tilt_ns_ = reading->time_ns;
+  newest_frame_ns_ = received_ns;
+  newest_arrival_ns_ = scanner::host_now().steady_ns;
+  by_frame_ = true;
+  take_lines();
+  by_frame_ = false;
+}
+
+/// Log time less host time; nothing before it is known.
+std::optional<std::int64_t> Daemon::log_offset_ns() const {
+  return fixed_offset_ns_ ? fixed_offset_ns_ : clock_.offset_ns();
+}
+
+void Daemon::take_log() {
+  const auto offset_ns = log_offset_ns();
+  if (!offset_ns) return;
+  const scanner::Now now = scanner::host_now();
+  while (!log_->ended() && log_->due_ns() - *offset_ns <= now.host_ns) {
+    inbox_.push(log_->take(), now.steady_ns);
+    take_lines();
+  }
+}
+
+/// Those whose tilt is there, as the pipeline has its time; those that have waited too long.
+void Daemon::take_lines() {
+  for (;;) {
+    const auto offset_ns = static_cast<std::int64_t>(pipeline_->tilt_latency().latest_offset_s() * 1e9f);
+    const std::int64_t newest_ns = newest_tilt_ns_ == INT64_MIN ? INT64_MIN : newest_tilt_ns_ - offset_ns;
+    bool covered = false;
+    const auto line = inbox_.pop(newest_ns, scanner::host_now().steady_ns, covered);
+    if (!line) return;
+    take_line(*line);
+    if (covered && by_frame_) latency_.add(scanner::host_now().host_ns - newest_frame_ns_);
+  }
+}
+
+void Daemon::take_line(const ScanLine& line) {
+  const std::int64_t before_ns = scanner::host_now().steady_ns;
+  const Status status = pipeline_->take(line);
+  if (status == Status::ok) work_.add(scanner::host_now().steady_ns - before_ns);
+  last_line_ns_ = line.time_ns;
+  give_curbs(line.time_ns);
+  if (can_out_) send_curbs();
+}
+
+/// To the clients, if they are others than before.
+void Daemon::give_curbs(std::int64_t line_ns) {
+  auto& buffer = curbs_given_.data() == curb_texts_[0].data() ? curb_texts_[1] : curb_texts_[0];
+  std::uint32_t left_out = 0;
+  const std::string_view text = curbs_line(line_ns, pipeline_->curbs(), buffer, left_out);
+  const auto curbs_of = [](std::string_view line) { return line.substr(std::min(line.find('['), line.size())); };
+  if (curbs_of(text) == curbs_of(curbs_given_)) return;
+  curbs_left_out_ += left_out;
+  curbs_given_ = text;
+  server_.send(text);
+}
+
+/// The base frame is the map's: the robot stands.
+void Daemon::send_curbs() {
+  bus_.send(can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), half_way_m)));
+  const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
+  bus_.send(can::curb_status_frame({sent_counter_++, tilt_watch_.state(), curbs}));
+}
+
+/// What has happened, for the user; some times a second.
+void Daemon::look_around() {
+  const std::int64_t now_ns = scanner::host_now().steady_ns;
+  if (now_ns < next_look_ns_) return;
+  next_look_ns_ = now_ns + look_period_ns;
+  const TiltEvent tilt = tilt_settings_.fixed ? TiltEvent::none : tilt_watch_.update(newest_arrival_ns_, now_ns);
+  const Report status = make_report();
+  troubles_.tell(status, tilt, now_ns);
+  const std::string_view state = state_of(status);
+  if (state == told_state_ && now_ns < next_status_ns_) return;
+  if (state != told_state_) {
+    JournalLine text;
+    text << "STATUS=" << state;
+    service_.notify(text.text());
+  }
+  told_state_ = state;
+  next_status_ns_ = now_ns + status_period_ns;
+  service_.notify("WATCHDOG=1");
+  give_status();
+}
+
+void Daemon::give_status() {
+  server_.send(status());
+}
+
+std::string_view Daemon::status() {
+  return status_line(make_report(), status_text_);
+}
+
+Report Daemon::make_report() {
+  const scanner::Now now = scanner::host_now();
+  Report s;
+  s.time_ns = now.host_ns;
+  s.uptime_s = 1e-9 * static_cast<double>(now.steady_ns - started_ns_);
+  s.scan_line_s = scan_line_s_;
+  if (!tilt_settings_.fixed) {
+    tilt_counters_ = tilt_decoder_.counters();
+    s.tilt = &tilt_watch_;
+    s.tilt_frames = &tilt_counters_;
+    s.latency = &latency_;
+  }
+  if (has_bus_) s.bus = &bus_;
+  if (scanner_) {
+    scanner_state_ = scanner_->state();
+    s.scanner = &scanner_state_;
+  }
+  s.not_recorded = clock_.recorded() == nullptr ? 0 : static_cast<std::uint64_t>(clock_.not_recorded());
+  s.lines = inbox_.counters();
+  s.pipeline = pipeline_->counters();
+  s.curbs = pipeline_->curbs().size();
+  s.curbs_left_out = curbs_left_out_;
+  s.clients = server_.clients();
+  s.server = server_.counters();
+  s.work = &work_;
+  s.heap_calls_before = heap_calls_before_;
+  s.heap_calls_since = heap_calls() - heap_calls_before_;
+  return s;
+}
+
+}  // namespace curbline::daemon

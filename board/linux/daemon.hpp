@@ -1,0 +1,112 @@
+// The daemon: tilt frames of a CAN interface and scan lines of a log or scanner in, curbs out.
+//
+//   CAN --> SocketCan --> TiltDecoder --+--> Pipeline --> CurbServer (JSON lines), SocketCan (frames of the curb ahead)
+//   scanner's thread --> LineInbox -----+
+//
+// One thread does all but read the scanner. It waits in poll(2); nothing in it waits for a client, a scanner or a bus.
+// Everything is taken from the heap while it is made; heap_trap.hpp counts that nothing is later. A scan line is in the
+// pipeline as soon as a tilt reading covers its last beam, or after longest_wait_s without one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "can/tilt_decoder.hpp"
+#include "curb_server.hpp"
+#include "curbline/host_pipeline.hpp"
+#include "curbline/recorded_times.hpp"
+#include "curbline/tilt_watch.hpp"
+#include "latency_histogram.hpp"
+#include "line_inbox.hpp"
+#include "reports.hpp"
+#include "robot/robot.hpp"
+#include "scan_log.hpp"
+#include "scanner_thread.hpp"
+#include "service_manager.hpp"
+#include "socketcan/socketcan.hpp"
+#include "troubles.hpp"
+
+namespace curbline::daemon {
+
+struct Options {
+  std::string can;    ///< interface; empty for a robot with a fixed tilt
+  std::string scans;  ///< a log, or a scanner: curbline/scanner_link.hpp
+  std::string curbs;  ///< where clients connect: curb_server.hpp
+  bool can_out = false;
+};
+
+class Daemon {
+ public:
+  /// Opens everything. Blocks SIGTERM and SIGINT, which run() waits for. Throws BadInput.
+  Daemon(const tools::Robot& robot, const Options& options);
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
+
+  /// Until SIGTERM or SIGINT, or the end of a log of scan lines.
+  void run();
+
+  /// The status line as it is now. Valid until the next call.
+  std::string_view status();
+
+ private:
+  void open_bus(const tools::Robot& robot, const Options& options);
+  void open_scans(const tools::Robot& robot, const Options& options);
+
+  bool wait();
+  int time_to_wait_ms() const;
+  void take_clients();
+  void take_frames();
+  void take_frame(can::Frame frame);
+  void take_log();
+  void take_lines();
+  void take_line(const ScanLine& line);
+  void give_curbs(std::int64_t line_ns);
+  void send_curbs();
+  void look_around();
+  void give_status();
+  Report make_report();
+  std::optional<std::int64_t> log_offset_ns() const;
+
+  TiltSettings tilt_settings_;
+  double scan_line_s_;
+  int signals_ = -1;
+  CurbServer server_;
+  ServiceManager service_;
+  std::unique_ptr<tools::HostPipeline> pipeline_;
+  LineInbox inbox_;
+
+  bool has_bus_ = false, can_out_ = false;
+  socketcan::SocketCan bus_;
+  can::TiltDecoder tilt_decoder_;
+  can::TiltDecoderCounters tilt_counters_{};
+  TiltWatch tilt_watch_;
+  tools::LogClock clock_ = tools::LogClock::of_the_bus();
+  std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
+  std::int64_t newest_tilt_ns_ = INT64_MIN;                 ///< as the pipeline has it
+  std::int64_t newest_frame_ns_ = 0;                        ///< when the kernel received it
+  std::int64_t newest_arrival_ns_ = TiltWatch::no_reading;  ///< when it came here, steady
+  bool by_frame_ = false;                                   ///< lines are taken because a frame came
+
+  std::optional<ScanLog> log_;
+  std::optional<std::int64_t> fixed_offset_ns_;  ///< log time less host time, where no frame tells it
+
+  std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady
+  std::int64_t last_line_ns_ = 0;
+  std::uint8_t sent_counter_ = 0;
+  std::uint64_t heap_calls_before_ = 0;
+  std::uint32_t curbs_left_out_ = 0;
+  LatencyHistogram latency_, work_;
+  ScannerState scanner_state_;
+  Troubles troubles_;
+  std::string_view told_state_{};
+  std::array<std::array<char, 64 << 10>, 2> curb_texts_{};  ///< the line given out last, and the next
+  std::string_view curbs_given_{};
+  std::array<char, 32 << 10> status_text_{};
+  std::unique_ptr<ScannerThread> scanner_;  ///< last: its thread uses the inbox
+};
+
+}  // namespace curbline::daemon

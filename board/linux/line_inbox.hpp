@@ -1,0 +1,47 @@
+// Where scan lines wait for their tilt (curbline/line_queue.hpp), between the context that reads the scanner and the
+// one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750 kB, no heap.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+
+#include "curbline/line_queue.hpp"
+
+namespace curbline::daemon {
+
+/// Room for the lines of a second and more, at any scanner's rate up to 64 Hz, of as many beams as any scanner here
+/// has.
+inline constexpr Limits inbox_limits{.beams = 2881};
+inline constexpr int inbox_lines = 64;
+
+class LineInbox {
+ public:
+  LineInbox();
+  ~LineInbox();
+  LineInbox(const LineInbox&) = delete;
+  LineInbox& operator=(const LineInbox&) = delete;
+
+  void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
+
+  /// From the scanner's context. Makes descriptor() readable.
+  void push(const ScanLine& line, std::int64_t now_ns);
+
+  /// From the pipeline's: see LineQueue::pop(). `covered`: its tilt is there. The ranges are valid until the next
+  /// pop().
+  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, bool& covered);
+
+  bool empty() const;
+  LineQueueCounters counters() const;
+  int descriptor() const { return event_; }  ///< for poll(2), POLLIN; then quiet()
+  void quiet() const;
+
+ private:
+  mutable std::mutex mutex_;
+  LineQueue<inbox_limits, inbox_lines> queue_;
+  std::array<float, static_cast<std::size_t>(inbox_limits.beams)> ranges_m_{};
+  int event_ = -1;
+};
+
+}  // namespace curbline::daemon

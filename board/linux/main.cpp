@@ -1,0 +1,39 @@
+// curblined: curbs while the robot runs. README.md beside it is its manual.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <memory>
+
+#include "daemon.hpp"
+#include "robot/robot.hpp"
+
+int main(int argc, char** argv) {
+  using namespace curbline;
+  CLI::App app("Finds curbs while the robot runs: tilt angles from a CAN interface and scan lines in, curbs out.",
+               "curblined");
+  std::string robot;
+  daemon::Options options;
+  app.add_option("--robot", robot, "robot description")->required();
+  auto* can = app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0");
+  app.add_option("--scans", options.scans,
+                 "a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE, or a CARMEN log, played at its "
+                 "own times")
+      ->required();
+  app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")->required();
+  app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too: tools/robots/curb_ahead.dbc")
+      ->needs(can);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
+  try {
+    app.parse(argc, argv);
+    const auto running = std::make_unique<daemon::Daemon>(tools::read_robot(robot), options);
+    running->run();
+    std::cout << running->status() << std::flush;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

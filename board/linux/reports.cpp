@@ -1,0 +1,165 @@
+#include "reports.hpp"
+
+#include "json_line.hpp"
+
+namespace curbline::daemon {
+namespace {
+
+std::string_view word_of(TiltState state) {
+  return state == TiltState::ok ? "ok" : state == TiltState::stale ? "stale" : "never";
+}
+
+std::string_view word_of(socketcan::LinkState state) {
+  return state == socketcan::LinkState::up ? "up" : state == socketcan::LinkState::down ? "down" : "gone";
+}
+
+std::string_view word_of(socketcan::BusState state) {
+  using socketcan::BusState;
+  return state == BusState::active    ? "active"
+         : state == BusState::warning ? "warning"
+         : state == BusState::passive ? "passive"
+                                      : "off";
+}
+
+void put(JsonLine& json, std::string_view key, std::uint64_t count) {
+  json.key(key).whole(static_cast<std::int64_t>(count));
+}
+
+void put_tilt(JsonLine& json, const Report& s) {
+  json.key("tilt").open('{').key("state").text(word_of(s.tilt->state()));
+  put(json, "times_lost", s.tilt->times_lost());
+  json.key("longest_silence_s").metres(1e-9 * static_cast<double>(s.tilt->longest_silence_ns()));
+  put(json, "frames", s.tilt_frames->frames);
+  put(json, "readings", s.tilt_frames->readings);
+  put(json, "others", s.tilt_frames->others);
+  put(json, "malformed", s.tilt_frames->malformed);
+  put(json, "without_sync", s.tilt_frames->without_sync);
+  put(json, "dropped", s.pipeline.tilt_dropped);
+  json.close('}');
+}
+
+void put_bus(JsonLine& json, const socketcan::SocketCan& bus) {
+  const socketcan::Counters& c = bus.counters();
+  json.key("can").open('{').key("link").text(word_of(bus.link())).key("bus").text(word_of(bus.bus()));
+  put(json, "frames", c.frames);
+  put(json, "frames_lost", c.frames_lost);
+  put(json, "error_messages", c.error_messages);
+  put(json, "bus_errors", c.bus_errors);
+  put(json, "controller_overruns", c.controller_overruns);
+  put(json, "times_passive", c.times_passive);
+  put(json, "times_bus_off", c.times_bus_off);
+  put(json, "restarts", c.restarts);
+  put(json, "times_down", c.times_down);
+  put(json, "times_gone", c.times_gone);
+  put(json, "times_back", c.times_back);
+  put(json, "sent", c.sent);
+  put(json, "not_sent", c.not_sent);
+  json.close('}');
+}
+
+void put_lines(JsonLine& json, const Report& s) {
+  json.key("scans").open('{');
+  if (s.scanner != nullptr) {
+    json.key("connected").boolean(s.scanner->connected);
+    put(json, "connections", s.scanner->connections);
+    put(json, "damaged", s.scanner->damaged);
+    put(json, "other_beams", s.scanner->other_beams);
+  }
+  put(json, "lines", s.lines.pushed);
+  put(json, "covered", s.lines.covered);
+  put(json, "overdue", s.lines.overdue);
+  put(json, "crowded", s.lines.crowded);
+  put(json, "dropped", s.lines.dropped + s.lines.too_long);
+  json.close('}');
+}
+
+void put_pipeline(JsonLine& json, const Report& s) {
+  json.key("pipeline").open('{');
+  put(json, "lines", s.pipeline.lines);
+  put(json, "lines_dropped", s.pipeline.lines_dropped);
+  put(json, "beams_without_tilt", s.pipeline.beams_without_tilt);
+  put(json, "beams_extrapolated", s.pipeline.beams_extrapolated);
+  put(json, "curbs", s.curbs);
+  put(json, "curbs_left_out", s.curbs_left_out);
+  json.close('}');
+}
+
+void put_clients(JsonLine& json, const Report& s) {
+  json.key("clients").open('{');
+  put(json, "connected", static_cast<std::uint64_t>(s.clients));
+  put(json, "accepted", s.server.accepted);
+  put(json, "too_slow", s.server.too_slow);
+  put(json, "refused", s.server.refused);
+  json.close('}');
+}
+
+void put_histogram(JsonLine& json, std::string_view key, const LatencyHistogram& h) {
+  json.key(key).open('{');
+  put(json, "samples", h.samples());
+  put(json, "mean", h.mean_us());
+  put(json, "p50", h.quantile_us(500));
+  put(json, "p99", h.quantile_us(990));
+  put(json, "max", h.longest_us());
+  json.key("below").open('[');
+  for (std::size_t i = 0; i < LatencyHistogram::buckets; ++i) {
+    if (h.count(i) == 0) continue;
+    json.open('[').whole(static_cast<std::int64_t>(LatencyHistogram::end_us(i)));
+    json.whole(static_cast<std::int64_t>(h.count(i))).close(']');
+  }
+  json.close(']').close('}');
+}
+
+void put_curb(JsonLine& json, const Curb& c) {
+  json.open('{').key("x0_m").metres(c.x0_m).key("y0_m").metres(c.y0_m).key("x1_m").metres(c.x1_m);
+  json.key("y1_m").metres(c.y1_m).key("height_m").metres(c.height_m).key("height_sd_m").metres(c.height_sd_m);
+  json.key("probability").metres(c.probability).key("kind").text(to_string(c.kind)).close('}');
+}
+
+}  // namespace
+
+std::string_view state_of(const Report& s) {
+  if (s.bus != nullptr && s.bus->link() != socketcan::LinkState::up) return "can_down";
+  if (s.bus != nullptr && s.bus->bus() == socketcan::BusState::off) return "bus_off";
+  if (s.tilt != nullptr && s.tilt->state() != TiltState::ok) {
+    return s.tilt->state() == TiltState::stale ? "tilt_stale" : "tilt_missing";
+  }
+  if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
+  return "ok";
+}
+
+std::string_view status_line(const Report& s, std::span<char> buffer) {
+  JsonLine json(buffer);
+  json.open('{').key("status").open('{').key("state").text(state_of(s)).key("time_s").seconds(s.time_ns);
+  json.key("uptime_s").metres(s.uptime_s);
+  if (s.tilt != nullptr) put_tilt(json, s);
+  if (s.bus != nullptr) put_bus(json, *s.bus);
+  put_lines(json, s);
+  put_pipeline(json, s);
+  put_clients(json, s);
+  json.key("microseconds").open('{').key("scan_line").whole(static_cast<std::int64_t>(s.scan_line_s * 1e6));
+  if (s.latency != nullptr) put_histogram(json, "tilt_frame_to_curbs", *s.latency);
+  put_histogram(json, "pipeline", *s.work);
+  json.close('}');
+  json.key("heap_calls").open('{');
+  put(json, "before_start", s.heap_calls_before);
+  put(json, "since_start", s.heap_calls_since);
+  json.close('}').close('}').close('}');
+  return json.end();
+}
+
+std::string_view curbs_line(std::int64_t time_ns, std::span<const Curb> curbs, std::span<char> buffer,
+                            std::uint32_t& left_out) {
+  JsonLine json(buffer);
+  json.open('{').key("time_s").seconds(time_ns).key("curbs").open('[');
+  for (const Curb& curb : curbs) {
+    const JsonLine::Mark before = json.mark();
+    put_curb(json, curb);
+    if (!json.full()) continue;
+    json.cut(before);
+    ++left_out;
+  }
+  json.close(']').close('}');
+  return json.end();
+}
+
+}  // namespace curbline::daemon

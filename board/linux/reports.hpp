@@ -1,0 +1,49 @@
+// The two kinds of JSON lines that the daemon gives out; README.md describes them to those who read them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "can/tilt_decoder.hpp"
+#include "curb_server.hpp"
+#include "curbline/counters.hpp"
+#include "curbline/curb_tracer.hpp"
+#include "curbline/line_queue.hpp"
+#include "curbline/tilt_watch.hpp"
+#include "latency_histogram.hpp"
+#include "scanner_thread.hpp"
+#include "socketcan/socketcan.hpp"
+
+namespace curbline::daemon {
+
+/// What a status line is made of. What is nullptr the robot has not.
+struct Report {
+  std::int64_t time_ns = 0;
+  double uptime_s = 0, scan_line_s = 0;
+  const TiltWatch* tilt = nullptr;
+  const can::TiltDecoderCounters* tilt_frames = nullptr;
+  const socketcan::SocketCan* bus = nullptr;
+  const ScannerState* scanner = nullptr;
+  LineQueueCounters lines{};
+  Counters pipeline{};
+  std::size_t curbs = 0;
+  std::uint32_t curbs_left_out = 0;
+  int clients = 0;
+  ServerCounters server{};
+  const LatencyHistogram* latency = nullptr;  ///< tilt frame to curbs
+  const LatencyHistogram* work = nullptr;     ///< a scan line in the pipeline
+  std::uint64_t not_recorded = 0;             ///< tilt frames that the recording beside a log does not have
+  std::uint64_t heap_calls_before = 0, heap_calls_since = 0;
+};
+
+/// The worst that is the matter, in a word: ok, tilt_missing, tilt_stale, can_down, bus_off or scanner_lost.
+std::string_view state_of(const Report& status);
+
+std::string_view status_line(const Report& status, std::span<char> buffer);
+
+/// All curbs of the window after a scan line, in the order of the pipeline. `left_out` counts those that do not fit.
+std::string_view curbs_line(std::int64_t time_ns, std::span<const Curb> curbs, std::span<char> buffer,
+                            std::uint32_t& left_out);
+
+}  // namespace curbline::daemon

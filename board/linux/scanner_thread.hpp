@@ -1,0 +1,52 @@
+// A live scanner that is read by a thread of its own, since connecting waits: its lines go into the inbox. A scanner
+// that is lost is connected anew for as long as it takes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string_view>
+#include <thread>
+
+#include "curbline/scanner_link.hpp"
+#include "line_inbox.hpp"
+#include "scanner/live_scanner.hpp"
+
+namespace curbline::daemon {
+
+struct ScannerState {
+  bool connected = false;      ///< and has given a line since
+  int error = 0;               ///< errno of what last failed; 0: the scanner closed the connection
+  std::string_view problem{};  ///< what the scanner refused or reported; static text
+  std::uint64_t connections = 0;
+  std::uint64_t other_beams = 0;  ///< lines dropped: their beams are not those of the robot's laser
+  std::uint64_t damaged = 0;      ///< telegrams
+};
+
+class ScannerThread {
+ public:
+  ScannerThread(tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox);
+  /// Stops the scanner's stream and the thread; within the 2 s that an attempt to connect may take.
+  ~ScannerThread();
+  ScannerThread(const ScannerThread&) = delete;
+  ScannerThread& operator=(const ScannerThread&) = delete;
+
+  void start();
+  ScannerState state() const;
+
+ private:
+  void run();
+  void take_line();
+  bool has_beams_of_laser(const scanner::Line& line) const;
+
+  tools::ScannerLink link_;
+  scanner::LiveScanner scanner_;
+  LaserSettings laser_;
+  LineInbox& inbox_;
+  mutable std::mutex mutex_;
+  ScannerState state_{};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace curbline::daemon

@@ -1,0 +1,28 @@
+// Tells systemd how the service does (Type=notify): a datagram to the socket that it names in the environment. Nothing
+// happens where it is not there. Source: sd_notify(3).
+#pragma once
+
+#include <sys/un.h>
+
+#include <cstdint>
+#include <string_view>
+
+namespace curbline::daemon {
+
+class ServiceManager {
+ public:
+  ServiceManager();
+  ~ServiceManager();
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+
+  /// "READY=1", "WATCHDOG=1", "STOPPING=1", "STATUS=...". Does not wait, no heap.
+  void notify(std::string_view state) const;
+
+ private:
+  int socket_ = -1;
+  sockaddr_un address_{};
+  unsigned address_size_ = 0;
+};
+
+}  // namespace curbline::daemon

@@ -1,0 +1,86 @@
+#include "troubles.hpp"
+
+#include <cstring>
+
+namespace curbline::daemon {
+namespace {
+
+void tell_tilt(TiltEvent event) {
+  switch (event) {
+    case TiltEvent::none:
+      return;
+    case TiltEvent::missing:
+      return say("no tilt frame since the start");
+    case TiltEvent::first:
+      return say("the tilt servo reports");
+    case TiltEvent::lost:
+      return say("the tilt servo is silent");
+    case TiltEvent::recovered:
+      return say("the tilt servo reports again");
+  }
+}
+
+}  // namespace
+
+void Troubles::tell(const Report& status, TiltEvent tilt, std::int64_t now_ns) {
+  if (status.bus != nullptr) tell_link(*status.bus);
+  tell_tilt(tilt);
+  if (status.scanner != nullptr) tell_scanner(*status.scanner);
+  tell_counters(status, now_ns);
+}
+
+void Troubles::tell_link(const socketcan::SocketCan& bus) {
+  if (bus.link() == link_) return;
+  link_ = bus.link();
+  say(link_ == socketcan::LinkState::up     ? "the CAN interface is up again"
+      : link_ == socketcan::LinkState::down ? "the CAN interface is down"
+                                            : "the CAN interface is gone");
+}
+
+void Troubles::tell_scanner(const ScannerState& scanner) {
+  if (scanner.connected == scanner_connected_) {
+    if (scanner.connected || scanner_told_ || (scanner.error == 0 && scanner.problem.empty())) return;
+    scanner_told_ = true;  // it has not been there since the start
+  }
+  scanner_connected_ = scanner.connected;
+  if (scanner.connected) return say("the scanner gives scan lines");
+  scanner_told_ = true;
+  const char* const why = scanner.error == 0 ? "it closed the connection" : ::strerrordesc_np(scanner.error);
+  say("no scan lines from the scanner: ", std::string_view(why == nullptr ? "unknown error" : why),
+      scanner.problem.empty() ? "" : "; ", scanner.problem);
+}
+
+void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
+  const socketcan::Counters none{};
+  const socketcan::Counters& can = s.bus == nullptr ? none : s.bus->counters();
+  const can::TiltDecoderCounters frames = s.tilt_frames == nullptr ? can::TiltDecoderCounters{} : *s.tilt_frames;
+  const ScannerState scanner = s.scanner == nullptr ? ScannerState{} : *s.scanner;
+  struct Counted {
+    std::uint64_t count;
+    std::string_view what;
+  };
+  const std::array<Counted, 16> all{{
+      {can.times_bus_off, "the CAN controller has left the bus (bus-off)"},
+      {can.restarts, "the CAN controller is back on the bus"},
+      {can.bus_errors, "errors on the CAN bus"},
+      {can.times_passive, "the CAN controller is error-passive"},
+      {can.controller_overruns, "the CAN controller lost frames"},
+      {can.frames_lost, "CAN frames were lost in this machine's receive buffer"},
+      {can.not_sent, "frames of curbs could not be sent"},
+      {frames.malformed, "damaged tilt frames"},
+      {frames.without_sync, "tilt frames whose SYNC was not seen"},
+      {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
+      {s.not_recorded, "tilt frames that the recording does not have"},
+      {std::uint64_t{s.lines.dropped} + s.lines.too_long + s.lines.crowded,
+       "scan lines came faster than they are taken"},
+      {scanner.other_beams, "scan lines whose beams are not those of the robot's laser, dropped"},
+      {scanner.damaged, "damaged telegrams of the scanner"},
+      {s.server.too_slow, "a client was too slow, and dropped"},
+      {s.server.refused, "more clients than there is room for"},
+  }};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (counted_[i].is_news(all[i].count, now_ns)) say(all[i].what, " (", all[i].count, " so far)");
+  }
+}
+
+}  // namespace curbline::daemon

@@ -1,0 +1,27 @@
+// What goes wrong, and what is well again, to the journal: each thing when it begins, not while it goes on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "journal.hpp"
+#include "reports.hpp"
+
+namespace curbline::daemon {
+
+class Troubles {
+ public:
+  /// Compares with what was told. Call some times a second. `now_ns`: of any clock.
+  void tell(const Report& status, TiltEvent tilt, std::int64_t now_ns);
+
+ private:
+  void tell_link(const socketcan::SocketCan& bus);
+  void tell_scanner(const ScannerState& scanner);
+  void tell_counters(const Report& status, std::int64_t now_ns);
+
+  socketcan::LinkState link_ = socketcan::LinkState::up;
+  bool scanner_connected_ = false, scanner_told_ = false;
+  std::array<Trouble, 16> counted_{};
+};
+
+}  // namespace curbline::daemon

@@ -1,0 +1,276 @@
+// The daemon on the kernel's CAN: the curbs of the same logs, and what a bus may do to it.
+#include <linux/can/error.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "can/curb_frames.hpp"
+#include "formats/can_log.hpp"
+#include "formats/csv.hpp"
+#include "service.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using socketcan::SocketCan;
+
+const Recording& recording() {
+  static const Recording made("curb_above_below", "utm30lx", {"--duration", "6"});
+  return made;
+}
+
+Words daemon_words(const Words& more = {}) {
+  return Words{
+             "--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", recording().path("robot.toml")} +
+         more;
+}
+
+/// Of an undisturbed run.
+const std::vector<nlohmann::json>& undisturbed() {
+  static const std::vector<nlohmann::json> curbs = replayed_curbs(recording().replay());
+  return curbs;
+}
+
+nlohmann::json undisturbed_end() {
+  const Outcome outcome = curbline(recording().replay() + Words{"--curbs", recording().path("curbs.csv")});
+  REQUIRE(outcome.status == 0);
+  nlohmann::json curbs = nlohmann::json::array();
+  for (const MapCurb& c : read_curbs(recording().path("curbs.csv"))) {
+    curbs.push_back({{"x0_m", c.x0_m},
+                     {"y0_m", c.y0_m},
+                     {"x1_m", c.x1_m},
+                     {"y1_m", c.y1_m},
+                     {"height_m", c.height_m},
+                     {"kind", c.kind}});
+  }
+  REQUIRE(!curbs.empty());
+  return curbs;
+}
+
+/// Of a run that ended by itself, well: the last status.
+nlohmann::json status_of(const Outcome& outcome) {
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json status = nlohmann::json::parse(outcome.out).at("status");
+  CHECK(status.at("heap_calls").at("before_start") > 100);  // the trap sees
+  CHECK(status.at("heap_calls").at("since_start") == 0);
+  return status;
+}
+
+void send_well(SocketCan& bus, const can::Frame& frame) {
+  REQUIRE(bus.send(frame) == socketcan::Status::ok);
+}
+
+/// Plays the recording's log as `send` has it; gives the client's lines, and how it ended.
+struct Drive {
+  std::vector<nlohmann::json> lines;
+  Outcome outcome;
+};
+Drive drive(const Send& send) {
+  Service service(daemon_words());
+  play(recording().path("can.log"), send);
+  Drive drive;
+  drive.outcome = service.end();
+  drive.lines = service.lines();
+  return drive;
+}
+
+TEST_CASE("daemon: beside canplayer it gives the curbs of replay, every one, and nothing is taken from the heap",
+          "[daemon]") {
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
+  Service service(daemon_words({"--can-out"}));
+  CHECK(std::system(("canplayer -I '" + recording().path("can.log") + "' vcan0=can0").c_str()) == 0);
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
+  check_same(distinct_curbs(service.lines()), undisturbed());
+  CHECK(undisturbed().size() > 20);
+  const auto scan_lines = status.at("pipeline").at("lines").get<int>();
+  CHECK(scan_lines == 240);
+  CHECK(status.at("pipeline").at("lines_dropped") == 0);
+  CHECK(status.at("scans").at("overdue") == 0);
+  CHECK(status.at("microseconds").at("pipeline").at("samples") == scan_lines);
+  CHECK(status.at("microseconds").at("tilt_frame_to_curbs").at("samples") > 0);
+  CHECK(times_said(outcome.err, "ready") == 1);
+  CHECK_FALSE(std::filesystem::exists(service.socket()));
+
+  const auto frames = socketcan::testing::receive_all(receiver);
+  REQUIRE(frames.size() == 2u * static_cast<unsigned>(scan_lines));
+  std::optional<can::CurbAhead> ahead;
+  can::CurbStatus last;
+  REQUIRE(can::read_curb_ahead(frames[frames.size() - 2], ahead));
+  REQUIRE(can::read_curb_status(frames.back(), last));
+  CHECK(last.counter == (scan_lines - 1) % 256);
+  CHECK(last.curbs == last_curbs(service.lines()).size());
+  REQUIRE(ahead);
+  CHECK(ahead->kind == CurbKind::step_down);
+  CHECK(double{ahead->distance_m} == Approx(1.1).margin(0.05));
+  CHECK(double{ahead->height_m} == Approx(-0.12).margin(0.01));
+}
+
+TEST_CASE("daemon: a flood of other ids, requests and error messages changes no curb, and errors are told once",
+          "[daemon]") {
+  const Drive flooded = drive([](SocketCan& bus, const can::Frame& frame, double) {
+    for (std::uint32_t i = 0; i < 16; ++i) send_well(bus, socketcan::testing::frame_of(0x200 + i, i % 2 == 0));
+    can::Frame request = frame;
+    request.remote = true;
+    send_well(bus, request);
+    can::Frame twin = frame;
+    twin.extended = true;
+    send_well(bus, twin);
+    can_frame error{};
+    error.can_id = CAN_ERR_FLAG | CAN_ERR_PROT | CAN_ERR_BUSERROR;
+    error.len = CAN_ERR_DLC;
+    for (int i = 0; i < 4; ++i) REQUIRE(::write(bus.descriptor(), &error, sizeof error) == sizeof error);
+    send_well(bus, frame);
+  });
+  const nlohmann::json status = status_of(flooded.outcome);
+  check_same(distinct_curbs(flooded.lines), undisturbed());
+  CHECK(status.at("can").at("bus_errors") == 4 * status.at("can").at("frames").get<int>());
+  CHECK(status.at("tilt").at("others") == 0);  // the kernel keeps them away
+  CHECK(times_said(flooded.outcome.err, "errors on the CAN bus") == 1);
+}
+
+TEST_CASE(
+    "daemon: an interface that is cut and comes back is told once, and the curbs are those of the frames that came",
+    "[daemon]") {
+  std::ofstream came(recording().path("came.log"));
+  bool down = false;
+  const Drive cut = drive([&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    const bool wanted_down = since_s > 2.0 && since_s < 2.4;
+    if (wanted_down != down) REQUIRE(vcan::set_link("vcan0", !wanted_down) == 0);
+    down = wanted_down;
+    if (bus.send(frame) == socketcan::Status::ok) write_can_frame(came, frame, "can0");
+  });
+  came.close();
+  const nlohmann::json status = status_of(cut.outcome);
+  CHECK(status.at("can").at("times_down") == 1);
+  CHECK(status.at("can").at("times_back") == 1);
+  CHECK(times_said(cut.outcome.err, "the CAN interface is down") == 1);
+  CHECK(times_said(cut.outcome.err, "the CAN interface is up again") == 1);
+  check_same(distinct_curbs(cut.lines), replayed_curbs(recording().replay("can", recording().path("came.log"))));
+  check_alike(last_curbs(cut.lines), undisturbed_end());
+}
+
+TEST_CASE("daemon: a servo that falls silent is an error state, told once, on the socket and on CAN, until it reports",
+          "[daemon]") {
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_status_id, 0x7FF, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
+  Service service(daemon_words({"--can-out"}));
+  const auto state_is = [](const char* state) {
+    return [state](const nlohmann::json& line) {
+      return line.contains("status") && line.at("status").at("state") == state;
+    };
+  };
+  CHECK(service.gives(state_is("tilt_missing")));
+  CHECK(service.says("no tilt frame since the start"));
+  play(recording().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    if (since_s > 1.0 && since_s < 2.8) return;
+    send_well(bus, frame);
+  });
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
+  CHECK(service.gives(state_is("tilt_stale")));
+  CHECK(status.at("tilt").at("times_lost") == 1);
+  CHECK(status.at("tilt").at("state") == "ok");
+  CHECK(status.at("tilt").at("longest_silence_s") > 1.7);
+  CHECK(status.at("pipeline").at("lines_dropped") > 30);
+  CHECK(times_said(outcome.err, "no tilt frame since the start") == 1);
+  CHECK(times_said(outcome.err, "the tilt servo is silent") == 1);
+  CHECK(times_said(outcome.err, "the tilt servo reports again") == 1);
+  std::set<TiltState> sent;
+  for (const can::Frame& frame : socketcan::testing::receive_all(receiver)) {
+    can::CurbStatus read;
+    REQUIRE(can::read_curb_status(frame, read));
+    sent.insert(read.tilt);
+  }
+  CHECK(sent.count(TiltState::stale) == 1);
+  check_alike(last_curbs(service.lines()), undisturbed_end());
+}
+
+TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are survived, told once, and forgotten",
+          "[daemon]") {
+  int number = 0, cut_short = 0;
+  std::optional<can::Frame> held;
+  const Drive disturbed = drive([&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    ++number;
+    if (since_s > 1.5) return send_well(bus, frame);
+    can::Frame changed = frame;
+    switch (number % 12) {
+      case 1:  // twice
+        send_well(bus, frame);
+        break;
+      case 3:  // after the next
+        held = frame;
+        return;
+      case 4:
+        send_well(bus, frame);
+        changed = held.value_or(frame);
+        break;
+      case 6:  // late
+        std::this_thread::sleep_for(25ms);
+        break;
+      case 8:  // a bit of the angle's lowest byte
+        changed.data[2] ^= 0x10;
+        break;
+      case 10:
+        changed.length = 4;
+        ++cut_short;
+        break;
+      default:
+        break;
+    }
+    send_well(bus, changed);
+  });
+  const nlohmann::json status = status_of(disturbed.outcome);
+  CHECK(status.at("tilt").at("malformed") == cut_short);
+  CHECK(status.at("scans").at("lines") == 240);
+  CHECK(times_said(disturbed.outcome.err, "damaged tilt frames") == 1);
+  CHECK(times_said(disturbed.outcome.err, "tilt frames that the recording does not have") == 1);
+  check_alike(last_curbs(disturbed.lines), undisturbed_end());
+}
+
+TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus on the host's clock", "[daemon]") {
+  const std::string command = CURBLINE_SCANNER " scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
+  std::FILE* const scanner = ::popen(command.c_str(), "r");
+  std::array<char, 80> address{};
+  REQUIRE(std::fgets(address.data(), address.size(), scanner) != nullptr);
+  const std::string scans = lines_of(address.data()).front();
+  Service service({"--can", "vcan0", "--scans", scans, "--robot", recording().path("robot.toml")});
+  CHECK(service.says("the scanner gives scan lines"));
+  play(recording().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  CHECK(service.says("no scan lines from the scanner"));  // its feed has ended
+  service.signal(SIGINT);
+  const Outcome outcome = service.end();
+  ::pclose(scanner);
+  const nlohmann::json status = status_of(outcome);
+  CHECK(status.at("pipeline").at("lines") > 150);
+  CHECK(status.at("scans").at("other_beams") == 0);
+  CHECK(status.at("scans").at("damaged") == 0);
+  CHECK(times_said(outcome.err, "stopped by SIGINT") == 1);
+}
+
+TEST_CASE("daemon: a scanner is waited for, an interface that is removed too; SIGTERM ends it cleanly", "[daemon]") {
+  const socketcan::testing::Interface other("vcan8");
+  Service service({"--can", "vcan8", "--scans", "scip2:127.0.0.1:7", "--robot", recording().path("robot.toml")});
+  CHECK(service.says("no scan lines from the scanner"));
+  REQUIRE(vcan::remove_link("vcan8") == 0);
+  CHECK(service.says("the CAN interface is gone"));
+  REQUIRE(vcan::make_vcan("vcan8") == 0);
+  CHECK(service.says("the CAN interface is up again"));
+  service.signal(SIGTERM);
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
+  CHECK(status.at("state") == "tilt_missing");
+  CHECK(status.at("scans").at("connected") == false);
+  CHECK(times_said(outcome.err, "stopped by SIGTERM") == 1);
+  CHECK(times_said(outcome.err, "no scan lines from the scanner") == 1);
+  CHECK_FALSE(std::filesystem::exists(service.socket()));
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

@@ -1,0 +1,134 @@
+// Clients come and go and sleep; nobody waits for them.
+#include "curb_server.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <chrono>
+
+#include "heap_trap.hpp"
+#include "tools/formats_support.hpp"
+
+namespace curbline::daemon {
+namespace {
+
+using tools::testing::TemporaryDirectory;
+
+int connect_unix(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::copy(path.begin(), path.end(), address.sun_path);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  return socket;
+}
+
+std::string read_some(int socket) {
+  std::array<char, 256> text{};
+  const ssize_t got = ::recv(socket, text.data(), text.size(), 0);
+  return {text.data(), got > 0 ? static_cast<std::size_t>(got) : 0};
+}
+
+TEST_CASE("curb server: every client reads every line, over TCP as over a Unix socket") {
+  CurbServer server;
+  server.open("tcp:127.0.0.1:0");
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(server.address().substr(14))));
+  const int client = ::socket(AF_INET, SOCK_STREAM, 0);
+  REQUIRE(::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  int number = -1;
+  for (int i = 0; i < 1000 && number < 0; ++i) number = server.accept_client();
+  REQUIRE(number >= 0);
+  server.send_to(number, "hello\n");
+  CHECK(read_some(client) == "hello\n");
+  server.send("line\n");
+  CHECK(read_some(client) == "line\n");
+  ::close(client);
+}
+
+TEST_CASE("curb server: a client that does not read is dropped, without a wait, and the others read on") {
+  const TemporaryDirectory directory;
+  CurbServer server;
+  server.open("unix:" + directory.path("s"));
+  const int sleeper = connect_unix(directory.path("s")), reader = connect_unix(directory.path("s"));
+  REQUIRE(server.accept_client() >= 0);
+  REQUIRE(server.accept_client() >= 0);
+  CHECK(server.accept_client() == -1);
+  const std::string line(200, 'x');
+  const std::uint64_t heap_before = heap_calls();
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20'000 && server.clients() == 2; ++i) {
+    server.send(line);
+    std::array<char, 200> text{};
+    if (::recv(reader, text.data(), text.size(), MSG_WAITALL) != 200) break;
+  }
+  const bool at_once = std::chrono::steady_clock::now() - start < std::chrono::seconds(5);
+  const std::uint64_t heap_asked = heap_calls() - heap_before;
+  CHECK(at_once);
+  CHECK(heap_asked == 0);
+  CHECK(server.clients() == 1);
+  CHECK(server.counters().too_slow == 1);
+  server.send("on\n");
+  CHECK(read_some(reader) == "on\n");
+  ::close(sleeper);
+  ::close(reader);
+}
+
+TEST_CASE("curb server: a client that has gone is forgotten, one too many refused") {
+  const TemporaryDirectory directory;
+  CurbServer server;
+  server.open("unix:" + directory.path("s"));
+  std::vector<int> clients;
+  for (int i = 0; i < CurbServer::max_clients; ++i) {
+    clients.push_back(connect_unix(directory.path("s")));
+    REQUIRE(server.accept_client() == i);
+  }
+  const int one_more = connect_unix(directory.path("s"));
+  CHECK(server.accept_client() == -1);
+  CHECK(server.counters().refused == 1);
+  CHECK(read_some(one_more).empty());
+  for (const int client : clients) ::close(client);
+  server.send("line\n");
+  CHECK(server.clients() == 0);
+  CHECK(server.counters().gone == CurbServer::max_clients);
+  ::close(one_more);
+}
+
+TEST_CASE("curb server: a socket file that was left over is replaced, one in use or another file is not") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("s"), address = "unix:" + path;
+  {
+    CurbServer first;
+    first.open(address);
+    CurbServer second;
+    CHECK_THROWS_WITH(second.open(address), Catch::Contains("not in use"));
+  }
+  CHECK_FALSE(std::filesystem::exists(path));
+  const int left_over = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  std::copy(path.begin(), path.end(), name.sun_path);
+  REQUIRE(::bind(left_over, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0);
+  ::close(left_over);
+  CurbServer third;
+  third.open(address);
+  CurbServer fourth;
+  CHECK_THROWS_WITH(fourth.open("unix:" + directory.write("file", "text")), Catch::Contains("expected a path"));
+  CHECK(std::filesystem::exists(directory.path("file")));
+}
+
+TEST_CASE("curb server: an address that makes no sense is refused with what was expected") {
+  for (const char* address : {"", "unix:", "tcp:", "tcp:7000", "tcp:127.0.0.1:", "udp:127.0.0.1:7000"}) {
+    CurbServer server;
+    CHECK_THROWS_WITH(server.open(address), Catch::Contains("expected unix:PATH or tcp:HOST:PORT"));
+  }
+  CurbServer server;
+  CHECK_THROWS_WITH(server.open("tcp:192.0.2.1:7000"), Catch::Contains("expected a free port"));
+}
+
+}  // namespace
+}  // namespace curbline::daemon

@@ -1,0 +1,52 @@
+// What curblined refuses: bad input with one line and status 1, wrong usage with status 2.
+#include "program.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+const std::string nodding = shipped_robot("utm30lx");
+
+/// A scan line of the robot's laser.
+std::string scan_log(const TemporaryDirectory& directory) {
+  std::string line = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081";
+  for (int i = 0; i < 1081; ++i) line += " 5.000";
+  return directory.write("scans.carmen", line + " 0 1700000000.000000 host 1700000000.000000\n");
+}
+
+TEST_CASE("curblined: what it cannot run with is refused with one line") {
+  const TemporaryDirectory directory;
+  const std::string scans = scan_log(directory), curbs = "unix:" + directory.path("curbs");
+  const Words words{"--scans", scans, "--curbs", curbs, "--robot"};
+  check_refused(curbline(words + Words{nodding}), nodding + ": ", "the laser nods");
+  check_refused(curbline(words + Words{shipped_robot("fixed_tilt")}), shipped_robot("fixed_tilt") + ": ",
+                "the robot drives");
+  check_refused(curbline(words + Words{nodding, "--can", "none7"}), "none7: ", "expected a CAN interface");
+  check_refused(curbline({"--robot", nodding, "--can", "none7", "--curbs", curbs, "--scans", "none.carmen"}),
+                "none.carmen: ", "");
+  check_refused(curbline({"--robot", nodding, "--can", "none7", "--curbs", curbs, "--scans", "scip2:"}),
+                "scip2:", "no host");
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
+  check_refused(curbline({"--robot", fixed, "--scans", scans, "--curbs", "here"}), "here: ", "unix:PATH");
+}
+
+TEST_CASE("curblined: wrong usage is told") {
+  check_wrong_usage(curbline({"--robot", nodding}), "--scans");
+  check_wrong_usage(curbline({"--robot", nodding, "--scans", "a", "--curbs", "b", "--can-out"}), "--can");
+}
+
+TEST_CASE("curblined: a laser at a fixed tilt needs no CAN, and the end of its log is the end") {
+  const TemporaryDirectory directory;
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
+  const Outcome outcome =
+      curbline({"--robot", fixed, "--scans", scan_log(directory), "--curbs", "unix:" + directory.path("curbs")});
+  INFO("standard error: " << outcome.err);
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json status = nlohmann::json::parse(outcome.out).at("status");
+  CHECK(status.at("state") == "ok");
+  CHECK(status.at("pipeline").at("lines") == 1);
+  CHECK(status.at("heap_calls").at("since_start") == 0);
+  CHECK_FALSE(status.contains("tilt"));
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

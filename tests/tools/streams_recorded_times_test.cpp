@@ -1,0 +1,79 @@
+// Recorded times for frames that come over a bus again.
+#include "curbline/recorded_times.hpp"
+
+#include "can/servo_presets.hpp"
+#include "formats_support.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000, t0 = 1'700'000'000'000'000'000, bus0 = 1'800'000'000'000'000'000;
+
+can::Frame position(std::int64_t time_ns, double angle_rad) {
+  can::Frame frame;
+  can::encode(can::cia402_position(1), angle_rad, frame);
+  frame.time_ns = time_ns;
+  return frame;
+}
+
+/// A frame each 10 ms, of the angle that `angle_of` has for its number.
+template <typename AngleOf>
+LogClock clock_of(const TemporaryDirectory& directory, int frames, AngleOf angle_of) {
+  std::ostringstream log;
+  for (int k = 0; k < frames; ++k) write_can_frame(log, position(t0 + 10 * ms * k, angle_of(k)), "can0");
+  RecordedTimes recorded(directory.write("can.log", log.str()), can::cia402_position(1), std::nullopt);
+  return LogClock(std::move(recorded));
+}
+
+/// Number of the recorded frame whose time one is given that comes `late_ms` after its own.
+template <typename AngleOf>
+double given(LogClock& clock, int k, AngleOf angle_of, int late_ms = 0) {
+  can::Frame frame = position(bus0 + 10 * ms * k + late_ms * ms, angle_of(k));
+  clock.set_log_time(frame, t0);
+  return static_cast<double>(frame.time_ns - t0) / (10.0 * ms);
+}
+
+TEST_CASE("recorded times: after a gap in which the servo turned, a frame is not taken for one of the way before") {
+  const TemporaryDirectory directory;
+  const auto nods = [](int k) { return 0.01 * std::abs(k - 30); };  // 45 is 15 again
+  LogClock clock = clock_of(directory, 100, nods);
+  for (int k = 0; k < 10; ++k) REQUIRE(given(clock, k, nods) == k);
+  for (int k = 45; k < 100; ++k) REQUIRE(given(clock, k, nods) == k);
+  CHECK(clock.not_recorded() == 0);
+  CHECK(clock.recorded()->missed() == 35);
+}
+
+TEST_CASE("recorded times: a frame that comes twice is not taken for the one of its angle on the way back") {
+  const TemporaryDirectory directory;
+  const auto nods = [](int k) { return 0.01 * std::abs(k - 60); };
+  LogClock clock = clock_of(directory, 120, nods);
+  for (int k = 0; k < 120; ++k) {
+    REQUIRE(given(clock, k, nods) == k);
+    if (k == 20) CHECK(given(clock, k, nods, 1) == Approx(20.1));  // 100 is 20 again
+  }
+  CHECK(clock.not_recorded() == 1);
+  CHECK(clock.recorded()->missed() == 0);
+}
+
+TEST_CASE("recorded times: while a servo rests its equal frames are met one by one, however late they come") {
+  const TemporaryDirectory directory;
+  const auto rests = [](int) { return 0.3; };
+  LogClock clock = clock_of(directory, 100, rests);
+  for (int k = 0; k < 100; ++k) REQUIRE(given(clock, k, rests, k % 7 * 6) == k);
+  CHECK(clock.recorded()->missed() == 0);
+}
+
+TEST_CASE("recorded times: a frame that was not recorded has the time of its arrival, and the next its own") {
+  const TemporaryDirectory directory;
+  const auto rises = [](int k) { return 0.001 * k; };
+  LogClock clock = clock_of(directory, 50, rises);
+  REQUIRE(given(clock, 0, rises) == 0);
+  can::Frame other = position(bus0 + 14 * ms, 0.7);
+  clock.set_log_time(other, t0);
+  CHECK(other.time_ns == t0 + 14 * ms);
+  CHECK(clock.not_recorded() == 1);
+  CHECK(given(clock, 2, rises) == 2);
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing

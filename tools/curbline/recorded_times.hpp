@@ -1,0 +1,74 @@
+// Log time for frames of a live bus on which a recording is played again: what replay and the daemon give tilt frames
+// whose scan lines come from a log. tilt_frames.hpp says why.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "can/signal.hpp"
+#include "formats/can_log.hpp"
+
+namespace curbline::tools {
+
+/// The times at which the frames of a signal were recorded, given again to the same frames as they come in the same
+/// order.
+class RecordedTimes {
+ public:
+  RecordedTimes(const std::string& log, const can::Signal& signal, std::optional<std::uint16_t> sync_id)
+      : log_(log), signal_(signal), sync_id_(sync_id) {}
+
+  /// Reads the whole log now; nothing is allocated after that.
+  void read_all();
+
+  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s).
+  /// Nothing if there is none that
+  /// is a second late or 0.2 s early at most. Recorded frames before it have been missed.
+  std::optional<std::int64_t> time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns);
+
+  /// Whether every recorded frame has been met or missed.
+  bool ended();
+  long missed() const { return missed_; }
+  const std::string& path() const { return log_.path(); }
+
+ private:
+  bool read_one();
+  bool wanted(const can::Frame& frame) const;
+
+  CanLogReader log_;
+  can::Signal signal_;
+  std::optional<std::uint16_t> sync_id_;
+  std::deque<can::Frame> ahead_;  ///< read and not met yet
+  bool at_end_ = false;
+  long missed_ = 0;
+};
+
+/// The CAN log of the recording that a scan log belongs to: NAME.candump beside NAME.carmen, or can.log.
+std::optional<std::string> recording_beside(const std::string& scans);
+
+/// The log's time by the bus's: recorded times where there are some, else a constant offset from the first frame on,
+/// which came at the time of the first scan line.
+class LogClock {
+ public:
+  explicit LogClock(std::optional<RecordedTimes> recorded = std::nullopt) : recorded_(std::move(recorded)) {}
+
+  /// Frames keep the bus's time.
+  static LogClock of_the_bus();
+
+  /// Gives a frame its time in the log. `line_ns` is that of the scan line that waits for it.
+  void set_log_time(can::Frame& frame, std::int64_t line_ns);
+
+  /// Log time less bus time; nothing before the first frame.
+  std::optional<std::int64_t> offset_ns() const { return offset_ns_; }
+  long not_recorded() const { return not_recorded_; }  ///< frames that the recording does not have
+  RecordedTimes* recorded() { return recorded_ ? &*recorded_ : nullptr; }
+  const RecordedTimes* recorded() const { return recorded_ ? &*recorded_ : nullptr; }
+
+ private:
+  std::optional<RecordedTimes> recorded_;
+  std::optional<std::int64_t> offset_ns_;
+  long not_recorded_ = 0;
+};
+
+}  // namespace curbline::tools
