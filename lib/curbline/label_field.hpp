@@ -59,7 +59,10 @@ class LabelField {
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = Site{}; }
 
-  /// E-step. Changed are cells that a line touched, whose region changed its plane, that bore a label that is no more or heard a
+  /// The cells that were touched are to be looked at by the next update().
+  void note_touched(const Dem<limits>& dem);
+
+  /// E-step. Changed are cells that were noted as touched, whose region changed its plane, that bore a label that is no more or heard a
   /// message that was new, and a band of rows that moves on with each call, since planes move as they grow. Returns how many
   /// labels changed. Cells that are left over by max_messages are counted and wait for the next call.
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits, Counters& counters);
@@ -90,7 +93,7 @@ class LabelField {
   }
 
   void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits, Counters& counters);
-  bool must_renew(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const;
+  bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
   void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   void keep_messages(Site& site, const std::array<LabelType, candidates>& label);
@@ -145,6 +148,13 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
   return follow_beliefs(dem, visits);
 }
 
+template <Limits limits>
+void LabelField<limits>::note_touched(const Dem<limits>& dem) {
+  dem.for_each_valid([&](int, int, int s) {
+    if (dem.touched(s)) flag_[static_cast<std::size_t>(s)] |= renew;
+  });
+}
+
 /// What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of rows.
 template <Limits limits>
 void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
@@ -156,7 +166,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   /// `visited`, with `renew` or without, or `quiet`.
   const auto wanted = [&](int s) -> std::uint8_t {
     const std::uint8_t before = flag_[static_cast<std::size_t>(s)];
-    if ((before & renew) != 0 || scope == FieldScope::window || must_renew(dem, mixture, s)) return visited | renew;
+    if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, s)) return visited | renew;
     if ((before & (heard | deferred)) == 0) return quiet;
     return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
   };
@@ -189,8 +199,8 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
 }
 
 template <Limits limits>
-bool LabelField<limits>::must_renew(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int slot) const {
-  if (dem.touched(slot) || mixture.relabelled(slot)) return true;
+bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
+  if (mixture.relabelled(slot)) return true;
   const Site& site = sites_[static_cast<std::size_t>(slot)];
   if (mixture.any_fresh()) {
     for (const LabelType label : site.label) {

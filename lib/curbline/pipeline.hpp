@@ -45,11 +45,12 @@ class Pipeline {
   /// A pose of the base in the map frame. False if dropped (not finite, not later than the one before).
   bool add_pose(const Pose& pose);
 
-  /// Takes a scan line all the way: observe(), then infer(). Its tilt readings and poses should be in: beams later than the
-  /// newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the limits.
+  /// Takes a scan line: observe(), then one half of infer(), so that no line costs more than a quarter of what a small core can do
+  /// between two: after one line the regions and planes, after the next the labels and curbs of both. Its tilt readings and poses
+  /// should be in: beams later than the newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the limits.
   Status take(const ScanLine& line);
 
-  /// First half: beams to points, points to cells. About 150 operations a beam.
+  /// Beams to points, points to cells. About 150 operations a beam.
   Status observe(const ScanLine& line);
 
   /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells. The window follows.
@@ -59,7 +60,7 @@ class Pipeline {
   /// The same for points that are already in the map frame: a recorded cloud, another sensor.
   void observe(std::span<const Point> points);
 
-  /// Second half: regions, planes, labels and curbs follow what was observed since. As often as time allows.
+  /// Regions, planes, labels and curbs follow what was observed since. As often as time allows.
   void infer();
 
   /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes` is reached: what a finished map
@@ -92,6 +93,7 @@ class Pipeline {
 
   Settings settings_{};
   bool ready_ = false;
+  bool planes_next_ = true;                    ///< which half of the inference is due
   std::int64_t last_line_ns_ = INT64_MIN;
   float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;  ///< in the map frame, of the last line
   float ceiling_m_ = 0.0f;                     ///< points above are ignored, z of the map frame
@@ -119,6 +121,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   if (const Status status = check(settings); status != Status::ok) return status;
   settings_ = settings;
   counters_ = Counters{};
+  planes_next_ = true;
   last_line_ns_ = INT64_MIN;
   robot_x_m_ = robot_y_m_ = 0.0f;
   ceiling_m_ = window.max_height_m;
@@ -145,7 +148,14 @@ bool Pipeline<limits>::add_pose(const Pose& pose) {
 template <Limits limits>
 Status Pipeline<limits>::take(const ScanLine& line) {
   const Status status = observe(line);
-  if (status == Status::ok) infer();
+  if (status != Status::ok) return status;
+  if (planes_next_) {
+    follow_regions();
+  } else {
+    follow_labels(FieldScope::line);
+    follow_curbs();
+  }
+  planes_next_ = !planes_next_;
   return status;
 }
 
@@ -287,6 +297,8 @@ void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
   segmentation_.update(dem_, work, counters_);
   plane_mixture_.update(dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
+  label_field_.note_touched(dem_);
+  dem_.clear_touched();
 }
 
 /// E-step, and the M-step if planes come from responsibilities. Returns how many labels changed.
@@ -301,7 +313,6 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
       }
     });
   }
-  dem_.clear_touched();
   return changed;
 }
 

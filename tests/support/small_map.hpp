@@ -59,6 +59,7 @@ struct Stages {
         dem, *segmented, [this](int slot) { return field.label(slot); }, counters);
   }
   int label(bool all = true) {
+    field.note_touched(dem);
     const int changed = field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, work.visits(), counters);
     dem.clear_touched();
     return changed;
