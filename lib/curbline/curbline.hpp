@@ -10,6 +10,7 @@
 #include "curbline/tilt_track.hpp"       // in: servo angles
 #include "curbline/tilt_watch.hpp"       // whether the servo is alive
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt
+#include "curbline/tilt_latency.hpp"     // how late they are, found on the way
 #include "curbline/pose_track.hpp"       // in: robot poses
 #include "curbline/line_projection.hpp"  // beams to points with variance
 #include "curbline/point.hpp"            //
@@ -20,5 +21,8 @@
 #include "curbline/plane.hpp"            // moments, evidence, fit
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/label_field.hpp"      // belief propagation
+#include "curbline/plane_set.hpp"        // planes near by, as bits
+#include "curbline/borders.hpp"          // where labels change
 #include "curbline/curb_tracer.hpp"      // out: curbs
+#include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/pipeline.hpp"         // all of it, on one screen
