@@ -269,6 +269,7 @@ void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<lim
   } else {
     curb.kind = curb.height_m > 0.0f ? CurbKind::step_up : CurbKind::step_down;
   }
+  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   curb_[static_cast<std::size_t>(curbs_++)] = curb;
 }
 

@@ -63,6 +63,16 @@ TEST_CASE("recorded times: while a servo rests its equal frames are met one by o
   CHECK(clock.recorded()->missed() == 0);
 }
 
+TEST_CASE("recorded times: a player that stalls, at first or for seconds, has each frame met when it catches up") {
+  const TemporaryDirectory directory;
+  const auto nods = [](int k) { return 0.01 * std::abs(k - 200); };
+  LogClock clock = clock_of(directory, 400, nods);
+  const auto late_ms = [](int k) { return k < 50 ? std::max(0, 700 - 20 * k) : std::max(0, 2500 - 10 * (k - 50)); };
+  for (int k = 0; k < 400; ++k) REQUIRE(given(clock, k, nods, late_ms(k)) == k);
+  CHECK(clock.not_recorded() == 0);
+  CHECK(clock.recorded()->missed() == 0);
+}
+
 TEST_CASE("recorded times: a frame that was not recorded has the time of its arrival, and the next its own") {
   const TemporaryDirectory directory;
   const auto rises = [](int k) { return 0.001 * k; };

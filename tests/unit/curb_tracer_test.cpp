@@ -160,6 +160,13 @@ TEST_CASE("curb tracer: clutter makes no curb, the ground beside it does") {
   }
 }
 
+TEST_CASE("curb tracer: the side of a box, higher than any curb, is none") {
+  const auto height = [](double step_m) { return [step_m](double x, double) { return x < 1.4 ? 0.0 : step_m; }; };
+  CHECK(traced(height(0.29))->tracer.curbs().size() == 1);
+  CHECK(traced(height(0.32))->tracer.curbs().empty());
+  CHECK(traced(height(-0.32))->tracer.curbs().empty());
+}
+
 TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across a wider one") {
   const int gap = GENERATE(4, 5);  // cells without points; the reach is 5 cells
   const auto stages = std::make_unique<Stages<>>(small_settings());

@@ -215,6 +215,27 @@ TEST_CASE("pipeline: the same input gives the same bytes twice, also after a sec
   CHECK(bytes(first->curbs()) == expected);
 }
 
+TEST_CASE("pipeline: a line costs half an inference, and the curbs are those of whole ones") {
+  const auto halves = started(), whole = started();
+  NoddingLaser laser, same;
+  for (int line = 0; line < 200; ++line) {
+    const auto before = halves->counters();
+    stand(*halves, laser, {}, line, line + 1);
+    const bool planes = halves->counters().evidences != before.evidences, labels = halves->counters().messages != before.messages;
+    CHECK_FALSE((planes && labels));
+    add_tilts(*whole, line);
+    const auto ranges = same.ranges({}, line, [](double) { return 0.0; });
+    REQUIRE(whole->observe({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
+    whole->infer();
+  }
+  CHECK(10 * halves->counters().evidences < 6 * whole->counters().evidences);
+  const Curb& ours = longest(halves->curbs());
+  const Curb& theirs = longest(whole->curbs());
+  CHECK(ours.kind == theirs.kind);
+  CHECK(ours.x0_m == Approx(theirs.x0_m).margin(0.02));
+  CHECK(ours.height_m == Approx(theirs.height_m).margin(0.002));
+}
+
 TEST_CASE("pipeline: observing alone changes no curb, inferring does") {
   const auto pipeline = started();
   NoddingLaser laser;

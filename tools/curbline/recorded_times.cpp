@@ -66,6 +66,10 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
   const std::int64_t until_ns = due_ns ? *due_ns + early_ns : front_ns + first_reach_ns;
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
+  if (same(ahead_.front(), frame)) {  // the next one, however late: a player that has stalled sends all the same
+    ahead_.pop_front();
+    return front_ns;
+  }
   const auto in_time = [](const can::Frame& recorded, std::int64_t time_ns) { return recorded.time_ns < time_ns; };
   const auto first = std::lower_bound(ahead_.begin(), ahead_.end(), from_ns, in_time);
   const auto last = std::lower_bound(first, ahead_.end(), until_ns + 1, in_time);

@@ -22,9 +22,8 @@ class RecordedTimes {
   /// Reads the whole log now; nothing is allocated after that.
   void read_all();
 
-  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s).
-  /// Nothing if there is none that
-  /// is a second late or 0.2 s early at most. Recorded frames before it have been missed.
+  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s): the next one, or
+  /// one that comes a second late or 0.2 s early at most; nothing if there is none. Recorded frames before it have been missed.
   std::optional<std::int64_t> time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns);
 
   /// Whether every recorded frame has been met or missed.
