@@ -31,7 +31,7 @@ constexpr std::array<CurbField, fields> layout{{
      field(curb_ahead_id, 32, 16, millimetre, true), -highest_m, highest_m},
     {"CurbAhead", "HeightSd", "m", "Standard deviation of the height; the highest is that or more.",
      field(curb_ahead_id, 48, 8, millimetre), 0, 0.255},
-    {"CurbAhead", "Kind", "", "0 nothing ahead, 1 step up, 2 step down, 3 crease.", field(curb_ahead_id, 56, 2, 1.0), 0,
+    {"CurbAhead", "Kind", "", "0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp.", field(curb_ahead_id, 56, 2, 1.0), 0,
      3},
     {"CurbAhead", "Probability", "", "That the ground on both sides is not one plane.",
      field(curb_ahead_id, 58, 6, 0.02), 0, 1},

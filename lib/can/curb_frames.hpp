@@ -10,7 +10,7 @@
 //   bits 16-31  lateral_m      i16, 1 mm: y of that point, +-32.767 m
 //   bits 32-47  height_m       i16, 1 mm: far side less near side, above 0 is a step up
 //   bits 48-55  height_sd_m    u8, 1 mm; 255 is 0.255 m or more
-//   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease
+//   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp
 //   bits 58-63  probability    u6, 0.02, 0 to 1
 // CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
 //   bits 0-7    counter        u8, one more each time, wraps; a receiver that sees it stand does not trust CurbAhead

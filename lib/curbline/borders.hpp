@@ -1,5 +1,5 @@
-// Border points: the middles of the gaps between two planes on the rows and columns of the window, and their chaining into
-// polylines. Working memory of one call of CurbTracer::trace().
+// Border points between two planes on the rows and columns of the window (BorderFinder), and their chaining into polylines. Working memory
+// of one call of CurbTracer::trace().
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@ class Borders {
   struct Border {
     float x_m, y_m;         ///< in the window's frame
     float probability;      ///< that the cells on both sides lie on different planes
-    float half_gap_m;
+    float half_gap_m;       ///< between the cells of the one and the other
+    float width_m;          ///< of what lies between them, BorderFinder::Edge
     LabelType low, high;    ///< the planes, low < high by number
     std::int8_t axis;       ///< 0: found along x, 1: along y
     std::int8_t sign;       ///< +1 if `high` lies in the positive direction of the axis

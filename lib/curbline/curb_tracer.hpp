@@ -1,6 +1,7 @@
-// Curbs: where two planes meet. Border points are found along every row and column of the window, chained into
+// Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp), chained into
 // polylines by the pair of planes they part (borders.hpp), and cut into straight pieces. Each piece tells how much higher the far
-// plane is. Cost: two passes over the window, 50 look-ups a border point, and the square of a chain's length for cutting it.
+// plane is, and keeps its number from call to call. Cost: two passes over the window, 50 look-ups a border point, the square of a chain's
+// length for cutting it, and 20 operations for each pair of a curb and one of the call before.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/border_finder.hpp"
 #include "curbline/borders.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
@@ -21,19 +23,25 @@ namespace curbline {
 enum class CurbKind : std::uint8_t {
   step_up,    ///< the far side is higher
   step_down,  ///< the far side is lower
-  crease,     ///< planes of different slope that may meet at one height: a gutter, the edge of a ramp
+  crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall
+  ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO 21542
 };
 const char* to_string(CurbKind kind);
 
 /// A straight piece of curb line, in the map frame. Near is the side of the robot.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
-  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease
+  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease or the edge of a ramp
   float height_sd_m = 0.0f;  ///< from both planes' posteriors
   float probability = 0.0f;  ///< that the cells on both sides lie on different planes, mean along the piece
+  float face_width_m = 0.0f; ///< across the piece, between the cells of both planes, without the shadow of a step down: the face at most, to a cell
   CurbKind kind = CurbKind::crease;
+  std::uint16_t id = 0;      ///< the same as long as the curb is found, 1 to 65535; may be given anew when that many have been
   std::uint16_t near_label = 0, far_label = 0;
 };
+
+/// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line. Else 0 or less.
+float overlap_m(const Curb& now, const Curb& before, float near_m);
 
 /// A border as it was drawn between two planes.
 struct DrawnBorder {
@@ -45,7 +53,8 @@ struct DrawnBorder {
 /// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of it and differ in
 /// height there by no more than their slopes make up across half the gap, and what is not known (95 %) of the planes and of the cells
 /// by which the border was drawn.
-bool is_crease(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
+/// CurbKind::step_up stands for either step.
+CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 template <Limits limits>
 class CurbTracer {
@@ -53,151 +62,96 @@ class CurbTracer {
   void init(const CurbSettings& settings) {
     settings_ = settings;
     curbs_ = 0;
+    last_id_ = 0;
   }
 
-  /// Finds all curbs of the window, in working memory that is the caller's. (robot_x_m, robot_y_m): the robot in the window's frame.
-  void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, float robot_x_m, float robot_y_m,
-             Borders<limits>& borders, Counters& counters);
+  /// Working memory of one trace().
+  struct Work {
+    Borders<limits> borders;
+    std::array<Curb, limits.curbs> curb;
+    int curbs;
+  };
+
+  /// Finds all curbs of the window, in working memory that is the caller's.
+  void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, const Viewpoint& view, Work& work,
+             Counters& counters);
 
   /// What the last trace() found. Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
 
  private:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
   using Border = typename Borders<limits>::Border;
-
-  /// A cell of a row or column and its plane.
-  struct Place {
-    LabelType label = none;
-    std::int16_t along = 0;
+  struct Stages {
+    const Dem<limits>& dem;
+    const PlaneMixture<limits>& mixture;
+    const Viewpoint& view;
   };
 
-  int find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field);
-  void find_borders(const Dem<limits>& dem, const LabelField<limits>& field, Borders<limits>& borders, Counters& counters) const;
-  Border border_between(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a, const Place& b) const;
-  void cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int length, Counters& counters);
+  void cut(const Stages& stages, int length, Work& work, Counters& counters) const;
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
-  void give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int first, int last, Counters& counters);
+  void give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const;
+  void keep_ids(Work& work, float near_m);
 
   CurbSettings settings_{};
-  float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;
-  float reach_m_ = 0.0f;  ///< as far as gaps are bridged
-  std::array<bool, limits.planes> ground_{};
   std::array<Curb, limits.curbs> curb_{};
   int curbs_ = 0;
+  std::uint16_t last_id_ = 0;
 };
 
 template <Limits limits>
-void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, float robot_x_m,
-                               float robot_y_m, Borders<limits>& borders, Counters& counters) {
-  robot_x_m_ = robot_x_m;
-  robot_y_m_ = robot_y_m;
-  curbs_ = 0;
-  reach_m_ = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  if (find_ground(dem, mixture, field) < 2) return;
-  borders.clear();
-  find_borders(dem, field, borders, counters);
-  for (int b = 0; b < borders.size(); ++b) {
-    if (!borders.chained(b)) cut(dem, mixture, borders, borders.chain(dem, b, settings_.link_reach), counters);
+void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
+                               const Viewpoint& view, Work& work, Counters& counters) {
+  work.curbs = 0;
+  work.borders.clear();
+  BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
+  const Stages stages{dem, mixture, view};
+  for (int b = 0; b < work.borders.size(); ++b) {
+    if (!work.borders.chained(b)) cut(stages, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
+  keep_ids(work, dem.cell_x_m() > dem.cell_y_m() ? 2.0f * dem.cell_x_m() : 2.0f * dem.cell_y_m());
 }
 
-/// Which labels are planes of the ground. Not clutter: a label most of whose cells lie off its plane, so that its robust standard
-/// deviation (1.4826 times the median residual) exceeds the bound. Not the face of a curb: a label whose runs are at most two
-/// cells long on average along the rows or along the columns, as many as a vertical face can touch.
+/// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were found; others get
+/// new numbers.
 template <Limits limits>
-int CurbTracer<limits>::find_ground(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field) {
-  std::array<int, limits.planes> cells{}, off{}, row_runs{}, col_runs{};
-  std::array<Place, limits.cols> last_in_col{};
-  Place last_in_row;
-  int row = -1;
-  const auto starts_run = [&](Place& last, const Place& here) {
-    const bool starts = last.label != here.label || here.along - last.along > settings_.link_reach;
-    last = here;
-    return starts;
-  };
-  const float bound = settings_.max_roughness_m / 1.4826f;
-  dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = field.label(s);
-    if (i != row) last_in_row = {};
-    row = i;
-    const bool starts_col = starts_run(last_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}), starts_row = starts_run(last_in_row, {label, static_cast<std::int16_t>(j)});
-    if (label == none) return;
-    const Cell& cell = dem.cell(s);
-    const float residual = cell.height_m - mixture.plane(label).height_m(dem.centroid_x_m(i, cell), dem.centroid_y_m(j, cell));
-    ++cells[label];
-    off[label] += residual > bound || residual < -bound;
-    row_runs[label] += starts_row;
-    col_runs[label] += starts_col;
-  });
-  int ground = 0;
-  for (std::size_t l = 0; l < ground_.size(); ++l) {
-    ground_[l] = 2 * off[l] <= cells[l] && cells[l] > 2 * row_runs[l] && cells[l] > 2 * col_runs[l];
-    ground += ground_[l];
-  }
-  return ground;
-}
-
-/// A border wherever the plane changes along a row or column. Cells that are not ground are looked through, as gaps are.
-template <Limits limits>
-void CurbTracer<limits>::find_borders(const Dem<limits>& dem, const LabelField<limits>& field, Borders<limits>& borders, Counters& counters) const {
-  std::array<Place, limits.cols> before_in_col{};
-  Place before_in_row;
-  int row = -1;
-  const auto pass = [&](Place& before, const Place& here, int axis, int across) {
-    const bool border = before.label != none && before.label != here.label && here.along - before.along <= settings_.link_reach;
-    if (border && !borders.add(dem, border_between(dem, field, axis, across, before, here))) ++counters.borders_full;
-    before = here;
-  };
-  dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = field.label(s);
-    if (label == none || !ground_[label]) return;
-    if (i != row) before_in_row = {};
-    row = i;
-    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, 0, j);
-    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, 1, i);
-  });
-}
-
-template <Limits limits>
-auto CurbTracer<limits>::border_between(const Dem<limits>& dem, const LabelField<limits>& field, int axis, int across, const Place& a,
-                                        const Place& b) const -> Border {
-  const auto cell_belief = [&](int along) { return axis == 0 ? field.belief(dem, along, across) : field.belief(dem, across, along); };
-  const auto p = cell_belief(a.along), q = cell_belief(b.along);
-  float same = 0.0f;
-  for (std::size_t m = 0; m < p.label.size(); ++m) {
-    for (std::size_t n = 0; n < q.label.size(); ++n) {
-      if (p.label[m] == q.label[n] && p.label[m] != none) same += p.probability[m] * q.probability[n];
+void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
+  const auto is_step = [](const Curb& curb) { return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down; };
+  for (int n = 0; n < work.curbs; ++n) {
+    Curb& now = work.curb[static_cast<std::size_t>(n)];
+    Curb* same = nullptr;
+    float most_m = 0.0f;
+    for (int o = 0; o < curbs_; ++o) {
+      Curb& before = curb_[static_cast<std::size_t>(o)];
+      if (before.id == 0 || is_step(before) != is_step(now)) continue;
+      const float length_m = overlap_m(now, before, near_m);
+      if (length_m <= most_m) continue;
+      most_m = length_m;
+      same = &before;
     }
+    now.id = 0;
+    if (same == nullptr) continue;
+    now.id = same->id;
+    same->id = 0;  // taken
   }
-  const float pitch = axis == 0 ? dem.cell_x_m() : dem.cell_y_m();
-  const float middle = 0.5f * static_cast<float>(a.along + b.along + 1) * pitch;
-  const float other = (static_cast<float>(across) + 0.5f) * (axis == 0 ? dem.cell_y_m() : dem.cell_x_m());
-  const bool rising = a.label < b.label;
-  return {axis == 0 ? middle : other,
-          axis == 0 ? other : middle,
-          1.0f - same,
-          0.5f * static_cast<float>(b.along - a.along) * pitch,
-          rising ? a.label : b.label,
-          rising ? b.label : a.label,
-          static_cast<std::int8_t>(axis),
-          static_cast<std::int8_t>(rising ? 1 : -1),
-          false,
-          0};
+  for (int n = 0; n < work.curbs; ++n) {
+    Curb& curb = curb_[static_cast<std::size_t>(n)];
+    curb = work.curb[static_cast<std::size_t>(n)];
+    if (curb.id == 0) curb.id = last_id_ = static_cast<std::uint16_t>(last_id_ == 65535 ? 1 : last_id_ + 1);
+  }
+  curbs_ = work.curbs;
 }
 
 /// Splits the chain where it leaves the chord by more than a cell (a straight line crossing cells stays within one) and
 /// gives out the pieces in order.
 template <Limits limits>
-void CurbTracer<limits>::cut(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int length,
-                             Counters& counters) {
+void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Counters& counters) const {
+  const Dem<limits>& dem = stages.dem;
   const float tolerance_m = dem.cell_x_m() > dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m();
   int first = 0;
   do {
     int end = length - 1;
-    for (int split = end; split >= 0; split = farthest_from_chord(borders, first, end, tolerance_m)) end = split;
-    give_out(dem, mixture, borders, first, end, counters);
+    for (int split = end; split >= 0; split = farthest_from_chord(work.borders, first, end, tolerance_m)) end = split;
+    give_out(stages, first, end, work, counters);
     first = end;
   } while (first < length - 1);
 }
@@ -226,20 +180,20 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
 }
 
 template <Limits limits>
-void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Borders<limits>& borders, int first, int last,
-                                  Counters& counters) {
-  if (curbs_ == limits.curbs) {
+void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const {
+  if (work.curbs == limits.curbs) {
     ++counters.curbs_full;
     return;
   }
-  const Border& a = borders.at(first);
-  const Border& b = borders.at(last);
-  const Plane& low = mixture.plane(a.low);
-  const Plane& high = mixture.plane(a.high);
+  const Dem<limits>& dem = stages.dem;
+  const Border& a = work.borders.at(first);
+  const Border& b = work.borders.at(last);
+  const Plane& low = stages.mixture.plane(a.low);
+  const Plane& high = stages.mixture.plane(a.high);
   LineFit fit;
   float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, toward_x = 0.0f, toward_y = 0.0f;
   for (int k = first; k <= last; ++k) {
-    const Border& border = borders.at(k);
+    const Border& border = work.borders.at(k);
     fit.add(border.x_m, border.y_m);
     height += high.height_m(border.x_m, border.y_m) - low.height_m(border.x_m, border.y_m);
     variance += high.height_variance_m2(border.x_m, border.y_m) + low.height_variance_m2(border.x_m, border.y_m);
@@ -251,8 +205,14 @@ void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<lim
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   LineFit::Segment segment = fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
   if (first == last) segment = LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m);
+  float width = 0.0f;
+  for (int k = first; k <= last; ++k) {
+    const Border& border = work.borders.at(k);
+    const float across = border.axis == 0 ? segment.normal_x : segment.normal_y;
+    width += border.width_m * (across < 0.0f ? -across : across);
+  }
   // `toward` points from the low-numbered plane to the other; the robot stands on the near side.
-  const bool low_is_near = toward_x * (fit.x_m() - robot_x_m_) + toward_y * (fit.y_m() - robot_y_m_) >= 0.0f;
+  const bool low_is_near = toward_x * (fit.x_m() - stages.view.x_m) + toward_y * (fit.y_m() - stages.view.y_m) >= 0.0f;
   Curb curb;
   curb.x0_m = dem.origin_x_m() + segment.x0_m;
   curb.y0_m = dem.origin_y_m() + segment.y0_m;
@@ -261,16 +221,18 @@ void CurbTracer<limits>::give_out(const Dem<limits>& dem, const PlaneMixture<lim
   curb.height_m = (low_is_near ? height : -height) * n;
   curb.height_sd_m = square_root(variance * n);  // the errors of a plane are common to the piece: they do not average out
   curb.probability = probability * n;
+  curb.face_width_m = width * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
-  if (is_crease(low, high, segment, {height * n, curb.height_sd_m, half_gap * n, reach_m_})) {
-    curb.kind = CurbKind::crease;
+  const float reach_m = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
+  curb.kind = kind_of(low, high, segment, {height * n, curb.height_sd_m, half_gap * n, reach_m});
+  if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;
-  } else {
-    curb.kind = curb.height_m > 0.0f ? CurbKind::step_up : CurbKind::step_down;
+  } else if (curb.height_m < 0.0f) {
+    curb.kind = CurbKind::step_down;
   }
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
-  curb_[static_cast<std::size_t>(curbs_++)] = curb;
+  work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
 }
 
 }  // namespace curbline

@@ -20,9 +20,12 @@
 #include "curbline/region_graph.hpp"     // merging by evidence
 #include "curbline/plane.hpp"            // moments, evidence, fit
 #include "curbline/plane_mixture.hpp"    // labels that live on
+#include "curbline/ground.hpp"           // which planes are ground
 #include "curbline/label_field.hpp"      // belief propagation
 #include "curbline/plane_set.hpp"        // planes near by, as bits
 #include "curbline/borders.hpp"          // where labels change
+#include "curbline/border_finder.hpp"    // to a part of a cell
 #include "curbline/curb_tracer.hpp"      // out: curbs
+#include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/pipeline.hpp"         // all of it, on one screen

@@ -80,6 +80,10 @@ class Dem {
     m.zz = cell.scatter_m2 * share;
     return m;
   }
+  /// Expected variance of the height of a point of weight 1.
+  float noise_m2() const { return prior_.noise_m2; }
+  /// Variance of a cell's mean height, from the noise of its points.
+  float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
   float centroid_x_m(int i, const Cell& cell) const { return (static_cast<float>(i) + 0.5f) * settings_.cell_x_m + cell.dx_m; }
   float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m; }
 

@@ -244,7 +244,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   std::array<LabelType, candidates> label{none, none, none};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
-    if (!plane.alive()) return;
+    if (!plane.alive() || !mixture.ground(k)) return;
     const float variance = plane.variance_m2 + cell_variance;
     const float residual = cell.height_m - plane.height_m(x, y);
     float u = 1.0f + residual * residual / (6.0f * variance);

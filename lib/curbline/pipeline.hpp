@@ -17,6 +17,7 @@
 #include "curbline/label_field.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/line_projection.hpp"
+#include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/pose_track.hpp"
 #include "curbline/scan_line.hpp"
@@ -70,6 +71,15 @@ class Pipeline {
   /// Curbs in the window, in the map frame. Valid until the next infer().
   std::span<const Curb> curbs() const { return curb_tracer_.curbs(); }
 
+  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j), or over a curb of curbs()? A
+  /// curb may be older than the planes by a line. passability.hpp
+  bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
+    return curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
+  }
+  bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
+    return curbline::passable(curb, plane(curb.near_label), plane(curb.far_label), {max_step_m, max_slope_rad});
+  }
+
   /// Plane of a valid cell (i along x, j along y, from the window's lowest corner); no_label<limits> for the others.
   Label<limits> label(int i, int j) const { return label_field_.label(dem_.slot(i, j)); }
   /// Probability of that label.
@@ -95,7 +105,7 @@ class Pipeline {
   bool ready_ = false;
   bool planes_next_ = true;                    ///< which half of the inference is due
   std::int64_t last_line_ns_ = INT64_MIN;
-  float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f;  ///< in the map frame, of the last line
+  float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f, robot_z_m_ = 0.0f;  ///< in the map frame, of the last line
   float ceiling_m_ = 0.0f;                     ///< points above are ignored, z of the map frame
   Counters counters_{};
   float tilt_rate_rad_s_ = 0.0f;               ///< of the line in hand
@@ -123,7 +133,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   counters_ = Counters{};
   planes_next_ = true;
   last_line_ns_ = INT64_MIN;
-  robot_x_m_ = robot_y_m_ = 0.0f;
+  robot_x_m_ = robot_y_m_ = robot_z_m_ = 0.0f;
   ceiling_m_ = window.max_height_m;
   tilt_track_.init(settings.tilt);
   tilt_latency_.init(settings.tilt, settings.pose);
@@ -179,6 +189,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   if (!motion.still) {
     const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
+    robot_z_m_ = robot.z();
     move_window(robot.x(), robot.y());
   }
   auto& projected = workspace_.line();
@@ -213,7 +224,7 @@ void Pipeline<limits>::compare_with_cell(const ProjectedPoint& p, int slot) {
   const float x = p.point.x_m - dem_.origin_x_m(), y = p.point.y_m - dem_.origin_y_m();
   const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
   const float rise = plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
-  const float variance_m2 = p.point.variance_m2 + prior.texture_m2 + prior.noise_m2 / cell.weight;
+  const float variance_m2 = p.point.variance_m2 + prior.texture_m2 + dem_.height_variance_m2(cell);
   tilt_latency_.compare(p.point.z_m - cell.height_m - rise, variance_m2, p.growth_m_s);
 }
 
@@ -318,8 +329,8 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(),
-                     workspace_.borders(), counters_);
+  const Viewpoint view{robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), robot_z_m_ + settings_.tilt.T_base_tilt.z_m};
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, view, workspace_.curbs(), counters_);
 }
 
 template <Limits limits>

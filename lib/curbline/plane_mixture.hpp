@@ -10,6 +10,7 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/ground.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
@@ -34,6 +35,7 @@ class PlaneMixture {
     planes_.fill(Plane{});
     fresh_.fill(false);
     any_fresh_ = any_relabelled_ = false;
+    ground_.clear();
     region_label_.fill(none);
     relabelled_.fill(0);
   }
@@ -61,12 +63,16 @@ class PlaneMixture {
   }
 
   const Plane& plane(int label) const { return planes_[static_cast<std::size_t>(label)]; }
-  /// True if the label was born or died in the last update().
+  /// True if the label was born, died, or became ground or none in the last update().
   bool fresh(int label) const { return fresh_[static_cast<std::size_t>(label)]; }
   /// The plane of a cell's region; none if the region is too small for one.
   LabelType region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
   /// True if that changed in the last update().
   bool relabelled(int slot) const { return relabelled_[static_cast<std::size_t>(slot)] != 0; }
+  /// Is the plane ground, which cells may bear? ground.hpp
+  bool ground(int label) const { return ground_.is(label); }
+  /// False if the cell's region is the face of a curb or the fringe of an obstacle.
+  bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
   bool any_fresh() const { return any_fresh_; }
   bool any_relabelled() const { return any_relabelled_; }
   PlaneUpdate mode() const { return settings_.update; }
@@ -85,6 +91,7 @@ class PlaneMixture {
   std::array<Plane, limits.planes> planes_{};
   std::array<bool, limits.planes> fresh_{};
   bool any_fresh_ = false, any_relabelled_ = false;
+  Ground<limits> ground_{};
   std::array<LabelType, Dem<limits>::capacity> region_label_{};
   std::array<std::uint8_t, Dem<limits>::capacity> relabelled_{};
 
@@ -131,6 +138,9 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     relabelled_[static_cast<std::size_t>(s)] = 1;
     any_relabelled_ = true;
   });
+  ground_.update(
+      dem, none, [this](int s) { return region_label(s); },
+      [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
 }
 
 template <Limits limits>

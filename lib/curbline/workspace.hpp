@@ -1,10 +1,10 @@
 // Memory that stages use one after the other within a call: the points of a line, the segmentation's region graph, the cells that the
-// label field visits, the border points of curbs. None outlives the call.
+// label field visits, the border points of curbs and the curbs they make. None outlives the call.
 #pragma once
 
 #include <new>
 
-#include "curbline/borders.hpp"
+#include "curbline/curb_tracer.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/line_projection.hpp"
 #include "curbline/segmentation.hpp"
@@ -24,14 +24,14 @@ class Workspace {
   typename LabelField<limits>::Visits& visits() {
     return *::new (static_cast<void*>(&visits_)) typename LabelField<limits>::Visits;
   }
-  Borders<limits>& borders() { return *::new (static_cast<void*>(&borders_)) Borders<limits>; }
+  typename CurbTracer<limits>::Work& curbs() { return *::new (static_cast<void*>(&curbs_)) typename CurbTracer<limits>::Work; }
 
  private:
   union {
     ProjectedLine<limits> line_;
     typename Segmentation<limits>::Work segmentation_;
     typename LabelField<limits>::Visits visits_;
-    Borders<limits> borders_;
+    typename CurbTracer<limits>::Work curbs_;
   };
 };
 

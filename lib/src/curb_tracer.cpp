@@ -3,22 +3,55 @@
 #include <cmath>
 
 namespace curbline {
+namespace {
+
+constexpr float least_ramp = 0.05f;  ///< ISO 21542: a way that rises by more than 1 in 20 is a ramp
+
+}  // namespace
 
 const char* to_string(CurbKind kind) {
   switch (kind) {
     case CurbKind::step_up: return "step_up";
     case CurbKind::step_down: return "step_down";
     case CurbKind::crease: return "crease";
+    case CurbKind::ramp_edge: return "ramp_edge";
   }
   return "unknown";
 }
 
-bool is_crease(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
+CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
   const float across = border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
   const float steep = across < 0.0f ? -across : across, step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
   const float cell_sd_m = square_root(0.5f * (first.variance_m2 + second.variance_m2));
   const bool meet_near = step_m <= steep * drawn.reach_m + 2.0f * drawn.height_sd_m;
-  return meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * (drawn.height_sd_m + cell_sd_m);
+  const bool crease = meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * (drawn.height_sd_m + cell_sd_m);
+  if (!crease) return CurbKind::step_up;
+  const auto is_ramp = [&](const Plane& plane) {
+    const float slope = border.normal_x * plane.slope_x + border.normal_y * plane.slope_y;
+    return slope > least_ramp || slope < -least_ramp;
+  };
+  return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
+}
+
+float edge_in_cell(const CrossedCell& cell, bool step_up) {
+  const auto within = [](float share) { return share < 0.0f ? 0.0f : share > 1.0f ? 1.0f : share; };
+  const float far_share = within(cell.far_share);
+  if (step_up) return within(0.5f - far_share + cell.centroid);
+  const float hiding = 2.0f * cell.centroid - far_share, open = 1.0f - far_share;
+  return within(hiding < open ? hiding : open);
+}
+
+float overlap_m(const Curb& now, const Curb& before, float near_m) {
+  const float dx = before.x1_m - before.x0_m, dy = before.y1_m - before.y0_m;
+  const float length = square_root(dx * dx + dy * dy);
+  if (!(length > 0.0f)) return 0.0f;
+  const auto along = [&](float x, float y) { return ((x - before.x0_m) * dx + (y - before.y0_m) * dy) / length; };
+  const float x = 0.5f * (now.x0_m + now.x1_m), y = 0.5f * (now.y0_m + now.y1_m);
+  const float aside = ((x - before.x0_m) * dy - (y - before.y0_m) * dx) / length;
+  if (aside > near_m || aside < -near_m) return 0.0f;
+  const float a = along(now.x0_m, now.y0_m), b = along(now.x1_m, now.y1_m);
+  const float from = a < b ? a : b, to = a < b ? b : a;
+  return (to < length ? to : length) - (from > 0.0f ? from : 0.0f);
 }
 
 float square_root(float x) { return std::sqrt(x); }

@@ -70,7 +70,7 @@ class Result {
   std::span<const std::byte> bytes() const { return {bytes_.data(), size_}; }
 
  private:
-  static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0 && sizeof(Curb) == 36,
+  static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0 && sizeof(Curb) == 40,
                 "a field more of a curb belongs below too");
 
   template <typename T>

@@ -21,11 +21,11 @@ TEST_CASE("scene: a ramp without a curb has none") {
 //                 ____/             12 %
 //  ______________/
 //  0             2                4 m
-TEST_CASE("scene: the foot of a ramp is a crease, not a step") {
+TEST_CASE("scene: the foot of a ramp is the edge of a ramp, not a step") {
   const auto pipeline = seen([](double x, double) { return x < 2.0 ? 0.0 : 0.12 * (x - 2.0); });
   REQUIRE_FALSE(pipeline->curbs().empty());
   for (const Curb& c : pipeline->curbs()) {
-    CHECK(c.kind == CurbKind::crease);
+    CHECK(c.kind == CurbKind::ramp_edge);
     CHECK(c.x0_m == Approx(2.0).margin(0.3));  // a cell's height of 2 mm tells slopes of 12 % apart after two cells
     CHECK(std::abs(c.height_m) < 0.12 * 0.3);
   }

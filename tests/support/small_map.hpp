@@ -71,7 +71,7 @@ struct Stages {
     label(all);
   }
   void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
-    tracer.trace(dem, mixture, field, robot_x_m, robot_y_m, work.borders(), counters);
+    tracer.trace(dem, mixture, field, {robot_x_m, robot_y_m, 1.0f}, work.curbs(), counters);
   }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }

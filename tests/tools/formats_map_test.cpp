@@ -101,7 +101,7 @@ TEST_CASE("labels and curbs: other columns and bad values are refused") {
     return error_of([&] { read_curbs(dir.write("c.csv", text)); });
   };
   CHECK(curb_error(curbs + "0,0,0,0,0,0,0.5,kerb\n") ==
-        "c.csv:2: kind is \"kerb\"; expected step_up, step_down or crease");
+        "c.csv:2: kind is \"kerb\"; expected step_up, step_down, crease or ramp_edge");
   survive_damage(
       curbs + "1.0,2.0,3.5,-4.0,0.12,0.004,0.97,step_up\n", "c.csv", [](const std::string& path) { read_curbs(path); },
       1000);

@@ -101,11 +101,11 @@ TEST_CASE("curb tracer: in the map frame a curb lies where it is, wherever the w
   CHECK(std::min(stages->tracer.curbs()[0].y0_m, stages->tracer.curbs()[0].y1_m) == Approx(30.0).margin(0.01));
 }
 
-TEST_CASE("curb tracer: slopes that meet are a crease, not a step") {
+TEST_CASE("curb tracer: a plane and a ramp meet at the edge of a ramp, not a step") {
   const auto stages = traced([](double x, double) { return x < 1.2 ? 0.0 : 0.3 * (x - 1.2); });
   REQUIRE_FALSE(stages->tracer.curbs().empty());
   for (const Curb& curb : stages->tracer.curbs()) {
-    CHECK(curb.kind == CurbKind::crease);
+    CHECK(curb.kind == CurbKind::ramp_edge);
     CHECK(std::abs(curb.height_m) < 0.02f);
     CHECK(curb.x0_m == Approx(1.2).margin(0.1));
   }
@@ -129,15 +129,50 @@ TEST_CASE("curb tracer: a curved border becomes several pieces along the curve")
   CHECK(total_length_m(stages->tracer.curbs()) == Approx(1.4 * 1.5708).epsilon(0.15));
 }
 
-TEST_CASE("curb tracer: a curb's face is looked through and the full step told") {
-  const int width = GENERATE(1, 2);  // cells whose height lies between
-  const double x0 = 1.0, x1 = 1.0 + 0.1 * width;
-  const auto stages = traced([&](double x, double) { return x < x0 ? 0.0 : x < x1 ? 0.07 : 0.14; });
+//            ________
+//           /
+//  ________/           the face within the cells from 1.0 to 1.1 m
+TEST_CASE("curb tracer: a curb's face is looked through, the full step and the width told") {
+  const auto stages = traced([&](double x, double) { return x < 1.0 ? 0.0 : x < 1.05 ? 0.03 : x < 1.1 ? 0.11 : 0.14; });
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
   CHECK(curb.height_m == Approx(0.14).margin(4 * curb.height_sd_m + 0.002));
-  CHECK(curb.x0_m == Approx(0.5 * (x0 + x1)).margin(0.02));
+  CHECK(curb.x0_m == Approx(1.05).margin(0.02));
+  CHECK(curb.face_width_m == Approx(0.1).margin(0.01));
   CHECK(curb.kind == CurbKind::step_up);
+}
+
+TEST_CASE("curb tracer: a sharp step has no width to tell") {
+  const auto stages = traced(up);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].face_width_m == Approx(0.0).margin(0.01));
+}
+
+TEST_CASE("curb tracer: a curb keeps its number as long as it is found, a new one gets another") {
+  const auto stages = traced(up);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const auto id = stages->tracer.curbs()[0].id;
+  CHECK(id > 0);
+  fill(stages->dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 2.0 ? 0.12 : 0.24; });  // halves what was beyond
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace();
+  REQUIRE(stages->tracer.curbs().size() == 2);
+  int same = 0;
+  for (const Curb& curb : stages->tracer.curbs()) {
+    same += curb.id == id;
+    CHECK((curb.id == id) == (std::abs(curb.x0_m - 1.4f) < 0.05f));
+  }
+  CHECK(same == 1);
+}
+
+TEST_CASE("curb tracer: the overlap of two pieces is what of the one lies along the other") {
+  const Curb before{.x0_m = 1.0f, .y0_m = 0.0f, .x1_m = 1.0f, .y1_m = 2.0f};
+  const auto piece = [](float x, float y0, float y1) { return Curb{.x0_m = x, .y0_m = y0, .x1_m = x, .y1_m = y1}; };
+  CHECK(overlap_m(piece(1.05f, 0.5f, 1.5f), before, 0.2f) == Approx(1.0));
+  CHECK(overlap_m(piece(1.05f, 1.5f, 0.5f), before, 0.2f) == Approx(1.0));
+  CHECK(overlap_m(piece(1.0f, 1.5f, 3.5f), before, 0.2f) == Approx(0.5));
+  CHECK(overlap_m(piece(1.0f, 2.5f, 3.5f), before, 0.2f) <= 0.0f);
+  CHECK(overlap_m(piece(1.3f, 0.5f, 1.5f), before, 0.2f) == 0.0f);
 }
 
 TEST_CASE("curb tracer: a step of three cells' width is two curbs") {
@@ -217,6 +252,7 @@ TEST_CASE("curb tracer: each kind has a word of its own") {
   CHECK(std::string(to_string(CurbKind::step_up)) == "step_up");
   CHECK(std::string(to_string(CurbKind::step_down)) == "step_down");
   CHECK(std::string(to_string(CurbKind::crease)) == "crease");
+  CHECK(std::string(to_string(CurbKind::ramp_edge)) == "ramp_edge");
 }
 
 TEST_CASE("line fit: a line through points lies within them, whatever its direction") {

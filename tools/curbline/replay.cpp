@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-/// The share of a segment, from its start to its end, that lies in a grid's rectangle (Liang and Barsky 1984).
+/// The share of a segment, from its start to its end, that lies in a grid's rectangle (Liang and Barsky 1984), a cell within: a curb has
+/// ground on both sides, and is gone when one side is.
 struct Inside {
   double from = 0, to = 1;
   bool any() const { return from < to; }
@@ -30,8 +31,8 @@ Inside inside_of(const Grid& grid, const MapCurb& c) {
     in.from = std::max(in.from, std::min(a, b));
     in.to = std::min(in.to, std::max(a, b));
   };
-  clip(c.x0_m, c.x1_m - c.x0_m, grid.x0_m, grid.x0_m + grid.rows * grid.dx_m);
-  clip(c.y0_m, c.y1_m - c.y0_m, grid.y0_m, grid.y0_m + grid.cols * grid.dy_m);
+  clip(c.x0_m, c.x1_m - c.x0_m, grid.x0_m + grid.dx_m, grid.x0_m + (grid.rows - 1) * grid.dx_m);
+  clip(c.y0_m, c.y1_m - c.y0_m, grid.y0_m + grid.dy_m, grid.y0_m + (grid.cols - 1) * grid.dy_m);
   return in;
 }
 

@@ -80,6 +80,8 @@ void write_curb_json(std::ostream& out, const MapCurb& c) {
       {"height_sd_m", rounded(c.height_sd_m)},
       {"probability", rounded(c.probability)},
       {"kind", c.kind},
+      {"face_width_m", rounded(c.face_width_m)},
+      {"id", c.id},
   };
   out << object.dump() << '\n';
 }
@@ -110,8 +112,8 @@ std::vector<MapCurb> read_curbs(const std::string& path) {
     curb.height_sd_m = fields.number("height_sd_m");
     curb.probability = read_probability(fields);
     curb.kind = fields.word("kind");
-    if (curb.kind != "step_up" && curb.kind != "step_down" && curb.kind != "crease") {
-      fields.fail("kind", curb.kind, "step_up, step_down or crease");
+    if (curb.kind != "step_up" && curb.kind != "step_down" && curb.kind != "crease" && curb.kind != "ramp_edge") {
+      fields.fail("kind", curb.kind, "step_up, step_down, crease or ramp_edge");
     }
     return curb;
   });

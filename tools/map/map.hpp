@@ -39,7 +39,9 @@ struct MapPlane {
 struct MapCurb {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
   double height_m = 0, height_sd_m = 0, probability = 0;
-  std::string kind;  ///< step_up, step_down, crease
+  std::string kind;  ///< step_up, step_down, crease, ramp_edge
+  double face_width_m = 0;
+  int id = 0;  ///< 0: it has none
 };
 
 struct Map {

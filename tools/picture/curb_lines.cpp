@@ -3,11 +3,13 @@
 namespace curbline::tools::picture {
 
 void draw_curb(cairo_t* cr, const std::string& kind, Pixel from, Pixel to) {
-  const bool crease = kind == "crease";
+  const bool edge = kind == "ramp_edge", crease = edge || kind == "crease";
   cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
   set_line(cr, white, crease ? 3.5 : 5.5);
   stroke(cr, from, to);
-  if (crease) {
+  if (edge) {
+    set_line(cr, {0, 0, 0}, 2, {2, 7});
+  } else if (crease) {
     set_line(cr, {0, 0, 0}, 2, {2, 3});
   } else if (kind == "step_down") {
     set_line(cr, {0, 0, 0}, 3.5, {9, 4});

@@ -1,0 +1,59 @@
+// Which planes are ground, drawn as cross-sections.
+#include "curbline/ground.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::fill;
+using test::small_limits;
+using test::small_settings;
+using test::Stages;
+
+/// How many planes there are that cells of the window bear.
+template <typename Height>
+std::size_t borne(Height&& height_m, double spread_m = 0.002) {
+  Stages<small_limits> stages(small_settings());
+  fill(stages.dem, height_m, spread_m);
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  std::set<int> labels;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) labels.insert(stages.label_at(i, j));
+  }
+  return labels.size();
+}
+
+//           ______
+//          |           the cells at 1.1 m hold points of both sides
+//  ________|
+TEST_CASE("ground: the cells in which a curb's face stands are left to both sides") {
+  CHECK(borne([](double x, double) { return x < 1.15 ? 0.0 : 0.12; }) == 2);
+}
+
+//             ______
+//       _____|         a strip of three cells, level
+//  ____|
+TEST_CASE("ground: a strip that has cells of its own is ground") {
+  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.3 ? 0.07 : 0.14; }) == 3);
+}
+
+//         |
+//         | .          a wall of which the laser sees 40 cm, at the end of the window
+//  _______|_
+TEST_CASE("ground: the fringe of an obstacle is left to the ground before it") {
+  CHECK(borne([](double x, double y) {
+          const bool wall = x >= 2.3;
+          return wall ? 0.2 + (static_cast<int>(y * 100) % 10 < 5 ? -0.15 : 0.15) : 0.0;
+        }) == 1);
+}
+
+TEST_CASE("ground: a slope that a robot can stand on is ground") {
+  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : 0.3 * (x - 1.0); }) == 2);
+}
+
+}  // namespace
+}  // namespace curbline
