@@ -258,6 +258,28 @@ TEST_CASE("program: replay sums up in one JSON object") {
   CHECK(summary.at("points").get<int>() > 0);
 }
 
+TEST_CASE("program: --line-costs has a row for each scan line, and their sums are the summary's") {
+  const Recording logs("street", "lms200");
+  const Outcome outcome = curbline(logs.replay() + Words{"--json", "--line-costs", logs.path("lines.csv")});
+  REQUIRE(outcome.status == 0);
+  const auto summary = nlohmann::json::parse(outcome.out);
+  std::ifstream file(logs.path("lines.csv"));
+  std::string row;
+  std::getline(file, row);
+  CHECK(row == "x_m,y_m,take_s,evidences,messages,dropped,full,deferred");
+  long rows = 0, deferred = 0;
+  double seconds = 0;
+  while (std::getline(file, row)) {
+    ++rows;
+    deferred += std::stol(row.substr(row.rfind(',') + 1));
+    seconds += std::stod(row.substr(row.find(',', row.find(',') + 1) + 1));
+  }
+  CHECK(rows == summary.at("lines"));
+  CHECK(deferred == summary.at("cells_deferred"));
+  CHECK(seconds > 0);
+  CHECK(seconds < outcome.seconds);
+}
+
 TEST_CASE("program: --speed 1 takes as long as the log, max does not wait") {
   const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
   const Outcome slow = curbline(logs.replay() + Words{"--speed", "1"});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -119,7 +120,9 @@ bool Replay::step(std::vector<Point>* points) {
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
   const ScanLine line{line_.time_ns, line_.ranges_m};
+  const auto start = std::chrono::steady_clock::now();
   status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
+  take_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   lines_taken_ += status_ == Status::ok;
   keep_leaving_curbs();
   return true;

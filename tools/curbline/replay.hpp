@@ -47,6 +47,7 @@ class Replay {
   RobotMarker robot() const { return robot_marker_; }  ///< where the newest pose has it; the origin if it stands
   const CarmenLine& line() const { return line_; }     ///< the one step() took
   Status status() const { return status_; }            ///< what the pipeline said of it
+  double take_s() const { return take_s_; }            ///< how long the pipeline had it, by the clock
   long tilt_readings() const { return tilt_readings_; }
   can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
 
@@ -69,6 +70,7 @@ class Replay {
   CarmenLine line_;
   RobotMarker robot_marker_;
   Status status_ = Status::ok;
+  double take_s_ = 0;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, lines_taken_ = 0;
   Grid grid_before_;

@@ -2,9 +2,11 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "curbline/commands.hpp"
+#include "curbline/line_costs.hpp"
 #include "curbline/map_cloud.hpp"
 #include "curbline/map_options.hpp"
 #include "curbline/replay.hpp"
@@ -17,6 +19,7 @@ struct Options {
   ReplayLogs logs;
   std::string robot;
   std::string speed;
+  std::string line_costs;
   MapOptions map;
 };
 
@@ -100,7 +103,8 @@ nlohmann::json summary_of(const Replay& replay) {
           {"regions_full", c.regions_full},
           {"links_full", c.links_full},
           {"planes_full", c.planes_full},
-          {"curbs_full", c.curbs_full + c.borders_full}};
+          {"curbs_full", c.curbs_full + c.borders_full},
+          {"cells_deferred", c.cells_deferred}};
 }
 
 void run(const Options& o) {
@@ -110,13 +114,17 @@ void run(const Options& o) {
   apply_window(o.map, robot.window);
   Replay replay(robot, o.logs);
   CurbStream stream;
+  std::optional<LineCosts> costs;
+  if (!o.line_costs.empty()) costs.emplace(o.line_costs);
   const bool batch = o.map.method != MapMethod::curbline;
   std::vector<Point> points;
   while (replay.step(batch ? &points : nullptr)) {
+    if (costs) costs->add(replay);
     pace.wait_for(replay.line().time_ns);
     if (!batch && o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();
+  if (costs) costs->commit();
   if (const std::string remarks = replay.remarks(); !remarks.empty()) std::cerr << remarks << '\n';
   const Grid grid = o.map.fixed() ? asked_grid(o.map, robot.window) : replay.pipeline().grid();
   Map map;
@@ -146,6 +154,7 @@ void add_replay(CLI::App& app) {
   command->add_option("--robot", o->robot, "robot description")->required();
   command->add_option("--speed", o->speed,
                       "1 keeps the log's own time, max does not; default: max for logs, 1 for can:IFACE");
+  command->add_option("--line-costs", o->line_costs, "CSV of each line's time and work");
   add_map_options(*command, o->map);
   command->footer(
       "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded times:\n"
