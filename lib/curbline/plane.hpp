@@ -73,7 +73,8 @@ struct Plane {
   /// their errors of tilt and mount.
   float height_variance_m2(float px_m, float py_m) const {
     const float dx = px_m - x_m, dy = py_m - y_m;
-    return variance_m2 * (1.0f / cells + dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy);
+    const float away = dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy;
+    return variance_m2 * (1.0f / cells + (away > 0.0f ? away : 0.0f));
   }
 };
 

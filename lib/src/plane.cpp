@@ -14,7 +14,9 @@ struct Slopes {
 /// Ridge regression of z on (x, y) about the mean.
 Slopes solve(const PlaneMoments& m, float ridge) {
   const float xx = m.xx + ridge, yy = m.yy + ridge;
-  const float determinant = xx * yy - m.xy * m.xy;
+  // Of a thin strip that lies across the axes rounding takes it below what the ridge alone makes of it.
+  const float product = xx * yy - m.xy * m.xy, least = ridge * (xx + yy - ridge);
+  const float determinant = product > least ? product : least;
   const float x = (yy * m.xz - m.xy * m.yz) / determinant;
   const float y = (xx * m.yz - m.xy * m.xz) / determinant;
   const float residual = m.zz - x * m.xz - y * m.yz;

@@ -26,6 +26,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   if (pose.still) {
     new_sweep_variance_s2_ = prior_variance_s2;
   } else {
+    one_offset_ = true;
     angle_variance_ += square(pose.attitude_sd_rad);
     height_variance_m2_ = square(pose.height_sd_m);
   }
@@ -46,12 +47,12 @@ TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
   const float swept = angle_rad - turned_at_rad_;
   if (swept < least_sweep_rad && swept > -least_sweep_rad) return Turn::back;
   turned_at_rad_ = angle_rad;
-  state_[sweep_].variance_s2 += new_sweep_variance_s2_;
+  state().variance_s2 += new_sweep_variance_s2_;
   return Turn::new_sweep;
 }
 
 void TiltLatency::compare(float above_m, float variance_m2, float growth_m_s) {
-  const float variance = variance_m2 + growth_m_s * growth_m_s * state_[sweep_].variance_s2;
+  const float variance = variance_m2 + growth_m_s * growth_m_s * state().variance_s2;
   if (square(above_m) > gate * variance) return;  // another surface: the face of a curb, somebody walking
   const float weight = growth_m_s / variance_m2;
   precision_ += weight * growth_m_s;
@@ -67,17 +68,17 @@ void TiltLatency::end_line(float tilt_rate_rad_s) {
     const float growth = growth_ / points_;
     const float common_s2 = time_variance_s2_ + angle_variance_ / rate2 + height_variance_m2_ / (growth * growth);
     const float observed_s = weighted_ / precision_;
-    State& state = state_[sweep_];
-    const float innovation_variance = state.variance_s2 + 1.0f / precision_ + common_s2;
+    State& now = state();
+    const float innovation_variance = now.variance_s2 + 1.0f / precision_ + common_s2;
     if (square(observed_s) <= gate * innovation_variance) {
-      const float gain = state.variance_s2 / innovation_variance;
-      state.offset_s = within(state.offset_s + gain * observed_s, largest_offset_s_);
-      state.variance_s2 -= gain * state.variance_s2;
+      const float gain = now.variance_s2 / innovation_variance;
+      now.offset_s = within(now.offset_s + gain * observed_s, largest_offset_s_);
+      now.variance_s2 -= gain * now.variance_s2;
     }
   }
   precision_ = weighted_ = growth_ = points_ = 0.0f;
 }
 
-float TiltLatency::sd_s() const { return square_root(state_[sweep_].variance_s2); }
+float TiltLatency::sd_s() const { return square_root(state().variance_s2); }
 
 }  // namespace curbline

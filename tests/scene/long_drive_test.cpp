@@ -55,14 +55,11 @@ Scene street() {
                      "street.toml");
 }
 
-/// The robot of lms200.toml at a third of its scan lines and with beams as thin as a thread: a tenth of the work. Its
-/// tilt is known to be in time: a latency that is sought while driving wanders (to 50 ms within 300 m of this way), and
-/// the end is then worse.
+/// The robot of lms200.toml at a third of its scan lines and with beams as thin as a thread: a tenth of the work.
 Robot cheap_robot() {
   Robot robot = read_robot(CURBLINE_SOURCE_DIR "/tools/robots/lms200.toml");
   robot.pose.still = false;
   robot.scan_rate_hz = 25.0;
-  robot.tilt.latency_sd_s = 0.0f;
   robot.simulated.beam_divergence_rad = 0.0;
   return robot;
 }

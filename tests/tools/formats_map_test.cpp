@@ -76,12 +76,12 @@ TEST_CASE("curbs: a row a piece, and back") {
   CHECK(read_curbs(dir.write("c.csv", none.str())).empty());
 }
 
-TEST_CASE("curbs: a JSON line bears the same names as the columns, in their order") {
+TEST_CASE("curbs: a JSON line bears the names of the columns, in their order, then the width of the face and the number") {
   std::ostringstream text;
-  write_curb_json(text, {1, 2, 3.5, -4, static_cast<double>(0.12f), 0.004, 0.97, "step_up"});
+  write_curb_json(text, {1, 2, 3.5, -4, static_cast<double>(0.12f), 0.004, 0.97, "step_up", 0.03, 12});
   CHECK(
       text.str() ==
-      R"({"x0_m":1.0,"y0_m":2.0,"x1_m":3.5,"y1_m":-4.0,"height_m":0.12,"height_sd_m":0.004,"probability":0.97,"kind":"step_up"})"
+      R"({"x0_m":1.0,"y0_m":2.0,"x1_m":3.5,"y1_m":-4.0,"height_m":0.12,"height_sd_m":0.004,"probability":0.97,"kind":"step_up","face_width_m":0.03,"id":12})"
       "\n");
 }
 

@@ -134,5 +134,19 @@ TEST_CASE("pipeline: a pose far off moves the window there and back, and the map
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
 }
 
+TEST_CASE("pipeline: while the robot drives over level ground a servo that is in time stays in time") {
+  const auto pipeline = started(driving_settings());
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return time_s; };
+  for (int line = 0; line < 8000; ++line) {  // 200 m
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    pipeline->add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+    pipeline->add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    pipeline->take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, x)});
+  }
+  CHECK(std::abs(pipeline->tilt_latency().offset_s()) < 0.005f);
+}
+
 }  // namespace
 }  // namespace curbline

@@ -213,5 +213,23 @@ TEST_CASE("plane fit: far from the origin it keeps its digits") {
   CHECK(q.height_m(1025.0f, -2047.0f) == Approx(p.height_m(1.0f, 1.0f) + 128.0f).margin(1e-4));
 }
 
+TEST_CASE("plane: of a thin strip of many points, across the axes, the height's variance is a number, and least in its middle") {
+  for (const double weight : {10.0, 1000.0, 20000.0}) {
+    PlaneMoments moments;
+    for (int k = -20; k < 20; ++k) {
+      PlaneMoments cell;
+      cell.x = static_cast<float>(1 + 0.0707 * k);
+      cell.y = static_cast<float>(2 + 0.0707 * k);
+      cell.weight = cell.points = static_cast<float>(weight);
+      cell.cells = 1;
+      moments.add_cell(cell);
+    }
+    const Plane plane = fit_plane(moments, 40, {});
+    for (float x = -1; x < 5; x += 0.1f) {
+      for (float y = 0; y < 4; y += 0.1f) CHECK(plane.height_variance_m2(x, y) >= plane.variance_m2 / 40);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace curbline
