@@ -67,6 +67,9 @@ class BorderFinder {
   Border border_of(const Gap& gap) const;
   Edge edge_of(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
+  float residual_m(int i, int j, const Cell& cell, const Plane& plane) const {
+    return cell.height_m - plane.height_m(dem_.centroid_x_m(i, cell), dem_.centroid_y_m(j, cell));
+  }
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
 
   int row(const Gap& gap, int along) const { return gap.axis == 0 ? along : gap.across; }
@@ -90,7 +93,7 @@ int BorderFinder<limits>::find_ground() {
     const LabelType label = field_.label(s);
     if (label == none) return;
     const Cell& cell = dem_.cell(s);
-    const float residual = cell.height_m - mixture_.plane(label).height_m(dem_.centroid_x_m(i, cell), dem_.centroid_y_m(j, cell));
+    const float residual = residual_m(i, j, cell, mixture_.plane(label));
     ++cells[label];
     off[label] += residual > bound || residual < -bound;
   });
@@ -105,7 +108,7 @@ int BorderFinder<limits>::find_ground() {
 /// Within three standard deviations.
 template <Limits limits>
 bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& plane) const {
-  const float residual = cell.height_m - plane.height_m(dem_.centroid_x_m(i, cell), dem_.centroid_y_m(j, cell));
+  const float residual = residual_m(i, j, cell, plane);
   return residual * residual <= 9.0f * (plane.variance_m2 + dem_.height_variance_m2(cell));
 }
 
@@ -157,6 +160,11 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.probability = 1.0f - same_plane(gap);
   border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m;
   border.width_m = edge.width_m;
+  const auto off = [&](const Place& place) {
+    const int i = row(gap, place.along), j = col(gap, place.along);
+    return residual_m(i, j, dem_.cell(dem_.slot(i, j)), mixture_.plane(place.label));
+  };
+  border.off_m = rising ? off(gap.second) - off(gap.first) : off(gap.first) - off(gap.second);
   border.low = rising ? gap.first.label : gap.second.label;
   border.high = rising ? gap.second.label : gap.first.label;
   border.axis = static_cast<std::int8_t>(gap.axis);

@@ -32,7 +32,7 @@ const char* to_string(CurbKind kind);
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
   float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease or the edge of a ramp
-  float height_sd_m = 0.0f;  ///< from both planes' posteriors
+  float height_sd_m = 0.0f;  ///< from both planes' posteriors, and how far the cells beside the border lie off them
   float probability = 0.0f;  ///< that the cells on both sides lie on different planes, mean along the piece
   float face_width_m = 0.0f; ///< across the piece, between the cells of both planes, without the shadow of a step down: the face at most, to a cell
   CurbKind kind = CurbKind::crease;
@@ -191,7 +191,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = stages.mixture.plane(a.high);
   LineFit fit;
-  float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, toward_x = 0.0f, toward_y = 0.0f;
+  float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, off = 0.0f, toward_x = 0.0f, toward_y = 0.0f;
   for (int k = first; k <= last; ++k) {
     const Border& border = work.borders.at(k);
     fit.add(border.x_m, border.y_m);
@@ -199,6 +199,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
     variance += high.height_variance_m2(border.x_m, border.y_m) + low.height_variance_m2(border.x_m, border.y_m);
     probability += border.probability;
     half_gap += border.half_gap_m;
+    off += border.off_m;
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
   }
   const float n = 1.0f / static_cast<float>(last - first + 1);
@@ -219,13 +220,16 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   curb.x1_m = dem.origin_x_m() + segment.x1_m;
   curb.y1_m = dem.origin_y_m() + segment.y1_m;
   curb.height_m = (low_is_near ? height : -height) * n;
-  curb.height_sd_m = square_root(variance * n);  // the errors of a plane are common to the piece: they do not average out
+  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off their planes may be
+  // the planes' fault wholly, not at all, or in part, each share as likely: a third of its square.
+  const float planes_m2 = variance * n, off_m = off * n;
+  curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 3));
   curb.probability = probability * n;
   curb.face_width_m = width * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
   const float reach_m = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  curb.kind = kind_of(low, high, segment, {height * n, curb.height_sd_m, half_gap * n, reach_m});
+  curb.kind = kind_of(low, high, segment, {height * n, square_root(planes_m2), half_gap * n, reach_m});
   if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;
   } else if (curb.height_m < 0.0f) {
