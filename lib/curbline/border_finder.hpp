@@ -1,6 +1,7 @@
-// Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells that lie on no
-// plane of the ground, and those that hold something of both sides, are looked through; they tell where between the cells of the one
-// and of the other the edge lies. Cost: two passes over the window and a look at each cell of a gap.
+// Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
+// that lie on no plane of the ground, and those that hold something of both sides, are looked through; they tell where
+// between the cells of the one and of the other the edge lies. Cost: two passes over the window and a look at each cell
+// of a gap.
 #pragma once
 
 #include <array>
@@ -29,15 +30,16 @@ struct CrossedCell {
 
 /// How far from the near side of a cell its edge lies, in cells, 0 to 1.
 /// A step up shows its face: with as many points a metre on both planes, and any number on the face, the edge lies at
-/// 1/2 + (1/2 - far_share) + (centroid - 1/2). A step down shows none, and hides what lies below it: at 2 centroid - far_share, whatever the
-/// share of points below; and not beyond 1 - far_share, where it would lie if nothing were hidden.
+/// 1/2 + (1/2 - far_share) + (centroid - 1/2). A step down shows none, and hides what lies below it: at 2 centroid -
+/// far_share, whatever the share of points below; and not beyond 1 - far_share, where it would lie if nothing were
+/// hidden.
 float edge_in_cell(const CrossedCell& cell, bool step_up);
 
 template <Limits limits>
 class BorderFinder {
  public:
-  BorderFinder(const CurbSettings& settings, const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-               const Viewpoint& view)
+  BorderFinder(const CurbSettings& settings, const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
+               const LabelField<limits>& field, const Viewpoint& view)
       : settings_(settings), dem_(dem), mixture_(mixture), field_(field), view_(view) {}
 
   /// Fills `borders`, which are empty.
@@ -60,7 +62,8 @@ class BorderFinder {
   };
   struct Edge {
     float at_m;     ///< along the axis
-    float width_m;  ///< between the cells of the one plane and of the other, without what lies in the shadow of a step down
+    float width_m;  ///< between the cells of the one plane and of the other, without what lies in the shadow of a step
+                    ///< down
   };
 
   int find_ground();
@@ -83,8 +86,8 @@ class BorderFinder {
   std::array<bool, limits.planes> ground_{};
 };
 
-/// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its robust standard
-/// deviation (1.4826 times the median residual) exceeds the bound. Returns how many are.
+/// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
+/// robust standard deviation (1.4826 times the median residual) exceeds the bound. Returns how many are.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};
@@ -120,13 +123,16 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   Place before_in_row;
   int row = -1;
   const auto pass = [&](Place& before, const Place& here, int axis, int across) {
-    const bool border = before.label != none && before.label != here.label && here.along - before.along <= settings_.link_reach;
+    const bool border =
+        before.label != none && before.label != here.label && here.along - before.along <= settings_.link_reach;
     if (border && !borders.add(dem_, border_of({axis, across, before, here}))) ++counters.borders_full;
     before = here;
   };
   dem_.for_each_valid([&](int i, int j, int s) {
     const LabelType label = field_.label(s);
-    if (label == none || !ground_[label] || !mixture_.on_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) return;
+    if (label == none || !ground_[label] || !mixture_.on_ground(s) ||
+        !lies_on(i, j, dem_.cell(s), mixture_.plane(label)))
+      return;
     if (i != row) before_in_row = {};
     row = i;
     pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, 0, j);
@@ -203,14 +209,15 @@ auto BorderFinder<limits>::edge_of(const Gap& gap) const -> Edge {
     const float offset = (gap.axis == 0 ? cell.dx_m : cell.dy_m) / pitch_m;
     edge += edge_in_cell({(cell.height_m - height_m) / step_m, 0.5f + (outward ? offset : -offset)}, step_m > 0.0f);
   }
-  // A ray that grazes a step down meets the ground behind it at step / slope of the ray; the edge lies before its shadow. Cells that are
-  // empty otherwise lie between two scan lines.
+  // A ray that grazes a step down meets the ground behind it at step / slope of the ray; the edge lies before its
+  // shadow. Cells that are empty otherwise lie between two scan lines.
   const float above_m = view_.z_m - near.height_m(x_m, y_m), away_m = middle_m - seen_from_m;
   float shadow = 0.0f;
   if (step_m < 0.0f && above_m > 0.0f) shadow = -step_m * (outward ? away_m : -away_m) / (above_m * pitch_m);
   if (shadow > empty) shadow = empty;
   edge += 0.5f * (empty - shadow);
-  const float at = outward ? static_cast<float>(gap.first.along) + edge : static_cast<float>(gap.second.along + 1) - edge;
+  const float at =
+      outward ? static_cast<float>(gap.first.along) + edge : static_cast<float>(gap.second.along + 1) - edge;
   return {at * pitch_m, inside_m - shadow * pitch_m};
 }
 

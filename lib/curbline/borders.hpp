@@ -1,5 +1,5 @@
-// Border points between two planes on the rows and columns of the window (BorderFinder), and their chaining into polylines. Working memory
-// of one call of CurbTracer::trace().
+// Border points between two planes on the rows and columns of the window (BorderFinder), and their chaining into
+// polylines. Working memory of one call of CurbTracer::trace().
 #pragma once
 
 #include <array>
@@ -18,16 +18,16 @@ class Borders {
   using Index = std::uint16_t;
 
   struct Border {
-    float x_m, y_m;         ///< in the window's frame
-    float probability;      ///< that the cells on both sides lie on different planes
-    float half_gap_m;       ///< between the cells of the one and the other
-    float width_m;          ///< of what lies between them, BorderFinder::Edge
-    float off_m;            ///< by how much more the cell on `high` lies above its plane than that on `low`
-    LabelType low, high;    ///< the planes, low < high by number
-    std::int8_t axis;       ///< 0: found along x, 1: along y
-    std::int8_t sign;       ///< +1 if `high` lies in the positive direction of the axis
+    float x_m, y_m;       ///< in the window's frame
+    float probability;    ///< that the cells on both sides lie on different planes
+    float half_gap_m;     ///< between the cells of the one and the other
+    float width_m;        ///< of what lies between them, BorderFinder::Edge
+    float off_m;          ///< by how much more the cell on `high` lies above its plane than that on `low`
+    LabelType low, high;  ///< the planes, low < high by number
+    std::int8_t axis;     ///< 0: found along x, 1: along y
+    std::int8_t sign;     ///< +1 if `high` lies in the positive direction of the axis
     bool chained;
-    Index next_in_cell;     ///< another border in the same cell
+    Index next_in_cell;  ///< another border in the same cell
   };
 
   void clear() {
@@ -40,8 +40,9 @@ class Borders {
   /// False if the store is full.
   bool add(const Dem<limits>& dem, Border border);
 
-  /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each, within two
-  /// cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50 look-ups a border.
+  /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each,
+  /// within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50
+  /// look-ups a border.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
 

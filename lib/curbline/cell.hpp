@@ -4,15 +4,15 @@
 
 namespace curbline {
 
-/// Prior of a cell's variance: a scaled inverse chi-squared of `degrees` observations of `variance_m2`. The mean's prior
-/// is flat (kappa0 = 0), as in the paper's code.
+/// Prior of a cell's variance: a scaled inverse chi-squared of `degrees` observations of `variance_m2`. The mean's
+/// prior is flat (kappa0 = 0), as in the paper's code.
 struct CellPrior {
   float degrees = 3.0f;
   float variance_m2 = 0.02f * 0.02f;
 };
 
-/// Sufficient statistics. A point of weight w is a height with variance (noise variance of the cell) / w, so that a noisier
-/// reading moves the mean less. Offsets are from the cell's centre: exact in float wherever the map is.
+/// Sufficient statistics. A point of weight w is a height with variance (noise variance of the cell) / w, so that a
+/// noisier reading moves the mean less. Offsets are from the cell's centre: exact in float wherever the map is.
 struct Cell {
   float points = 0.0f;      ///< how many
   float weight = 0.0f;      ///< kappa: sum of their weights

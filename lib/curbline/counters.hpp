@@ -1,5 +1,5 @@
-// What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows; a reader compares two
-// snapshots. A healthy robot sees nothing but the first group move.
+// What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows; a reader compares
+// two snapshots. A healthy robot sees nothing but the first group move.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@ struct Counters {
   std::uint32_t evidences = 0;  ///< plane evidences computed while merging
   std::uint32_t messages = 0;   ///< belief messages computed
   // Bad data.
-  std::uint32_t no_returns = 0;           ///< beams without a usable range
-  std::uint32_t lines_dropped = 0;        ///< see Status of take()
-  std::uint32_t beams_without_tilt = 0;   ///< beyond extrapolation or in a gap between readings
-  std::uint32_t beams_extrapolated = 0;   ///< beyond the last tilt reading, within the bound
-  std::uint32_t tilt_dropped = 0;         ///< readings that were not finite or not later than the one before
-  std::uint32_t poses_dropped = 0;        ///< the same of poses
+  std::uint32_t no_returns = 0;          ///< beams without a usable range
+  std::uint32_t lines_dropped = 0;       ///< see Status of take()
+  std::uint32_t beams_without_tilt = 0;  ///< beyond extrapolation or in a gap between readings
+  std::uint32_t beams_extrapolated = 0;  ///< beyond the last tilt reading, within the bound
+  std::uint32_t tilt_dropped = 0;        ///< readings that were not finite or not later than the one before
+  std::uint32_t poses_dropped = 0;       ///< the same of poses
   // Bounds that were hit.
   std::uint32_t cells_deferred = 0;  ///< labels that waited for a later call (LabelSettings::max_messages)
-  std::uint32_t regions_full = 0;  ///< leaves that had no node of their own
-  std::uint32_t links_full = 0;    ///< links that were left out
-  std::uint32_t planes_full = 0;   ///< regions large enough for a plane that got none
-  std::uint32_t borders_full = 0;  ///< border points of curbs that were left out
-  std::uint32_t curbs_full = 0;    ///< pieces of curb that were not given out
+  std::uint32_t regions_full = 0;    ///< leaves that had no node of their own
+  std::uint32_t links_full = 0;      ///< links that were left out
+  std::uint32_t planes_full = 0;     ///< regions large enough for a plane that got none
+  std::uint32_t borders_full = 0;    ///< border points of curbs that were left out
+  std::uint32_t curbs_full = 0;      ///< pieces of curb that were not given out
 };
 
 }  // namespace curbline

@@ -1,7 +1,8 @@
-// Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp), chained into
-// polylines by the pair of planes they part (borders.hpp), and cut into straight pieces. Each piece tells how much higher the far
-// plane is, and keeps its number from call to call. Cost: two passes over the window, 50 look-ups a border point, the square of a chain's
-// length for cutting it, and 20 operations for each pair of a curb and one of the call before.
+// Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
+// chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces. Each piece tells
+// how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the window, 50
+// look-ups a border point, the square of a chain's length for cutting it, and 20 operations for each pair of a curb and
+// one of the call before.
 #pragma once
 
 #include <array>
@@ -24,23 +25,28 @@ enum class CurbKind : std::uint8_t {
   step_up,    ///< the far side is higher
   step_down,  ///< the far side is lower
   crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall
-  ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO 21542
+  ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO
+              ///< 21542
 };
 const char* to_string(CurbKind kind);
 
 /// A straight piece of curb line, in the map frame. Near is the side of the robot.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
-  float height_m = 0.0f;     ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0 of a crease or the edge of a ramp
-  float height_sd_m = 0.0f;  ///< from both planes' posteriors, and how far the cells beside the border lie off them
-  float probability = 0.0f;  ///< that the cells on both sides lie on different planes, mean along the piece
-  float face_width_m = 0.0f; ///< across the piece, between the cells of both planes, without the shadow of a step down: the face at most, to a cell
+  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0
+                          ///< of a crease or the edge of a ramp
+  float height_sd_m = 0.0f;   ///< from both planes' posteriors, and how far the cells beside the border lie off them
+  float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
+  float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, without the shadow of a step
+                              ///< down: the face at most, to a cell
   CurbKind kind = CurbKind::crease;
-  std::uint16_t id = 0;      ///< the same as long as the curb is found, 1 to 65535; may be given anew when that many have been
+  std::uint16_t id =
+      0;  ///< the same as long as the curb is found, 1 to 65535; may be given anew when that many have been
   std::uint16_t near_label = 0, far_label = 0;
 };
 
-/// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line. Else 0 or less.
+/// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line.
+/// Else 0 or less.
 float overlap_m(const Curb& now, const Curb& before, float near_m);
 
 /// A border as it was drawn between two planes.
@@ -50,10 +56,9 @@ struct DrawnBorder {
   float reach_m;                ///< how far the planes' meeting may lie away
 };
 
-/// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of it and differ in
-/// height there by no more than their slopes make up across half the gap, and what is not known (95 %) of the planes and of the cells
-/// by which the border was drawn.
-/// CurbKind::step_up stands for either step.
+/// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of
+/// it and differ in height there by no more than their slopes make up across half the gap, and what is not known (95 %)
+/// of the planes and of the cells by which the border was drawn. CurbKind::step_up stands for either step.
 CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 template <Limits limits>
@@ -73,8 +78,8 @@ class CurbTracer {
   };
 
   /// Finds all curbs of the window, in working memory that is the caller's.
-  void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, const Viewpoint& view, Work& work,
-             Counters& counters);
+  void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
+             const Viewpoint& view, Work& work, Counters& counters);
 
   /// What the last trace() found. Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
@@ -99,8 +104,8 @@ class CurbTracer {
 };
 
 template <Limits limits>
-void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-                               const Viewpoint& view, Work& work, Counters& counters) {
+void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
+                               const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();
   BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
@@ -111,11 +116,13 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   keep_ids(work, dem.cell_x_m() > dem.cell_y_m() ? 2.0f * dem.cell_x_m() : 2.0f * dem.cell_y_m());
 }
 
-/// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were found; others get
-/// new numbers.
+/// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were
+/// found; others get new numbers.
 template <Limits limits>
 void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
-  const auto is_step = [](const Curb& curb) { return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down; };
+  const auto is_step = [](const Curb& curb) {
+    return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
+  };
   for (int n = 0; n < work.curbs; ++n) {
     Curb& now = work.curb[static_cast<std::size_t>(n)];
     Curb* same = nullptr;
@@ -191,7 +198,8 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = stages.mixture.plane(a.high);
   LineFit fit;
-  float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, off = 0.0f, toward_x = 0.0f, toward_y = 0.0f;
+  float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, off = 0.0f, toward_x = 0.0f,
+        toward_y = 0.0f;
   for (int k = first; k <= last; ++k) {
     const Border& border = work.borders.at(k);
     fit.add(border.x_m, border.y_m);
@@ -220,15 +228,16 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   curb.x1_m = dem.origin_x_m() + segment.x1_m;
   curb.y1_m = dem.origin_y_m() + segment.y1_m;
   curb.height_m = (low_is_near ? height : -height) * n;
-  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off their planes may be
-  // the planes' fault wholly, not at all, or in part, each share as likely: a third of its square.
+  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
+  // their planes may be the planes' fault wholly, not at all, or in part, each share as likely: a third of its square.
   const float planes_m2 = variance * n, off_m = off * n;
   curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 3));
   curb.probability = probability * n;
   curb.face_width_m = width * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
-  const float reach_m = static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
+  const float reach_m =
+      static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
   curb.kind = kind_of(low, high, segment, {height * n, square_root(planes_m2), half_gap * n, reach_m});
   if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;

@@ -1,6 +1,7 @@
 // Table of contents, in the order of the data's way. A user needs pipeline.hpp; the rest is there to be read.
 #pragma once
 
+// clang-format off
 #include "curbline/limits.hpp"           // sizes, at compile time
 #include "curbline/settings.hpp"         // geometry, noise and tuning, at run time
 #include "curbline/status.hpp"           // how a call ended
@@ -29,3 +30,4 @@
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/pipeline.hpp"         // all of it, on one screen
+// clang-format on

@@ -1,6 +1,6 @@
-// The elevation map: a rolling window of cells. A two-dimensional ring: when the window moves no cell is copied, those that
-// leave are cleared. Cells are addressed by (i, j), i along x from the window's lowest corner; what other stages keep
-// for a cell is stored under its slot, which stays the same while the cell is in the window.
+// The elevation map: a rolling window of cells. A two-dimensional ring: when the window moves no cell is copied, those
+// that leave are cleared. Cells are addressed by (i, j), i along x from the window's lowest corner; what other stages
+// keep for a cell is stored under its slot, which stays the same while the cell is in the window.
 #pragma once
 
 #include <array>
@@ -44,9 +44,8 @@ class Dem {
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
-  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite, or no variance at
-  /// all. Its weight is the expected
-  /// noise over its variance plus the ground's texture. O(1).
+  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite, or no variance
+  /// at all. Its weight is the expected noise over its variance plus the ground's texture. O(1).
   bool add(const Point& point);
 
   int rows() const { return settings_.rows; }
@@ -66,8 +65,9 @@ class Dem {
   }
   const Cell& cell(int slot) const { return cells_[static_cast<std::size_t>(slot)]; }
 
-  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n points
-  /// that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design effect).
+  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
+  /// points that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design
+  /// effect).
   PlaneMoments moments(int i, int j, const Cell& cell) const {
     PlaneMoments m;
     const float share = 1.0f / (1.0f + prior_.common_share * (cell.points - 1.0f));
@@ -84,8 +84,12 @@ class Dem {
   float noise_m2() const { return prior_.noise_m2; }
   /// Variance of a cell's mean height, from the noise of its points.
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
-  float centroid_x_m(int i, const Cell& cell) const { return (static_cast<float>(i) + 0.5f) * settings_.cell_x_m + cell.dx_m; }
-  float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m; }
+  float centroid_x_m(int i, const Cell& cell) const {
+    return (static_cast<float>(i) + 0.5f) * settings_.cell_x_m + cell.dx_m;
+  }
+  float centroid_y_m(int j, const Cell& cell) const {
+    return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m;
+  }
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
   bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & 1) != 0; }
@@ -117,12 +121,14 @@ class Dem {
   /// The laser sweeps over the ground anew.
   void begin_sweep() { sweep_ = static_cast<std::uint8_t>(sweep_ + 2); }
   /// Has an earlier sweep seen the cell, and this one not yet?
-  bool mapped_before(int slot) const { return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) > 1; }
+  bool mapped_before(int slot) const {
+    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) > 1;
+  }
   /// The cell under a point; -1 outside the window.
   int slot_at(float x_m, float y_m) const;
 
-  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells, at most
-  /// max_link_reach. O(1).
+  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
+  /// at most max_link_reach. O(1).
   int next_valid(int slot, int direction, int reach) const {
     const int g = distances_[static_cast<std::size_t>(slot)] >> (4 * direction) & 15;
     return g <= reach ? g : 0;
@@ -147,7 +153,8 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  std::array<std::uint8_t, capacity> touched_{};  ///< bit 0; above it the number of the sweep that touched the cell last
+  std::array<std::uint8_t, capacity>
+      touched_{};  ///< bit 0; above it the number of the sweep that touched the cell last
   std::uint8_t sweep_ = 0;
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;
@@ -238,23 +245,28 @@ void Dem<limits>::leave(int i, int j) {
 template <Limits limits>
 int Dem<limits>::slot_at(float x_m, float y_m) const {
   const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
-  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return -1;
+  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
+      !(v < static_cast<float>(settings_.cols)))
+    return -1;
   return slot(static_cast<int>(u), static_cast<int>(v));
 }
 
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
-  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !is_finite(point.variance_m2)) return false;
+  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !is_finite(point.variance_m2))
+    return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
   const float u = (point.x_m - origin_x_m()) / settings_.cell_x_m;
   const float v = (point.y_m - origin_y_m()) / settings_.cell_y_m;
-  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) || !(v < static_cast<float>(settings_.cols))) return false;
+  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
+      !(v < static_cast<float>(settings_.cols)))
+    return false;
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const auto s = static_cast<std::size_t>(slot(i, j));
   if (!cells_[s].valid()) meet_neighbours(i, j);
-  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m, (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m,
-                prior_.noise_m2 / variance_m2);
+  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m,
+                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m, prior_.noise_m2 / variance_m2);
   touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;
   return true;
@@ -271,8 +283,10 @@ template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   dem.for_each_valid([&](int i, int j, int s) {
     const auto from = static_cast<std::size_t>(s);
-    if (const int g = dem.next_valid(s, 0, reach); g > 0) visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g});
-    if (const int g = dem.next_valid(s, 2, reach); g > 0) visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g});
+    if (const int g = dem.next_valid(s, 0, reach); g > 0)
+      visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g});
+    if (const int g = dem.next_valid(s, 2, reach); g > 0)
+      visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g});
   });
 }
 

@@ -1,5 +1,5 @@
-// Rigid transforms between the frames: map <- base (the robot) <- tilt (the servo's axis) <- laser. Right-handed, x ahead, y left,
-// z up, metres and radians (REP 103). Names cancel: p_map = T_map_base * p_base.
+// Rigid transforms between the frames: map <- base (the robot) <- tilt (the servo's axis) <- laser. Right-handed, x
+// ahead, y left, z up, metres and radians (REP 103). Names cancel: p_map = T_map_base * p_base.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,8 @@
 
 namespace curbline {
 
-// Sums of three are written out: Eigen orders them, and fuses them with the multiplications, as the target's vectors suit it.
+// Sums of three are written out: Eigen orders them, and fuses them with the multiplications, as the target's vectors
+// suit it.
 
 inline float dot(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();

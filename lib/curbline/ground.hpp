@@ -1,8 +1,11 @@
 // Which planes are ground. A region may fit a plane and be none that a wheel could stand on:
-//   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its cells spread over most
+//   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
+//   cells spread over most
 //     of the step: it is narrower than a cell and a half, and its plane is what mixing both sides makes.
-//   - the fringe of an obstacle: a thin region within whose cells the heights spread as on a slope of more than 45 degrees.
-// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: two passes over the window.
+//   - the fringe of an obstacle: a thin region within whose cells the heights spread as on a slope of more than 45
+//   degrees.
+// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: two
+// passes over the window.
 #pragma once
 
 #include <array>
@@ -17,18 +20,19 @@ class Ground {
  public:
   void clear() { ground_.fill(true); }
 
-  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, `none` if it has none; changed(label) is called for each
-  /// answer that is another than before.
+  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, `none` if it has none; changed(label)
+  /// is called for each answer that is another than before.
   template <typename LabelType, typename LabelOf, typename Changed>
   void update(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, Changed&& changed);
 
   bool is(int label) const { return ground_[static_cast<std::size_t>(label)]; }
 
  private:
-  static constexpr int longest_strip = 3;   ///< cells; as many as a face of one and a half touches when it lies across the grid
-  static constexpr int widest_gap = 2;      ///< between a strip and the planes beside it, in cells
-  static constexpr float narrow = 1.5f;     ///< cells: a wider strip has cells of its own
-  static constexpr float thin = 4.0f;       ///< cells of a run on average: an obstacle hides what lies behind its near side
+  static constexpr int longest_strip =
+      3;  ///< cells; as many as a face of one and a half touches when it lies across the grid
+  static constexpr int widest_gap = 2;   ///< between a strip and the planes beside it, in cells
+  static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
+  static constexpr float thin = 4.0f;  ///< cells of a run on average: an obstacle hides what lies behind its near side
 
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
@@ -37,10 +41,14 @@ class Ground {
 
     bool face() const {
       const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
-      // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within each.
-      return cells > 0.0f && 2.0f * strip_cells >= cells && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
+      // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within
+      // each.
+      return cells > 0.0f && 2.0f * strip_cells >= cells &&
+             mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
-    bool fringe(float cell_area_m2) const { return 2.0f * cells < thin * runs && scatter_m2 > cell_area_m2 * (1.0f / 12) * weight; }
+    bool fringe(float cell_area_m2) const {
+      return 2.0f * cells < thin * runs && scatter_m2 > cell_area_m2 * (1.0f / 12) * weight;
+    }
   };
   /// Cells of one plane that follow each other on a row or column.
   template <typename LabelType>

@@ -1,8 +1,9 @@
 // Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
-// (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions, from the cells
-// that changed, and a message that is new makes its receiver one of those. A Potts message has two values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely
-// labels out of the planes near by (those of regions in its block or the eight around it), all others count as impossible for it.
-// So two pavements of one height on either side of a road keep their labels apart.
+// (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
+// from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
+// values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels out of the planes near by
+// (those of regions in its block or the eight around it), all others count as impossible for it. So two pavements of
+// one height on either side of a road keep their labels apart.
 #pragma once
 
 #include <array>
@@ -35,8 +36,8 @@ class LabelField {
   static constexpr int capacity = Dem<limits>::capacity;
 
   struct Belief {
-    std::array<LabelType, candidates> label;     ///< `none` where there are fewer
-    std::array<float, candidates> probability;   ///< sums to 1
+    std::array<LabelType, candidates> label;    ///< `none` where there are fewer
+    std::array<float, candidates> probability;  ///< sums to 1
   };
 
   /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
@@ -62,17 +63,20 @@ class LabelField {
   /// The cells that were touched are to be looked at by the next update().
   void note_touched(const Dem<limits>& dem);
 
-  /// E-step. Changed are cells that were noted as touched, whose region changed its plane, that bore a label that is no more or heard a
-  /// message that was new, and a band of rows that moves on with each call, since planes move as they grow. Returns how many
-  /// labels changed. Cells that are left over by max_messages are counted and wait for the next call.
-  int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits, Counters& counters);
+  /// E-step. Changed are cells that were noted as touched, whose region changed its plane, that bore a label that is no
+  /// more or heard a message that was new, and a band of rows that moves on with each call, since planes move as they
+  /// grow. Returns how many labels changed. Cells that are left over by max_messages are counted and wait for the next
+  /// call.
+  int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
+             Counters& counters);
 
   LabelType label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
   /// Posterior of a valid cell. O(candidates^2).
   Belief belief(const Dem<limits>& dem, int i, int j) const;
 
  private:
-  // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes nothing.
+  // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
+  // nothing.
   static constexpr int message_scale = 32, node_scale = 256;
   static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
 
@@ -80,10 +84,16 @@ class LabelField {
   struct Site {
     std::array<LabelType, candidates> label{none, none, none};
     LabelType best = none;
-    std::array<std::int16_t, candidates> node{};                                ///< log potential of each candidate
-    std::array<Message, directions> message{};     ///< to the neighbour there
+    std::array<std::int16_t, candidates> node{};  ///< log potential of each candidate
+    std::array<Message, directions> message{};    ///< to the neighbour there
   };
-  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };  ///< bits; renew: its candidates too
+  enum Flag : std::uint8_t {
+    quiet = 0,
+    heard = 1,
+    visited = 2,
+    deferred = 4,
+    renew = 8
+  };  ///< bits; renew: its candidates too
   using Logs = std::array<float, candidates>;
   using Nats = std::array<std::int32_t, candidates>;  ///< in 1 / node_scale nat
   using Planes = PlaneSet<limits.planes>;
@@ -92,15 +102,16 @@ class LabelField {
     return static_cast<std::size_t>((i / block_side) * (dem.cols() / block_side) + j / block_side);
   }
 
-  void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits, Counters& counters);
+  void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
+                     Counters& counters);
   bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
   void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   void keep_messages(Site& site, const std::array<LabelType, candidates>& label);
   Place place(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Place& place) const;
-  static void hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message, bool same_labels, int sign,
-                   std::array<std::int16_t, candidates>& sum);
+  static void hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message,
+                   bool same_labels, int sign, std::array<std::int16_t, candidates>& sum);
   void send(const Place& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
   int follow_belief(const Place& place);
@@ -108,12 +119,12 @@ class LabelField {
   static Logs normalised(const Site& site, const Nats& logs);
 
   LabelSettings settings_{};
-  float noise_m2_ = 0.0f;  ///< of a cell with one point of weight 1
+  float noise_m2_ = 0.0f;                                               ///< of a cell with one point of weight 1
   std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
   float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
-  int band_ = 0;  ///< first row to refresh in the next update()
-  std::array<float, max_link_reach + 1> boost_{};         ///< exp(J / distance) - 1
-  std::array<std::uint8_t, max_link_reach + 1> loudest_{};  ///< message of a cell that is sure
+  int band_ = 0;                                                        ///< first row to refresh in the next update()
+  std::array<float, max_link_reach + 1> boost_{};                       ///< exp(J / distance) - 1
+  std::array<std::uint8_t, max_link_reach + 1> loudest_{};              ///< message of a cell that is sure
   std::array<Site, Dem<limits>::capacity> sites_{};
   std::array<std::uint8_t, Dem<limits>::capacity> flag_{};
 };
@@ -128,13 +139,14 @@ void LabelField<limits>::init(const LabelSettings& settings, const PlanePrior& p
   band_ = 0;
   for (std::size_t g = 1; g < boost_.size(); ++g) {
     boost_[g] = exp(settings.coupling / static_cast<float>(g)) - 1.0f;
-    loudest_[g] = static_cast<std::uint8_t>(round_to_int(settings.coupling / static_cast<float>(g) * float{message_scale}));
+    loudest_[g] =
+        static_cast<std::uint8_t>(round_to_int(settings.coupling / static_cast<float>(g) * float{message_scale}));
   }
 }
 
 template <Limits limits>
-int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
-                               Counters& counters) {
+int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                               Visits& visits, Counters& counters) {
   find_planes_near_by(dem, mixture);
   choose_visits(dem, mixture, scope, visits, counters);
   const std::span<Place> places(visits.place.data(), static_cast<std::size_t>(visits.size));
@@ -142,7 +154,8 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
   // Each direction's messages follow its own order, so that one pass carries them across the window.
   for (std::size_t direction = 0; direction < directions; ++direction) {
     const bool forward = direction % 2 == 0;
-    for (std::size_t n = 0; n < places.size(); ++n) send(places[forward ? n : places.size() - 1 - n], direction, visits);
+    for (std::size_t n = 0; n < places.size(); ++n)
+      send(places[forward ? n : places.size() - 1 - n], direction, visits);
   }
   counters.messages += static_cast<std::uint32_t>(directions * visits.size);
   return follow_beliefs(dem, visits);
@@ -155,10 +168,11 @@ void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   });
 }
 
-/// What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of rows.
+/// What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of
+/// rows.
 template <Limits limits>
-void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
-                                       Counters& counters) {
+void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                       Visits& visits, Counters& counters) {
   const int rows = dem.rows();
   const int first = band_ < rows ? band_ : 0;
   band_ = first + settings_.refresh_rows;
@@ -236,7 +250,8 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
 
 /// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept.
 template <Limits limits>
-void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot) {
+void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
+                                           int slot) {
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = noise_m2_ / cell.weight;
@@ -317,8 +332,8 @@ void LabelField<limits>::hear_neighbours(Place& place) const {
 
 /// Adds (sign 1) or takes away (-1) what a neighbour says of the labels that both may bear.
 template <Limits limits>
-void LabelField<limits>::hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message, bool same_labels,
-                              int sign, std::array<std::int16_t, candidates>& sum) {
+void LabelField<limits>::hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message,
+                              bool same_labels, int sign, std::array<std::int16_t, candidates>& sum) {
   if (same_labels) {
     for (std::size_t c = 0; c < candidates; ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * message[c]);
     return;
@@ -349,7 +364,9 @@ auto LabelField<limits>::normalised(const Site& site, const Nats& logs) -> Logs 
   float sum = 0.0f;
   for (std::size_t c = 0; c < candidates; ++c) {
     const std::int32_t below = logs[c] - top;
-    p[c] = site.label[c] == none || below < nothing ? 0.0f : below == 0 ? 1.0f : exp(static_cast<float>(below) * (1.0f / node_scale));
+    p[c] = site.label[c] == none || below < nothing ? 0.0f
+           : below == 0                             ? 1.0f
+                                                    : exp(static_cast<float>(below) * (1.0f / node_scale));
     sum += p[c];
   }
   if (!(sum > 1.0f)) return p;
@@ -357,8 +374,8 @@ auto LabelField<limits>::normalised(const Site& site, const Nats& logs) -> Logs 
   return p;
 }
 
-/// Potts message, normalised to 1 for labels that the sender rules out: m(l) = 1 + (exp(J/g) - 1) p(l), p the sender's belief
-/// without what the receiver told it. At most exp(J).
+/// Potts message, normalised to 1 for labels that the sender rules out: m(l) = 1 + (exp(J/g) - 1) p(l), p the sender's
+/// belief without what the receiver told it. At most exp(J).
 template <Limits limits>
 void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& visits) {
   const std::size_t distance = from.distance[direction];
@@ -372,9 +389,11 @@ void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& 
     hear(site, other.label, other.message[direction ^ 1u], same, -1, by_others);
     const Logs p = normalised(site, log_belief(site, by_others));
     for (std::size_t c = 0; c < candidates; ++c) {
-      message[c] = p[c] == 0.0f   ? std::uint8_t{0}
-                   : p[c] == 1.0f ? loudest_[distance]
-                                  : static_cast<std::uint8_t>(round_to_int(log(1.0f + boost_[distance] * p[c]) * float{message_scale}));
+      message[c] =
+          p[c] == 0.0f ? std::uint8_t{0}
+          : p[c] == 1.0f
+              ? loudest_[distance]
+              : static_cast<std::uint8_t>(round_to_int(log(1.0f + boost_[distance] * p[c]) * float{message_scale}));
     }
   }
   auto& sent = site.message[direction];

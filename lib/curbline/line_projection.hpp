@@ -1,5 +1,6 @@
 // From a scan line to points with the variance of their heights: the beam's own time, tilt and pose for each (issue of
-// every nodding laser: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line). About 100 operations a beam.
+// every nodding laser: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line). About 100 operations a
+// beam.
 #pragma once
 
 #include <array>
@@ -19,8 +20,9 @@
 
 namespace curbline {
 
-/// Where the robot is while a line is measured: the poses of its first and last beam. Between them points are interpolated, which
-/// is exact for a motion without turning and off by (turn)^2 / 8 of the range with one: 0.5 mm at 10 m and 1 deg a line.
+/// Where the robot is while a line is measured: the poses of its first and last beam. Between them points are
+/// interpolated, which is exact for a motion without turning and off by (turn)^2 / 8 of the range with one: 0.5 mm at
+/// 10 m and 1 deg a line.
 struct LineMotion {
   Transform T_map_base_first{}, T_map_base_last{};
   bool still = true;  ///< both are the identity
@@ -52,23 +54,28 @@ class LineProjection {
   /// Time from the first beam to the last, and the time of beam i after the first.
   std::int64_t duration_ns(std::size_t beams) const { return beams == 0 ? 0 : beam_ns(beams - 1); }
 
-  /// Adds a point to `out` for each beam that returned. `tilt` is not read with a fixed tilt. The line has at most limits.beams.
+  /// Adds a point to `out` for each beam that returned. `tilt` is not read with a fixed tilt. The line has at most
+  /// limits.beams.
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
                ProjectedLine<limits>& out) const;
 
  private:
   std::int64_t beam_ns(std::size_t beam) const { return static_cast<std::int64_t>(beam) * beam_interval_ns_; }
-  bool returned(float range_m) const { return range_m >= laser_.min_range_m && range_m < laser_.max_range_m; }  // false for NaN
+  bool returned(float range_m) const {
+    return range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
+  }  // false for NaN
   TiltAngle tilt_at(std::int64_t time_ns, TiltSnapshot<limits>& tilt) const;
-  float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base, float tilt_rate) const;
+  float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt,
+                           const Eigen::Vector3f& p_base, float tilt_rate) const;
 
   LaserSettings laser_{};
   TiltSettings tilt_{};
   PoseSettings pose_{};
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
-  Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(), laser_y_ = Eigen::Vector3f::UnitY();  ///< the laser's axes, in the tilt frame
-  std::array<SinCos, limits.beams> bearing_;  ///< of each beam
+  Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(),
+                  laser_y_ = Eigen::Vector3f::UnitY();  ///< the laser's axes, in the tilt frame
+  std::array<SinCos, limits.beams> bearing_;            ///< of each beam
 };
 
 template <Limits limits>
@@ -82,13 +89,14 @@ void LineProjection<limits>::init(const Settings& settings) {
   laser_x_ = T_tilt_laser_.rotation.col(0);
   laser_y_ = T_tilt_laser_.rotation.col(1);
   for (int i = 0; i < laser_.beams; ++i) {
-    bearing_[static_cast<std::size_t>(i)] = sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
+    bearing_[static_cast<std::size_t>(i)] =
+        sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
   }
 }
 
 template <Limits limits>
-void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
-                                     ProjectedLine<limits>& out) const {
+void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion,
+                                     Counters& counters, ProjectedLine<limits>& out) const {
   const std::size_t beams = line.ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
   // Gradient of the map's z in the tilt axis' frame.
@@ -121,7 +129,8 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
-    const float variance_m2 = height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
+    const float variance_m2 =
+        height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
     out.add({{p_map.x(), p_map.y(), p_map.z(), variance_m2}, by_tilt * angle.rate_rad_s});
   }
 }
@@ -132,16 +141,17 @@ TiltAngle LineProjection<limits>::tilt_at(std::int64_t time_ns, TiltSnapshot<lim
   return tilt.at(time_ns);
 }
 
-/// First-order propagation: the derivative of the height by each error, times its standard deviation, squared and summed.
+/// First-order propagation: the derivative of the height by each error, times its standard deviation, squared and
+/// summed.
 template <Limits limits>
-float LineProjection<limits>::height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt, const Eigen::Vector3f& p_base,
-                                                 float tilt_rate) const {
+float LineProjection<limits>::height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt,
+                                                 const Eigen::Vector3f& p_base, float tilt_rate) const {
   const auto square = [](float x) { return x * x; };
   const float tilt_variance = square(tilt_.angle_sd_rad) + square(tilt_rate * tilt_.time_sd_s);
   const float attitude = square(pose_.attitude_sd_rad);
-  return square(by_range * laser_.range_sd_m) + square(range_m * by_bearing * laser_.bearing_sd_rad) + square(by_tilt) * tilt_variance +
-         square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) + square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) +
-         square(pose_.height_sd_m);
+  return square(by_range * laser_.range_sd_m) + square(range_m * by_bearing * laser_.bearing_sd_rad) +
+         square(by_tilt) * tilt_variance + square(p_base.y()) * (square(tilt_.roll_sd_rad) + attitude) +
+         square(p_base.x()) * (square(tilt_.pitch_sd_rad) + attitude) + square(pose_.height_sd_m);
 }
 
 }  // namespace curbline

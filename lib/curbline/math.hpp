@@ -10,7 +10,9 @@ namespace curbline {
 inline constexpr float pi = 3.14159265f;
 
 /// Nearest integer, halves away from zero; the float just below a half counts as one. |x| < 2^22.
-constexpr std::int32_t round_to_int(float x) { return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f); }
+constexpr std::int32_t round_to_int(float x) {
+  return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f);
+}
 
 /// Largest integer not above x. |x| < 2^31.
 constexpr std::int32_t floor_to_int(float x) {
@@ -19,7 +21,9 @@ constexpr std::int32_t floor_to_int(float x) {
 }
 
 /// True if x is neither NaN nor infinite, whatever the compiler's flags.
-constexpr bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
+constexpr bool is_finite(float x) {
+  return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u;
+}
 
 /// e^x, relative error below 4e-7 for x in [-80, 80]; beyond, the value at that end.
 float exp(float x);
@@ -38,8 +42,8 @@ struct SinCos {
 /// Error below 2e-7 for |x| <= 2 pi.
 SinCos sin_cos(float x);
 
-/// The same for angles that follow each other closely: within 2 mrad of the last full one by its Taylor series to the second order,
-/// whose rest is below 2e-9.
+/// The same for angles that follow each other closely: within 2 mrad of the last full one by its Taylor series to the
+/// second order, whose rest is below 2e-9.
 class NearSinCos {
  public:
   SinCos at(float x) {

@@ -1,4 +1,5 @@
-// Where a robot may drive: what steps and slopes its builder says it can take, asked of the map and of curbs. Unknown ground is not passable.
+// Where a robot may drive: what steps and slopes its builder says it can take, asked of the map and of curbs. Unknown
+// ground is not passable.
 #pragma once
 
 #include "curbline/curb_tracer.hpp"
@@ -16,15 +17,16 @@ struct Mobility {
 /// May a plane be driven on?
 bool passable(const Plane& plane, const Mobility& mobility);
 
-/// May a curb be crossed? A step if it is no higher than max_step_m with a probability of 97.5 %; a crease or the edge of a ramp if both its
-/// planes are no steeper than max_slope_rad.
+/// May a curb be crossed? A step if it is no higher than max_step_m with a probability of 97.5 %; a crease or the edge
+/// of a ramp if both its planes are no steeper than max_slope_rad.
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
 
-/// May a wheel stand in cell (i, j) and leave it? If its plane is ground and not too steep, the heights within it spread over no more than the
-/// step (the width of an even distribution of their variance, that of noise taken off), and neither it nor a next cell within two cells along
-/// x and y lies a step off the plane. O(1).
+/// May a wheel stand in cell (i, j) and leave it? If its plane is ground and not too steep, the heights within it
+/// spread over no more than the step (the width of an even distribution of their variance, that of noise taken off),
+/// and neither it nor a next cell within two cells along x and y lies a step off the plane. O(1).
 template <Limits limits>
-bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i, int j, const Mobility& mobility) {
+bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
+              int j, const Mobility& mobility) {
   const int slot = dem.slot(i, j);
   const Label<limits> label = field.label(slot);
   if (!dem.cell(slot).valid() || label == no_label<limits> || !passable(mixture.plane(label), mobility)) return false;

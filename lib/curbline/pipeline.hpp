@@ -2,7 +2,8 @@
 //
 //   tilt readings --> TiltTrack --+
 //   poses ----------> PoseTrack --+
-//   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField --> CurbTracer
+//   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField -->
+//   CurbTracer
 //
 // No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
 // Except for add_tilt() all calls come from one context, or from two that exclude each other.
@@ -36,19 +37,21 @@ class Pipeline {
   static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
   static_assert(limits.planes >= 2 && limits.planes <= 255 && limits.borders < 65535);
 
-  /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then takes
-  /// nothing. May be called again at any time to start afresh.
+  /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then
+  /// takes nothing. May be called again at any time to start afresh.
   Status init(const Settings& settings);
 
-  /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if dropped.
+  /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
+  /// dropped.
   bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
 
   /// A pose of the base in the map frame. False if dropped (not finite, not later than the one before).
   bool add_pose(const Pose& pose);
 
-  /// Takes a scan line: observe(), then one half of infer(), so that no line costs more than a quarter of what a small core can do
-  /// between two: after one line the regions and planes, after the next the labels and curbs of both. Its tilt readings and poses
-  /// should be in: beams later than the newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the limits.
+  /// Takes a scan line: observe(), then one half of infer(), so that no line costs more than a quarter of what a small
+  /// core can do between two: after one line the regions and planes, after the next the labels and curbs of both. Its
+  /// tilt readings and poses should be in: beams later than the newest are extrapolated, within
+  /// TiltSettings::max_extrapolation_s. Bounded by the limits.
   Status take(const ScanLine& line);
 
   /// Beams to points, points to cells. About 150 operations a beam.
@@ -64,15 +67,15 @@ class Pipeline {
   /// Regions, planes, labels and curbs follow what was observed since. As often as time allows.
   void infer();
 
-  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes` is reached: what a finished map
-  /// wants. Returns the passes made.
+  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes` is
+  /// reached: what a finished map wants. Returns the passes made.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. Valid until the next infer().
   std::span<const Curb> curbs() const { return curb_tracer_.curbs(); }
 
-  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j), or over a curb of curbs()? A
-  /// curb may be older than the planes by a line. passability.hpp
+  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j), or over a curb of
+  /// curbs()? A curb may be older than the planes by a line. passability.hpp
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
     return curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
@@ -103,12 +106,12 @@ class Pipeline {
 
   Settings settings_{};
   bool ready_ = false;
-  bool planes_next_ = true;                    ///< which half of the inference is due
+  bool planes_next_ = true;  ///< which half of the inference is due
   std::int64_t last_line_ns_ = INT64_MIN;
   float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f, robot_z_m_ = 0.0f;  ///< in the map frame, of the last line
-  float ceiling_m_ = 0.0f;                     ///< points above are ignored, z of the map frame
+  float ceiling_m_ = 0.0f;                                        ///< points above are ignored, z of the map frame
   Counters counters_{};
-  float tilt_rate_rad_s_ = 0.0f;               ///< of the line in hand
+  float tilt_rate_rad_s_ = 0.0f;  ///< of the line in hand
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
   TiltSnapshot<limits> tilt_snapshot_{};
@@ -199,8 +202,9 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   return Status::ok;
 }
 
-/// The points that the line has where an earlier sweep has been, and this one not yet. Whether it has is asked at the neighbour: a point's
-/// own error in range moves it up or down and into the next cell or not, so that those just over a border would all be too low.
+/// The points that the line has where an earlier sweep has been, and this one not yet. Whether it has is asked at the
+/// neighbour: a point's own error in range moves it up or down and into the next cell or not, so that those just over a
+/// border would all be too low.
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
   bool neighbour = false;
@@ -223,7 +227,8 @@ void Pipeline<limits>::compare_with_cell(const ProjectedPoint& p, int slot) {
   const Plane& plane = plane_mixture_.plane(label);
   const float x = p.point.x_m - dem_.origin_x_m(), y = p.point.y_m - dem_.origin_y_m();
   const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
-  const float rise = plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
+  const float rise =
+      plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
   const float variance_m2 = p.point.variance_m2 + prior.texture_m2 + dem_.height_variance_m2(cell);
   tilt_latency_.compare(p.point.z_m - cell.height_m - rise, variance_m2, p.growth_m_s);
 }
@@ -307,7 +312,8 @@ template <Limits limits>
 void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
   segmentation_.update(dem_, work, counters_);
-  plane_mixture_.update(dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
+  plane_mixture_.update(
+      dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
   label_field_.note_touched(dem_);
   dem_.clear_touched();
 }
@@ -329,7 +335,8 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  const Viewpoint view{robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(), robot_z_m_ + settings_.tilt.T_base_tilt.z_m};
+  const Viewpoint view{robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(),
+                       robot_z_m_ + settings_.tilt.T_base_tilt.z_m};
   curb_tracer_.trace(dem_, plane_mixture_, label_field_, view, workspace_.curbs(), counters_);
 }
 

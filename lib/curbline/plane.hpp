@@ -10,11 +10,11 @@ namespace curbline {
 
 /// Weighted moments of points (x, y, z), metres in the window's frame. 48 bytes.
 struct PlaneMoments {
-  float points = 0.0f;  ///< how many independent points they are worth
-  float cells = 0.0f;   ///< in how many cells
-  float weight = 0.0f;  ///< sum of their weights, by the same measure
-  float x = 0.0f, y = 0.0f, z = 0.0f;                    ///< mean
-  float xx = 0.0f, xy = 0.0f, yy = 0.0f;                 ///< scatter about the mean, m^2
+  float points = 0.0f;                    ///< how many independent points they are worth
+  float cells = 0.0f;                     ///< in how many cells
+  float weight = 0.0f;                    ///< sum of their weights, by the same measure
+  float x = 0.0f, y = 0.0f, z = 0.0f;     ///< mean
+  float xx = 0.0f, xy = 0.0f, yy = 0.0f;  ///< scatter about the mean, m^2
   float xz = 0.0f, yz = 0.0f, zz = 0.0f;
 
   /// Merges two sets of points; exact up to rounding, about 30 operations.
@@ -26,9 +26,11 @@ struct PlaneMoments {
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
 struct PlanePrior {
   float noise_m2 = 0.01f * 0.01f;  ///< expected noise of a point of weight 1: repeatability of the range-finder
-  float texture_m2 = 0.005f * 0.005f;  ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
-  float degrees = 2.0f;            ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
-  float common_share = 0.5f;       ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
+  float texture_m2 =
+      0.005f * 0.005f;   ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
+  float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
+  float common_share =
+      0.5f;  ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
 };
 // The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
 
@@ -38,12 +40,12 @@ class PlaneEvidence {
   PlaneEvidence() : PlaneEvidence(PlanePrior{}) {}
   explicit PlaneEvidence(const PlanePrior& prior);
 
-  /// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between partitions of the
-  /// same points. About 60 operations and 2 logarithms.
+  /// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between
+  /// partitions of the same points. About 60 operations and 2 logarithms.
   float log_evidence(const PlaneMoments& moments) const;
 
-  /// The share of a region in the posterior of a partition of the cells under a Dirichlet process with alpha = 1: its evidence times
-  /// Gamma(cells).
+  /// The share of a region in the posterior of a partition of the cells under a Dirichlet process with alpha = 1: its
+  /// evidence times Gamma(cells).
   float score(const PlaneMoments& moments) const { return log_evidence(moments) + log_gamma_of(moments.cells); }
 
  private:
@@ -53,24 +55,24 @@ class PlaneEvidence {
   }
 
   float noise_m2_, degrees_;
-  float constant_;                        ///< of every plane
-  std::array<float, 64> log_gamma_{};     ///< of whole numbers
+  float constant_;                     ///< of every plane
+  std::array<float, 64> log_gamma_{};  ///< of whole numbers
 };
 
 /// A fitted plane with the uncertainty of its height.
 struct Plane {
-  float x_m = 0.0f, y_m = 0.0f;          ///< centroid
-  float z_m = 0.0f;                      ///< height there
-  float slope_x = 0.0f, slope_y = 0.0f;  ///< dz/dx, dz/dy
-  float variance_m2 = 0.0f;              ///< of a point about the plane
-  float cells = 0.0f;                    ///< how many support it; 0: no such plane
+  float x_m = 0.0f, y_m = 0.0f;              ///< centroid
+  float z_m = 0.0f;                          ///< height there
+  float slope_x = 0.0f, slope_y = 0.0f;      ///< dz/dx, dz/dy
+  float variance_m2 = 0.0f;                  ///< of a point about the plane
+  float cells = 0.0f;                        ///< how many support it; 0: no such plane
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
   bool alive() const { return cells > 0.0f; }
   float height_m(float px_m, float py_m) const { return z_m + slope_x * (px_m - x_m) + slope_y * (py_m - y_m); }
 
-  /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell share
-  /// their errors of tilt and mount.
+  /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell
+  /// share their errors of tilt and mount.
   float height_variance_m2(float px_m, float py_m) const {
     const float dx = px_m - x_m, dy = py_m - y_m;
     const float away = dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy;
@@ -78,8 +80,8 @@ struct Plane {
   }
 };
 
-/// Posterior mean of the plane and mean square residual, not below what the points of a cell share of the expected noise:
-/// averaging over a cell does not help against that. `cells`: how many cells the moments span.
+/// Posterior mean of the plane and mean square residual, not below what the points of a cell share of the expected
+/// noise: averaging over a cell does not help against that. `cells`: how many cells the moments span.
 Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior);
 
 }  // namespace curbline

@@ -1,6 +1,6 @@
-// The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become planes
-// again and take the label with which their cells overlap most, so that a plane keeps its label while it grows, is
-// cut and merged; a label that no region took dies. Cost: two passes over the window, K^3 for the matching.
+// The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become
+// planes again and take the label with which their cells overlap most, so that a plane keeps its label while it grows,
+// is cut and merged; a label that no region took dies. Cost: two passes over the window, K^3 for the matching.
 #pragma once
 
 #include <array>
@@ -46,8 +46,8 @@ class PlaneMixture {
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, LabelOf&& label_of,
               Counters& counters);
 
-  /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label, responsibility)
-  /// for each label that a cell may bear.
+  /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
+  /// responsibility) for each label that a cell may bear.
   template <typename ForEachBelief>
   void maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief);
 
@@ -110,7 +110,9 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   if (!dem.any_touched()) return;
   const int regions = largest_regions(work, counters);
   for (auto& row : overlap_) row.fill(0);
-  const auto rank_of = [&](int slot) { return rank_[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])]; };
+  const auto rank_of = [&](int slot) {
+    return rank_[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])];
+  };
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
     if (rank == none) return;
@@ -165,7 +167,8 @@ int PlaneMixture<limits>::largest_regions(const typename Segmentation<limits>::W
       ++kept;
     }
     auto place = static_cast<std::size_t>(kept - 1);
-    for (; place > 0 && largest_[place - 1].moments->cells < moments.cells; --place) largest_[place] = largest_[place - 1];
+    for (; place > 0 && largest_[place - 1].moments->cells < moments.cells; --place)
+      largest_[place] = largest_[place - 1];
     largest_[place] = {node, &moments};
   });
   for (int r = 0; r < kept; ++r) rank_[largest_[static_cast<std::size_t>(r)].node] = static_cast<LabelType>(r);

@@ -19,7 +19,8 @@ class PlaneSet {
   template <typename Visit>
   void for_each(Visit&& visit) const {
     for (std::size_t w = 0; w < words_.size(); ++w) {
-      for (std::uint32_t rest = words_[w]; rest != 0; rest &= rest - 1) visit(static_cast<int>(32 * w) + std::countr_zero(rest));
+      for (std::uint32_t rest = words_[w]; rest != 0; rest &= rest - 1)
+        visit(static_cast<int>(32 * w) + std::countr_zero(rest));
     }
   }
 

@@ -1,4 +1,5 @@
-// The robot's pose over time, T_map_base, from odometry or localisation. Fed and read by the same context as scan lines.
+// The robot's pose over time, T_map_base, from odometry or localisation. Fed and read by the same context as scan
+// lines.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +13,8 @@
 
 namespace curbline {
 
-/// Position of the base in the map frame and its attitude as a unit quaternion. float keeps 0.1 mm within 1 km of the map's
-/// origin: put it near the robot.
+/// Position of the base in the map frame and its attitude as a unit quaternion. float keeps 0.1 mm within 1 km of the
+/// map's origin: put it near the robot.
 struct Pose {
   std::int64_t time_ns = 0;
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
@@ -32,8 +33,8 @@ class PoseTrack {
     size_ = next_ = 0;
   }
 
-  /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not later than the one
-  /// before. O(1).
+  /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not
+  /// later than the one before. O(1).
   bool push(const Pose& pose);
 
   /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
@@ -43,7 +44,9 @@ class PoseTrack {
   const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
 
  private:
-  const Pose& back(int age) const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)]; }
+  const Pose& back(int age) const {
+    return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)];
+  }
 
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
@@ -75,7 +78,8 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
     const std::int64_t beyond = time_ns - nearest.time_ns;
     if (beyond > bound || -beyond > bound) return false;
     // Two poses tell the velocity as well.
-    out = size_ > 1 ? (age == 0 ? detail::interpolate(back(1), back(0), time_ns) : detail::interpolate(back(size_ - 1), back(size_ - 2), time_ns))
+    out = size_ > 1 ? (age == 0 ? detail::interpolate(back(1), back(0), time_ns)
+                                : detail::interpolate(back(size_ - 1), back(size_ - 2), time_ns))
                     : nearest;
     return true;
   }

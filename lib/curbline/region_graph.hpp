@@ -1,7 +1,7 @@
-// Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best gain
-// first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes. Lazy: a merge leaves
-// the gains of its neighbours as they were, to be computed anew when they come up or when nothing else gains. That takes a fifth
-// of the evidences. This is working memory of one call: nothing in it outlives merge().
+// Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best
+// gain first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes.
+// Lazy: a merge leaves the gains of its neighbours as they were, to be computed anew when they come up or when nothing
+// else gains. That takes a fifth of the evidences. This is working memory of one call: nothing in it outlives merge().
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ class RegionGraph {
   /// Joins two nodes, once; false if the store is full. Cost: the links that `b` has.
   bool link(Index a, Index b);
 
-  /// Merges until no gain is >= 0. Returns how many evidences it computed: nodes + links, and at most the degrees of merged nodes, a
-  /// few each as a rule. Cost of each: a PlaneEvidence and a heap move.
+  /// Merges until no gain is >= 0. Returns how many evidences it computed: nodes + links, and at most the degrees of
+  /// merged nodes, a few each as a rule. Cost of each: a PlaneEvidence and a heap move.
   int merge(const PlaneEvidence& evidence);
 
   /// The node that a node has become part of. O(1) after merge().
@@ -46,9 +46,9 @@ class RegionGraph {
  private:
   struct Node {
     PlaneMoments moments;
-    float score;   ///< PlaneEvidence::score
+    float score;  ///< PlaneEvidence::score
     Index parent;
-    Index first;   ///< an end of a link, `none` if there is none
+    Index first;  ///< an end of a link, `none` if there is none
   };
   /// Ends 2 l and 2 l + 1 belong to link l; an end lies in the ring of the node it leaves from.
   struct End {
@@ -57,8 +57,8 @@ class RegionGraph {
   };
   struct Link {
     float gain;
-    Index place;   ///< in the heap
-    bool stale;    ///< a node has grown since
+    Index place;  ///< in the heap
+    bool stale;   ///< a node has grown since
   };
 
   float gain(Index link, const PlaneEvidence& evidence) const {

@@ -1,7 +1,7 @@
-// Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher 2004)
-// inside each block of 4 x 4 cells; regions, leaves merged by evidence (region_graph.hpp). A scan line re-cuts the blocks that it
-// touched, dissolves the regions that it touched and their neighbours into leaves and merges again: that is
-// how a region splits. What no line touched stands.
+// Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher
+// 2004) inside each block of 4 x 4 cells; regions, leaves merged by evidence (region_graph.hpp). A scan line re-cuts
+// the blocks that it touched, dissolves the regions that it touched and their neighbours into leaves and merges again:
+// that is how a region splits. What no line touched stands.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace curbline {
 /// Leaf of each cell of a block, by the number (4 i + j) of its first cell; 255 for cells that are not valid.
 using BlockLeaves = std::array<std::uint8_t, block_side * block_side>;
 
-/// Felzenszwalb-Huttenlocher on one block: edge weight is the symmetric Kullback-Leibler divergence of the cells' normals;
-/// links reach across cells that are not valid. `valid` may be false for any cell. About 24 edges.
+/// Felzenszwalb-Huttenlocher on one block: edge weight is the symmetric Kullback-Leibler divergence of the cells'
+/// normals; links reach across cells that are not valid. `valid` may be false for any cell. About 24 edges.
 struct BlockCell {
   float height_m;
   float variance_m2;
@@ -55,8 +55,8 @@ class Segmentation {
     std::array<Region, limits.regions> region_of_node;
   };
 
-  /// Follows the cells that were touched, in working memory that is the caller's. Cost: passes over the window, 16 cells a touched
-  /// block, and the merging; nothing if no cell was touched.
+  /// Follows the cells that were touched, in working memory that is the caller's. Cost: passes over the window, 16
+  /// cells a touched block, and the merging; nothing if no cell was touched.
   void update(const Dem<limits>& dem, Work& work, Counters& counters);
 
   Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
@@ -80,11 +80,13 @@ class Segmentation {
   void build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const;
   void name_regions(const Dem<limits>& dem, Work& work);
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
-  Region representative(std::size_t s) const { return region_[s] == none || mark_[region_[s]] != standing ? leaf_[s] : region_[s]; }
+  Region representative(std::size_t s) const {
+    return region_[s] == none || mark_[region_[s]] != standing ? leaf_[s] : region_[s];
+  }
 
   SegmentationSettings settings_{};
   PlaneEvidence evidence_{};
-  std::array<Region, Dem<limits>::capacity> leaf_{};    ///< slot of the first cell of a cell's leaf
+  std::array<Region, Dem<limits>::capacity> leaf_{};  ///< slot of the first cell of a cell's leaf
   std::array<Region, Dem<limits>::capacity> region_{};
   std::array<std::uint8_t, Dem<limits>::capacity> mark_{};  ///< of a region, under its name
 };

@@ -11,14 +11,15 @@ namespace curbline {
 /// The rolling window. Cells are dx by dy; the window is rows x cols of them and follows the robot in steps of
 /// four cells unless it is fixed.
 struct WindowSettings {
-  int rows = 40;              ///< cells along x, a multiple of 4, at most Limits::rows
-  int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;      ///< (0, 10]
-  float cell_y_m = 0.1f;      ///< (0, 10]
-  float origin_x_m = 0.0f;    ///< lowest corner; of the map frame if fixed, else relative to the robot's position
-  float origin_y_m = -2.0f;   ///< the same along y
-  bool fixed = false;         ///< true: the window never moves
-  float max_height_m = 1e9f;  ///< points above it (z of the map frame; of the base frame if the window moves) are ignored
+  int rows = 40;             ///< cells along x, a multiple of 4, at most Limits::rows
+  int cols = 40;             ///< cells along y, a multiple of 4, at most Limits::cols
+  float cell_x_m = 0.1f;     ///< (0, 10]
+  float cell_y_m = 0.1f;     ///< (0, 10]
+  float origin_x_m = 0.0f;   ///< lowest corner; of the map frame if fixed, else relative to the robot's position
+  float origin_y_m = -2.0f;  ///< the same along y
+  bool fixed = false;        ///< true: the window never moves
+  float max_height_m =
+      1e9f;  ///< points above it (z of the map frame; of the base frame if the window moves) are ignored
 };
 
 /// The range-finder, from its data sheet.
@@ -43,24 +44,24 @@ struct MountSettings {
 struct TiltSettings {
   MountSettings T_base_tilt{};
   MountSettings T_tilt_laser{};
-  bool fixed = false;                  ///< true: no servo, the angle is fixed_tilt_rad
-  float fixed_tilt_rad = 0.0f;         ///< (-pi, pi)
-  float latency_s = 0.0f;              ///< an angle stamped t was true at t - latency_s; may be negative
-  float latency_sd_s = 0.01f;          ///< how far it may be off, and change from sweep to sweep; 0: it is not estimated
-  float angle_sd_rad = 0.001f;         ///< of one reading: resolution, play
-  float time_sd_s = 0.0f;              ///< jitter of its time stamp; times the tilt rate it is an angle error
-  float max_extrapolation_s = 0.05f;   ///< beams further from the nearest reading are dropped
-  float max_gap_s = 0.2f;              ///< readings further apart are not interpolated across
-  float roll_sd_rad = 0.0f;            ///< of the mount about x
-  float pitch_sd_rad = 0.0f;           ///< of the mount about y
+  bool fixed = false;                 ///< true: no servo, the angle is fixed_tilt_rad
+  float fixed_tilt_rad = 0.0f;        ///< (-pi, pi)
+  float latency_s = 0.0f;             ///< an angle stamped t was true at t - latency_s; may be negative
+  float latency_sd_s = 0.01f;         ///< how far it may be off, and change from sweep to sweep; 0: it is not estimated
+  float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play
+  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error
+  float max_extrapolation_s = 0.05f;  ///< beams further from the nearest reading are dropped
+  float max_gap_s = 0.2f;             ///< readings further apart are not interpolated across
+  float roll_sd_rad = 0.0f;           ///< of the mount about x
+  float pitch_sd_rad = 0.0f;          ///< of the mount about y
 };
 
 /// The robot's pose, T_map_base. A robot that stands gives none.
 struct PoseSettings {
-  bool still = true;                  ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;           ///< of z between two poses
-  float attitude_sd_rad = 0.0f;       ///< of roll and pitch
-  float max_extrapolation_s = 0.1f;   ///< lines further from the nearest pose are dropped
+  bool still = true;                 ///< true: no poses will come, base and map frame are one
+  float height_sd_m = 0.0f;          ///< of z between two poses
+  float attitude_sd_rad = 0.0f;      ///< of roll and pitch
+  float max_extrapolation_s = 0.1f;  ///< lines further from the nearest pose are dropped
 };
 
 /// How cells become regions. The constants and how little depends on them: lib/README.md.
@@ -77,22 +78,24 @@ enum class PlaneUpdate : unsigned char {
 };
 
 struct PlaneSettings {
-  PlanePrior prior{};        ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 8.0f;    ///< regions below are not planes: eight cells are the least that a 2 x 4 strip has
+  PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
+  float min_cells = 8.0f;  ///< regions below are not planes: eight cells are the least that a 2 x 4 strip has
   PlaneUpdate update = PlaneUpdate::regions;
 };
 
 struct LabelSettings {
-  float coupling = 3.0f;       ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
-  int link_reach = 10;         ///< as SegmentationSettings; the coupling falls as 1 / distance
-  int refresh_rows = 1;        ///< rows of the window that every line visits in turn, changed or not, >= 0
-  int max_messages = 1600;     ///< a call; what is left over waits for the next, >= 4
+  float coupling = 3.0f;    ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
+  int link_reach = 10;      ///< as SegmentationSettings; the coupling falls as 1 / distance
+  int refresh_rows = 1;     ///< rows of the window that every line visits in turn, changed or not, >= 0
+  int max_messages = 1600;  ///< a call; what is left over waits for the next, >= 4
 };
 
 struct CurbSettings {
-  int link_reach = 5;              ///< cells; a curb is not drawn in a wider gap
-  float max_roughness_m = 0.03f;   ///< robust sd of a label's cells above which it is clutter: the range-finder's stated accuracy
-  float max_step_m = 0.3f;         ///< higher is an obstacle, no curb: kerbs and steps of stairs stay below 0.2 m, and half as much again for the unusual
+  int link_reach = 5;  ///< cells; a curb is not drawn in a wider gap
+  float max_roughness_m =
+      0.03f;  ///< robust sd of a label's cells above which it is clutter: the range-finder's stated accuracy
+  float max_step_m = 0.3f;  ///< higher is an obstacle, no curb: kerbs and steps of stairs stay below 0.2 m, and half as
+                            ///< much again for the unusual
 };
 
 /// Everything, as Pipeline::init() takes it.
@@ -107,7 +110,8 @@ struct Settings {
   CurbSettings curbs{};
 };
 
-/// The first part that has a value out of range, ok if none has. What depends on the limits is checked by Pipeline::init().
+/// The first part that has a value out of range, ok if none has. What depends on the limits is checked by
+/// Pipeline::init().
 Status check(const Settings& settings);
 
 }  // namespace curbline

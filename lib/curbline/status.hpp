@@ -8,16 +8,16 @@ namespace curbline {
 /// What init() refuses with, each naming the setting at fault, and what a call that takes data may answer.
 enum class Status : std::uint8_t {
   ok,
-  not_initialised,      ///< init() has not succeeded
-  bad_window,           ///< rows, cols not multiples of 4 within the limits, or a cell size out of range
-  bad_laser,            ///< beams, bearings, intervals, ranges or noise out of range
-  bad_tilt,             ///< mount, latency or noise not finite, or a bound not positive
-  bad_pose,             ///< noise or bound out of range
-  bad_inference,        ///< a prior, coupling or bound out of range
-  line_out_of_order,    ///< the line is not later than the one before it: dropped
-  line_too_long,        ///< more beams than the laser has: dropped
-  no_tilt,              ///< no tilt angle near the line's time: dropped
-  no_pose,              ///< no pose near the line's time: dropped
+  not_initialised,    ///< init() has not succeeded
+  bad_window,         ///< rows, cols not multiples of 4 within the limits, or a cell size out of range
+  bad_laser,          ///< beams, bearings, intervals, ranges or noise out of range
+  bad_tilt,           ///< mount, latency or noise not finite, or a bound not positive
+  bad_pose,           ///< noise or bound out of range
+  bad_inference,      ///< a prior, coupling or bound out of range
+  line_out_of_order,  ///< the line is not later than the one before it: dropped
+  line_too_long,      ///< more beams than the laser has: dropped
+  no_tilt,            ///< no tilt angle near the line's time: dropped
+  no_pose,            ///< no pose near the line's time: dropped
 };
 
 /// A word for logs, static storage.

@@ -1,5 +1,5 @@
-// The angle of the tilt servo over time. Readings come from an interrupt or another thread, in their own rhythm; a scan line
-// takes a snapshot and asks for the angle at each beam's time.
+// The angle of the tilt servo over time. Readings come from an interrupt or another thread, in their own rhythm; a scan
+// line takes a snapshot and asks for the angle at each beam's time.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ struct TiltAngle {
   float rate_rad_s = 0.0f;
 };
 
-/// Readings as they were at one moment, ascending in time; times are those at which the angles were true. Ask with rising
-/// times: a cursor makes each question O(1) on average.
+/// Readings as they were at one moment, ascending in time; times are those at which the angles were true. Ask with
+/// rising times: a cursor makes each question O(1) on average.
 template <Limits limits>
 class TiltSnapshot {
  public:
@@ -66,8 +66,8 @@ class TiltTrack {
   /// No servo winds further, and what follows can reduce it: a greater angle is a damaged frame.
   static constexpr float max_angle_rad = 1e6f;
 
-  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before. O(1), wait-free: may be
-  /// called from an interrupt while another context takes snapshots. One writer only.
+  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before. O(1),
+  /// wait-free: may be called from an interrupt while another context takes snapshots. One writer only.
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
@@ -85,7 +85,7 @@ class TiltTrack {
   std::array<Entry, limits.tilt_samples> entries_{};
   std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32
   std::atomic<std::uint32_t> dropped_{0};
-  std::int64_t last_ns_ = INT64_MIN;       ///< the writer's
+  std::int64_t last_ns_ = INT64_MIN;  ///< the writer's
 };
 
 template <Limits limits>
@@ -140,7 +140,8 @@ TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
   return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_rate_rad_s_, segment_rate_rad_s_};
 }
 
-/// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in hand.
+/// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in
+/// hand.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   segment_from_ns_ = segment_to_ns_ = 0;
@@ -168,7 +169,8 @@ TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
     segment_rate_rad_s_ = rate_rad_s;
   }
   const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
-  return {outside ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+  return {outside ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
+          a.angle_rad + since_s * rate_rad_s, rate_rad_s};
 }
 
 }  // namespace curbline

@@ -1,5 +1,5 @@
-// Memory that stages use one after the other within a call: the points of a line, the segmentation's region graph, the cells that the
-// label field visits, the border points of curbs and the curbs they make. None outlives the call.
+// Memory that stages use one after the other within a call: the points of a line, the segmentation's region graph, the
+// cells that the label field visits, the border points of curbs and the curbs they make. None outlives the call.
 #pragma once
 
 #include <new>
@@ -24,7 +24,9 @@ class Workspace {
   typename LabelField<limits>::Visits& visits() {
     return *::new (static_cast<void*>(&visits_)) typename LabelField<limits>::Visits;
   }
-  typename CurbTracer<limits>::Work& curbs() { return *::new (static_cast<void*>(&curbs_)) typename CurbTracer<limits>::Work; }
+  typename CurbTracer<limits>::Work& curbs() {
+    return *::new (static_cast<void*>(&curbs_)) typename CurbTracer<limits>::Work;
+  }
 
  private:
   union {

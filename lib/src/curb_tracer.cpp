@@ -11,17 +11,23 @@ constexpr float least_ramp = 0.05f;  ///< ISO 21542: a way that rises by more th
 
 const char* to_string(CurbKind kind) {
   switch (kind) {
-    case CurbKind::step_up: return "step_up";
-    case CurbKind::step_down: return "step_down";
-    case CurbKind::crease: return "crease";
-    case CurbKind::ramp_edge: return "ramp_edge";
+    case CurbKind::step_up:
+      return "step_up";
+    case CurbKind::step_down:
+      return "step_down";
+    case CurbKind::crease:
+      return "crease";
+    case CurbKind::ramp_edge:
+      return "ramp_edge";
   }
   return "unknown";
 }
 
 CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
-  const float across = border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
-  const float steep = across < 0.0f ? -across : across, step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
+  const float across =
+      border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
+  const float steep = across < 0.0f ? -across : across,
+              step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
   const float cell_sd_m = square_root(0.5f * (first.variance_m2 + second.variance_m2));
   const bool meet_near = step_m <= steep * drawn.reach_m + 2.0f * drawn.height_sd_m;
   const bool crease = meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * (drawn.height_sd_m + cell_sd_m);
@@ -54,7 +60,9 @@ float overlap_m(const Curb& now, const Curb& before, float near_m) {
   return (to < length ? to : length) - (from > 0.0f ? from : 0.0f);
 }
 
-float square_root(float x) { return std::sqrt(x); }
+float square_root(float x) {
+  return std::sqrt(x);
+}
 
 LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {
   // Eigenvector of the larger eigenvalue of the scatter, from whichever row keeps more digits.

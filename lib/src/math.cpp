@@ -10,7 +10,8 @@ float exp(float x) {
   const float n = static_cast<float>(k);
   const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f;
   // Taylor to r^6: the rest is below 1.2e-7.
-  const float p = 1.0f + r * (1.0f + r * (1.0f / 2 + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r * (1.0f / 720))))));
+  const float p =
+      1.0f + r * (1.0f + r * (1.0f / 2 + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r * (1.0f / 720))))));
   return p * std::bit_cast<float>(static_cast<std::uint32_t>(k + 127) << 23);
 }
 
@@ -43,10 +44,14 @@ SinCos sin_cos(float x) {
   const float s = r * (1.0f - r2 * (1.0f / 6 - r2 * (1.0f / 120 - r2 * (1.0f / 5040 - r2 * (1.0f / 362880)))));
   const float c = 1.0f - r2 * (1.0f / 2 - r2 * (1.0f / 24 - r2 * (1.0f / 720 - r2 * (1.0f / 40320))));
   switch (k & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 

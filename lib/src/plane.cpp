@@ -84,7 +84,8 @@ float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   const Slopes slopes = solve(m, prior.noise_m2);
-  const float per_cell = m.weight / cells / slopes.determinant;  // positions weigh by points; one cell is one observation
+  const float per_cell =
+      m.weight / cells / slopes.determinant;  // positions weigh by points; one cell is one observation
   Plane plane;
   plane.x_m = m.x;
   plane.y_m = m.y;

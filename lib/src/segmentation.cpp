@@ -27,8 +27,8 @@ int list_edges(const std::array<BlockCell, cells_in_block>& cells, std::array<Ed
       int n = k + step;
       while (n < end && !cells[static_cast<std::size_t>(n)].valid) n += step;
       if (n >= end) continue;
-      const Edge edge{divergence(cells[static_cast<std::size_t>(k)], cells[static_cast<std::size_t>(n)]), static_cast<std::uint8_t>(k),
-                      static_cast<std::uint8_t>(n)};
+      const Edge edge{divergence(cells[static_cast<std::size_t>(k)], cells[static_cast<std::size_t>(n)]),
+                      static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(n)};
       int place = count++;
       for (; place > 0 && edges[static_cast<std::size_t>(place - 1)].weight > edge.weight; --place) {
         edges[static_cast<std::size_t>(place)] = edges[static_cast<std::size_t>(place - 1)];

@@ -11,9 +11,13 @@ constexpr float least_sweep_rad = 0.05f;
 /// Three standard deviations, squared: beyond it something else than latency is seen.
 constexpr float gate = 9.0f;
 
-float square(float x) { return x * x; }
+float square(float x) {
+  return x * x;
+}
 
-float within(float x, float bound) { return x < -bound ? -bound : x > bound ? bound : x; }
+float within(float x, float bound) {
+  return x < -bound ? -bound : x > bound ? bound : x;
+}
 
 }  // namespace
 
@@ -79,6 +83,8 @@ void TiltLatency::end_line(float tilt_rate_rad_s) {
   precision_ = weighted_ = growth_ = points_ = 0.0f;
 }
 
-float TiltLatency::sd_s() const { return square_root(state().variance_s2); }
+float TiltLatency::sd_s() const {
+  return square_root(state().variance_s2);
+}
 
 }  // namespace curbline

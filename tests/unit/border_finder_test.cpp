@@ -12,8 +12,8 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// What points on a metre of two planes 1 apart make of a cell with its edge there: `face` times as many on the face as on a cell of
-/// ground, the share of the far plane's ground behind the edge that the laser does not see.
+/// What points on a metre of two planes 1 apart make of a cell with its edge there: `face` times as many on the face as
+/// on a cell of ground, the share of the far plane's ground behind the edge that the laser does not see.
 CrossedCell crossed(double edge, double face, double hidden) {
   double points = 0, heights = 0, places = 0;
   const auto add = [&](double number, double height, double place) {
@@ -30,14 +30,17 @@ CrossedCell crossed(double edge, double face, double hidden) {
 
 TEST_CASE("border finder: an edge that steps up lies where it is in a cell, however many points its face has") {
   for (const double edge : {0.05, 0.3, 0.5, 0.8}) {
-    for (const double face : {0.0, 0.5, 3.0}) CHECK(edge_in_cell(crossed(edge, face, 0), true) == Approx(edge).margin(1e-5));
+    for (const double face : {0.0, 0.5, 3.0})
+      CHECK(edge_in_cell(crossed(edge, face, 0), true) == Approx(edge).margin(1e-5));
   }
 }
 
 TEST_CASE("border finder: an edge that steps down lies where the near ground ends, whatever it hides") {
   // A cell of which all beyond the edge is hidden holds the near ground alone.
-  for (const double edge : {0.3, 0.5, 0.9}) CHECK(edge_in_cell(crossed(edge, 0, 1), false) == Approx(edge).margin(1e-5));
-  for (const double edge : {0.1, 0.5, 0.9}) CHECK(edge_in_cell(crossed(edge, 0, 0), false) == Approx(edge).margin(1e-5));
+  for (const double edge : {0.3, 0.5, 0.9})
+    CHECK(edge_in_cell(crossed(edge, 0, 1), false) == Approx(edge).margin(1e-5));
+  for (const double edge : {0.1, 0.5, 0.9})
+    CHECK(edge_in_cell(crossed(edge, 0, 0), false) == Approx(edge).margin(1e-5));
 }
 
 TEST_CASE("border finder: cells beside the edge are whole") {
@@ -65,7 +68,8 @@ TEST_CASE("border finder: a step down lies before its shadow") {
     }
   }
   for (int pass = 0; pass < 3; ++pass) stages.infer(true);
-  stages.tracer.trace(stages.dem, stages.mixture, stages.field, {0.0f, 1.2f, 1.0f}, stages.work.curbs(), stages.counters);
+  stages.tracer.trace(stages.dem, stages.mixture, stages.field, {0.0f, 1.2f, 1.0f}, stages.work.curbs(),
+                      stages.counters);
   REQUIRE(stages.tracer.curbs().size() == 1);
   const Curb& curb = stages.tracer.curbs()[0];
   CHECK(curb.kind == CurbKind::step_down);

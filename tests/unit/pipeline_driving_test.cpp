@@ -39,7 +39,8 @@ Drive drive(const Street& street, int lines, const Settings& settings, int first
     const auto ranges = laser.ranges(street, line, x);
     out.pipeline->take({NoddingLaser::ns(t), ranges});
     for (const Curb& curb : out.pipeline->curbs()) {
-      if (curb.kind == CurbKind::crease || curb.kind == CurbKind::ramp_edge || std::abs(curb.y1_m - curb.y0_m) < 2.0f) continue;
+      if (curb.kind == CurbKind::crease || curb.kind == CurbKind::ramp_edge || std::abs(curb.y1_m - curb.y0_m) < 2.0f)
+        continue;
       out.worst_place_m =
           std::max({out.worst_place_m, std::abs(curb.x0_m - street.step_x_m), std::abs(curb.x1_m - street.step_x_m)});
       out.worst_height_m =

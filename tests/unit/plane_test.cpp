@@ -213,7 +213,9 @@ TEST_CASE("plane fit: far from the origin it keeps its digits") {
   CHECK(q.height_m(1025.0f, -2047.0f) == Approx(p.height_m(1.0f, 1.0f) + 128.0f).margin(1e-4));
 }
 
-TEST_CASE("plane: of a thin strip of many points, across the axes, the height's variance is a number, and least in its middle") {
+TEST_CASE(
+    "plane: of a thin strip of many points, across the axes, the height's variance is a number, and least in its "
+    "middle") {
   for (const double weight : {10.0, 1000.0, 20000.0}) {
     PlaneMoments moments;
     for (int k = -20; k < 20; ++k) {
