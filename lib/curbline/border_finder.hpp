@@ -70,11 +70,13 @@ class BorderFinder {
   Border border_of(const Gap& gap) const;
   Edge edge_of(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
-  float residual_m(int i, int j, const Cell& cell, const Plane& plane) const {
-    return cell.height_m - plane.height_m(dem_.centroid_x_m(i, cell), dem_.centroid_y_m(j, cell));
-  }
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
 
+  float pitch_m(const Gap& gap) const { return gap.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
+  /// Of the middle of its row or column.
+  float across_m(const Gap& gap) const {
+    return (static_cast<float>(gap.across) + 0.5f) * (gap.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
+  }
   int row(const Gap& gap, int along) const { return gap.axis == 0 ? along : gap.across; }
   int col(const Gap& gap, int along) const { return gap.axis == 0 ? gap.across : along; }
 
@@ -96,7 +98,7 @@ int BorderFinder<limits>::find_ground() {
     const LabelType label = field_.label(s);
     if (label == none) return;
     const Cell& cell = dem_.cell(s);
-    const float residual = residual_m(i, j, cell, mixture_.plane(label));
+    const float residual = dem_.above_m(i, j, cell, mixture_.plane(label));
     ++cells[label];
     off[label] += residual > bound || residual < -bound;
   });
@@ -111,7 +113,7 @@ int BorderFinder<limits>::find_ground() {
 /// Within three standard deviations.
 template <Limits limits>
 bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& plane) const {
-  const float residual = residual_m(i, j, cell, plane);
+  const float residual = dem_.above_m(i, j, cell, plane);
   return residual * residual <= 9.0f * (plane.variance_m2 + dem_.height_variance_m2(cell));
 }
 
@@ -157,18 +159,16 @@ float BorderFinder<limits>::same_plane(const Gap& gap) const {
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const Edge edge = edge_of(gap);
-  const float pitch_m = gap.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m();
-  const float other_m = (static_cast<float>(gap.across) + 0.5f) * (gap.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
   const bool rising = gap.first.label < gap.second.label;
   Border border;
-  border.x_m = gap.axis == 0 ? edge.at_m : other_m;
-  border.y_m = gap.axis == 0 ? other_m : edge.at_m;
+  border.x_m = gap.axis == 0 ? edge.at_m : across_m(gap);
+  border.y_m = gap.axis == 0 ? across_m(gap) : edge.at_m;
   border.probability = 1.0f - same_plane(gap);
-  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m;
+  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap);
   border.width_m = edge.width_m;
   const auto off = [&](const Place& place) {
     const int i = row(gap, place.along), j = col(gap, place.along);
-    return residual_m(i, j, dem_.cell(dem_.slot(i, j)), mixture_.plane(place.label));
+    return dem_.above_m(i, j, dem_.cell(dem_.slot(i, j)), mixture_.plane(place.label));
   };
   border.off_m = rising ? off(gap.second) - off(gap.first) : off(gap.first) - off(gap.second);
   border.low = rising ? gap.first.label : gap.second.label;
@@ -183,17 +183,16 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 /// In the middle of the gap, unless the planes are three standard deviations or more apart: then where its cells tell.
 template <Limits limits>
 auto BorderFinder<limits>::edge_of(const Gap& gap) const -> Edge {
-  const float pitch_m = gap.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m();
-  const float middle_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * pitch_m;
-  const float across_m = (static_cast<float>(gap.across) + 0.5f) * (gap.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
-  const float x_m = gap.axis == 0 ? middle_m : across_m, y_m = gap.axis == 0 ? across_m : middle_m;
+  const float cell_m = pitch_m(gap);
+  const float middle_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * cell_m;
+  const float x_m = gap.axis == 0 ? middle_m : across_m(gap), y_m = gap.axis == 0 ? across_m(gap) : middle_m;
   const float seen_from_m = gap.axis == 0 ? view_.x_m : view_.y_m;
   const bool outward = seen_from_m < middle_m;
   const Plane& near = mixture_.plane(outward ? gap.first.label : gap.second.label);
   const Plane& far = mixture_.plane(outward ? gap.second.label : gap.first.label);
   const float step_m = far.height_m(x_m, y_m) - near.height_m(x_m, y_m);
   const int length = gap.second.along - gap.first.along;
-  const float inside_m = static_cast<float>(length - 1) * pitch_m;
+  const float inside_m = static_cast<float>(length - 1) * cell_m;
   if (2.0f * step_m * step_m <= 9.0f * (near.variance_m2 + far.variance_m2)) return {middle_m, inside_m};
 
   float edge = 0.0f, empty = 0.0f;  // in cells from the near one
@@ -205,20 +204,19 @@ auto BorderFinder<limits>::edge_of(const Gap& gap) const -> Edge {
       empty += 1.0f;
       continue;
     }
-    const float height_m = near.height_m(dem_.centroid_x_m(i, cell), dem_.centroid_y_m(j, cell));
-    const float offset = (gap.axis == 0 ? cell.dx_m : cell.dy_m) / pitch_m;
-    edge += edge_in_cell({(cell.height_m - height_m) / step_m, 0.5f + (outward ? offset : -offset)}, step_m > 0.0f);
+    const float offset = (gap.axis == 0 ? cell.dx_m : cell.dy_m) / cell_m;
+    edge += edge_in_cell({dem_.above_m(i, j, cell, near) / step_m, 0.5f + (outward ? offset : -offset)}, step_m > 0.0f);
   }
   // A ray that grazes a step down meets the ground behind it at step / slope of the ray; the edge lies before its
   // shadow. Cells that are empty otherwise lie between two scan lines.
   const float above_m = view_.z_m - near.height_m(x_m, y_m), away_m = middle_m - seen_from_m;
   float shadow = 0.0f;
-  if (step_m < 0.0f && above_m > 0.0f) shadow = -step_m * (outward ? away_m : -away_m) / (above_m * pitch_m);
+  if (step_m < 0.0f && above_m > 0.0f) shadow = -step_m * (outward ? away_m : -away_m) / (above_m * cell_m);
   if (shadow > empty) shadow = empty;
   edge += 0.5f * (empty - shadow);
   const float at =
       outward ? static_cast<float>(gap.first.along) + edge : static_cast<float>(gap.second.along + 1) - edge;
-  return {at * pitch_m, inside_m - shadow * pitch_m};
+  return {at * cell_m, inside_m - shadow * cell_m};
 }
 
 }  // namespace curbline

@@ -40,10 +40,14 @@ struct Curb {
   float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, without the shadow of a step
                               ///< down: the face at most, to a cell
   CurbKind kind = CurbKind::crease;
-  std::uint16_t id =
-      0;  ///< the same as long as the curb is found, 1 to 65535; may be given anew when that many have been
+  /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
+  std::uint16_t id = 0;
   std::uint16_t near_label = 0, far_label = 0;
 };
+
+inline bool is_step(const Curb& curb) {
+  return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
+}
 
 /// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line.
 /// Else 0 or less.
@@ -120,9 +124,6 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
 /// found; others get new numbers.
 template <Limits limits>
 void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
-  const auto is_step = [](const Curb& curb) {
-    return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
-  };
   for (int n = 0; n < work.curbs; ++n) {
     Curb& now = work.curb[static_cast<std::size_t>(n)];
     Curb* same = nullptr;

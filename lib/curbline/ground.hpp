@@ -1,10 +1,10 @@
 // Which planes are ground. A region may fit a plane and be none that a wheel could stand on:
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
-//   cells spread over most
-//     of the step: it is narrower than a cell and a half, and its plane is what mixing both sides makes.
+//     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
+//     sides makes.
 //   - the fringe of an obstacle: a thin region within whose cells the heights spread as on a slope of more than 45
-//   degrees.
-// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: two
+//     degrees.
+// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: three
 // passes over the window.
 #pragma once
 
@@ -28,8 +28,8 @@ class Ground {
   bool is(int label) const { return ground_[static_cast<std::size_t>(label)]; }
 
  private:
-  static constexpr int longest_strip =
-      3;  ///< cells; as many as a face of one and a half touches when it lies across the grid
+  /// In cells: as many as a face of one and a half touches when it lies across the grid.
+  static constexpr int longest_strip = 3;
   static constexpr int widest_gap = 2;   ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
   static constexpr float thin = 4.0f;  ///< cells of a run on average: an obstacle hides what lies behind its near side

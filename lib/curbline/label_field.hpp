@@ -55,7 +55,7 @@ class LabelField {
     int size;
   };
 
-  void init(const LabelSettings& settings, const PlanePrior& prior);
+  void init(const LabelSettings& settings);
 
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = Site{}; }
@@ -119,7 +119,6 @@ class LabelField {
   static Logs normalised(const Site& site, const Nats& logs);
 
   LabelSettings settings_{};
-  float noise_m2_ = 0.0f;                                               ///< of a cell with one point of weight 1
   std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
   float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
   int band_ = 0;                                                        ///< first row to refresh in the next update()
@@ -130,9 +129,8 @@ class LabelField {
 };
 
 template <Limits limits>
-void LabelField<limits>::init(const LabelSettings& settings, const PlanePrior& prior) {
+void LabelField<limits>::init(const LabelSettings& settings) {
   settings_ = settings;
-  noise_m2_ = prior.noise_m2;
   sites_.fill(Site{});
   flag_.fill(quiet);
   near_by_.fill({});
@@ -254,7 +252,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
                                            int slot) {
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
-  const float cell_variance = noise_m2_ / cell.weight;
+  const float cell_variance = dem.height_variance_m2(cell);
   Logs best{};
   std::array<LabelType, candidates> label{none, none, none};
   const auto consider = [&](int k) {

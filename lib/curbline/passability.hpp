@@ -33,7 +33,7 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
   const Plane& plane = mixture.plane(label);
   const float square_m2 = mobility.max_step_m * mobility.max_step_m;
   const auto level = [&](int a, int b, const Cell& cell) {
-    const float off_m = cell.height_m - plane.height_m(dem.centroid_x_m(a, cell), dem.centroid_y_m(b, cell));
+    const float off_m = dem.above_m(a, b, cell, plane);
     return off_m * off_m <= square_m2;
   };
   const Cell& here = dem.cell(slot);

@@ -145,7 +145,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   dem_.init(window, settings.planes.prior, 0.0f, 0.0f);
   segmentation_.init(settings.segmentation, settings.planes.prior);
   plane_mixture_.init(settings.planes);
-  label_field_.init(settings.labels, settings.planes.prior);
+  label_field_.init(settings.labels);
   curb_tracer_.init(settings.curbs);
   ready_ = true;
   return Status::ok;

@@ -47,7 +47,7 @@ struct Stages {
     dem.init(s.window, s.planes.prior, 0.0f, 0.0f);
     segmentation.init(s.segmentation, s.planes.prior);
     mixture.init(s.planes);
-    field.init(s.labels, s.planes.prior);
+    field.init(s.labels);
     tracer.init(s.curbs);
   }
   void segment() {

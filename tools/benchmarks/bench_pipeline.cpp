@@ -145,7 +145,7 @@ void belief_messages(benchmark::State& state) {
   const auto pipeline = std::make_unique<Pipeline<board_limits>>();
   map_by_pipeline(*pipeline);
   LabelField<board_limits> field;
-  field.init(street().settings.labels, street().settings.planes.prior);
+  field.init(street().settings.labels);
   // The planes of a finished map, as the field takes them.
   Segmentation<board_limits> segmentation;
   PlaneMixture<board_limits> mixture;
