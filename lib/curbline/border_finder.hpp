@@ -17,30 +17,27 @@
 
 namespace curbline {
 
-/// Where the laser looks from: x and y in the window's frame, z of the map frame.
-struct Viewpoint {
-  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
-};
-
-/// What a cell shows of an edge that crosses it, along the way from the near side to the far one.
+/// What a cell shows of a step that crosses it, along the way from the near side to the far one.
 struct CrossedCell {
   float far_share;  ///< of the step: 0 if the cell's mean height is that of the near plane, 1 if of the far one
   float centroid;   ///< of its points, in cells from its near side
 };
 
-/// How far from the near side of a cell its edge lies, in cells, 0 to 1.
-/// A step up shows its face: with as many points a metre on both planes, and any number on the face, the edge lies at
-/// 1/2 + (1/2 - far_share) + (centroid - 1/2). A step down shows none, and hides what lies below it: at 2 centroid -
-/// far_share, whatever the share of points below; and not beyond 1 - far_share, where it would lie if nothing were
-/// hidden.
-float edge_in_cell(const CrossedCell& cell, bool step_up);
+/// How much of a cell lies before the middle of what parts the planes, in cells. With as many points a metre on both
+/// planes, each sum over the cells of a gap is exact for
+///   - a vertical face that shows any number of points: 1/2 - far_share + centroid is where it stands;
+///   - a sloped face as densely seen as the planes;
+///   - a gap without points, of which the cells on both sides hold a part: their centroids tell how much, and half of
+///     it is counted.
+/// A centroid is not bounded: what a few points lie off by lot averages out.
+float before_middle(const CrossedCell& cell);
 
 template <Limits limits>
 class BorderFinder {
  public:
   BorderFinder(const CurbSettings& settings, const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
-               const LabelField<limits>& field, const Viewpoint& view)
-      : settings_(settings), dem_(dem), mixture_(mixture), field_(field), view_(view) {}
+               const LabelField<limits>& field)
+      : settings_(settings), dem_(dem), mixture_(mixture), field_(field) {}
 
   /// Fills `borders`, which are empty.
   void find(Borders<limits>& borders, Counters& counters);
@@ -60,15 +57,9 @@ class BorderFinder {
     int axis, across;
     Place first, second;
   };
-  struct Edge {
-    float at_m;     ///< along the axis
-    float width_m;  ///< between the cells of the one plane and of the other, without what lies in the shadow of a step
-                    ///< down
-  };
-
   int find_ground();
   Border border_of(const Gap& gap) const;
-  Edge edge_of(const Gap& gap) const;
+  float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
 
@@ -84,7 +75,6 @@ class BorderFinder {
   const Dem<limits>& dem_;
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
-  const Viewpoint& view_;
   std::array<bool, limits.planes> ground_{};
 };
 
@@ -158,14 +148,13 @@ float BorderFinder<limits>::same_plane(const Gap& gap) const {
 
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
-  const Edge edge = edge_of(gap);
+  const float at_m = middle_m(gap);
   const bool rising = gap.first.label < gap.second.label;
   Border border;
-  border.x_m = gap.axis == 0 ? edge.at_m : across_m(gap);
-  border.y_m = gap.axis == 0 ? across_m(gap) : edge.at_m;
+  border.x_m = gap.axis == 0 ? at_m : across_m(gap);
+  border.y_m = gap.axis == 0 ? across_m(gap) : at_m;
   border.probability = 1.0f - same_plane(gap);
   border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap);
-  border.width_m = edge.width_m;
   const auto off = [&](const Place& place) {
     const int i = row(gap, place.along), j = col(gap, place.along);
     return dem_.above_m(i, j, dem_.cell(dem_.slot(i, j)), mixture_.plane(place.label));
@@ -180,43 +169,32 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   return border;
 }
 
-/// In the middle of the gap, unless the planes are three standard deviations or more apart: then where its cells tell.
+/// Along the axis, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
+/// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell.
 template <Limits limits>
-auto BorderFinder<limits>::edge_of(const Gap& gap) const -> Edge {
+float BorderFinder<limits>::middle_m(const Gap& gap) const {
   const float cell_m = pitch_m(gap);
-  const float middle_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * cell_m;
-  const float x_m = gap.axis == 0 ? middle_m : across_m(gap), y_m = gap.axis == 0 ? across_m(gap) : middle_m;
-  const float seen_from_m = gap.axis == 0 ? view_.x_m : view_.y_m;
-  const bool outward = seen_from_m < middle_m;
-  const Plane& near = mixture_.plane(outward ? gap.first.label : gap.second.label);
-  const Plane& far = mixture_.plane(outward ? gap.second.label : gap.first.label);
-  const float step_m = far.height_m(x_m, y_m) - near.height_m(x_m, y_m);
-  const int length = gap.second.along - gap.first.along;
-  const float inside_m = static_cast<float>(length - 1) * cell_m;
-  if (2.0f * step_m * step_m <= 9.0f * (near.variance_m2 + far.variance_m2)) return {middle_m, inside_m};
+  const float halfway_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * cell_m;
+  const float x_m = gap.axis == 0 ? halfway_m : across_m(gap), y_m = gap.axis == 0 ? across_m(gap) : halfway_m;
+  const Plane& first = mixture_.plane(gap.first.label);
+  const Plane& second = mixture_.plane(gap.second.label);
+  const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
+  if (2.0f * step_m * step_m <= 9.0f * (first.variance_m2 + second.variance_m2)) return halfway_m;
 
-  float edge = 0.0f, empty = 0.0f;  // in cells from the near one
-  for (int k = 0; k <= length; ++k) {
-    const int along = outward ? gap.first.along + k : gap.second.along - k;
+  float before = 0.0f;  // in cells, from the first one's near side
+  for (int along = gap.first.along; along <= gap.second.along; ++along) {
     const int i = row(gap, along), j = col(gap, along);
     const Cell& cell = dem_.cell(dem_.slot(i, j));
     if (!cell.valid()) {
-      empty += 1.0f;
+      before += 0.5f;
       continue;
     }
     const float offset = (gap.axis == 0 ? cell.dx_m : cell.dy_m) / cell_m;
-    edge += edge_in_cell({dem_.above_m(i, j, cell, near) / step_m, 0.5f + (outward ? offset : -offset)}, step_m > 0.0f);
+    before += before_middle({dem_.above_m(i, j, cell, first) / step_m, 0.5f + offset});
   }
-  // A ray that grazes a step down meets the ground behind it at step / slope of the ray; the edge lies before its
-  // shadow. Cells that are empty otherwise lie between two scan lines.
-  const float above_m = view_.z_m - near.height_m(x_m, y_m), away_m = middle_m - seen_from_m;
-  float shadow = 0.0f;
-  if (step_m < 0.0f && above_m > 0.0f) shadow = -step_m * (outward ? away_m : -away_m) / (above_m * cell_m);
-  if (shadow > empty) shadow = empty;
-  edge += 0.5f * (empty - shadow);
-  const float at =
-      outward ? static_cast<float>(gap.first.along) + edge : static_cast<float>(gap.second.along + 1) - edge;
-  return {at * cell_m, inside_m - shadow * cell_m};
+  const auto cells = static_cast<float>(gap.second.along - gap.first.along + 1);
+  before = before < 0.0f ? 0.0f : before > cells ? cells : before;
+  return (static_cast<float>(gap.first.along) + before) * cell_m;
 }
 
 }  // namespace curbline

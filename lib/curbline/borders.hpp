@@ -21,7 +21,6 @@ class Borders {
     float x_m, y_m;       ///< in the window's frame
     float probability;    ///< that the cells on both sides lie on different planes
     float half_gap_m;     ///< between the cells of the one and the other
-    float width_m;        ///< of what lies between them, BorderFinder::Edge
     float off_m;          ///< by how much more the cell on `high` lies above its plane than that on `low`
     LabelType low, high;  ///< the planes, low < high by number
     std::int8_t axis;     ///< 0: found along x, 1: along y

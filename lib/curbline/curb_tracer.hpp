@@ -18,6 +18,7 @@
 #include "curbline/line_fit.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/shadow.hpp"
 
 namespace curbline {
 
@@ -37,8 +38,8 @@ struct Curb {
                           ///< of a crease or the edge of a ramp
   float height_sd_m = 0.0f;   ///< from both planes' posteriors, and how far the cells beside the border lie off them
   float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
-  float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, without the shadow of a step
-                              ///< down: the face at most, to a cell
+  float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, less the shadow of a step
+                              ///< down: to a cell
   CurbKind kind = CurbKind::crease;
   /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
   std::uint16_t id = 0;
@@ -112,7 +113,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
                                const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();
-  BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
+  BorderFinder<limits>(settings_, dem, mixture, field).find(work.borders, counters);
   const Stages stages{dem, mixture, view};
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(stages, work.borders.chain(dem, b, settings_.link_reach), work, counters);
@@ -215,26 +216,23 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   LineFit::Segment segment = fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
   if (first == last) segment = LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m);
-  float width = 0.0f;
+  float gap = 0.0f, cells = 0.0f;  // across the piece, from cell centre to cell centre; of one cell
   for (int k = first; k <= last; ++k) {
     const Border& border = work.borders.at(k);
-    const float across = border.axis == 0 ? segment.normal_x : segment.normal_y;
-    width += border.width_m * (across < 0.0f ? -across : across);
+    const float cosine = border.axis == 0 ? segment.normal_x : segment.normal_y;
+    const float across = cosine < 0.0f ? -cosine : cosine;
+    gap += 2.0f * border.half_gap_m * across;
+    cells += (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m()) * across;
   }
   // `toward` points from the low-numbered plane to the other; the robot stands on the near side.
   const bool low_is_near = toward_x * (fit.x_m() - stages.view.x_m) + toward_y * (fit.y_m() - stages.view.y_m) >= 0.0f;
   Curb curb;
-  curb.x0_m = dem.origin_x_m() + segment.x0_m;
-  curb.y0_m = dem.origin_y_m() + segment.y0_m;
-  curb.x1_m = dem.origin_x_m() + segment.x1_m;
-  curb.y1_m = dem.origin_y_m() + segment.y1_m;
   curb.height_m = (low_is_near ? height : -height) * n;
   // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
   // their planes may be the planes' fault wholly, not at all, or in part, each share as likely: a third of its square.
   const float planes_m2 = variance * n, off_m = off * n;
   curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 3));
   curb.probability = probability * n;
-  curb.face_width_m = width * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;
   const float reach_m =
@@ -245,6 +243,17 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   } else if (curb.height_m < 0.0f) {
     curb.kind = CurbKind::step_down;
   }
+  float shadow_m = 0.0f;
+  if (curb.kind == CurbKind::step_down) {
+    const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(fit.x_m(), fit.y_m());
+    shadow_m = move_before_shadow(segment, stages.view, {-curb.height_m, above_m, (gap + cells) * n});
+  }
+  const float width_m = (gap - cells) * n - shadow_m;
+  curb.face_width_m = width_m > 0.0f ? width_m : 0.0f;
+  curb.x0_m = dem.origin_x_m() + segment.x0_m;
+  curb.y0_m = dem.origin_y_m() + segment.y0_m;
+  curb.x1_m = dem.origin_x_m() + segment.x1_m;
+  curb.y1_m = dem.origin_y_m() + segment.y1_m;
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
 }

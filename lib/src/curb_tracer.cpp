@@ -39,12 +39,23 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
   return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
 }
 
-float edge_in_cell(const CrossedCell& cell, bool step_up) {
-  const auto within = [](float share) { return share < 0.0f ? 0.0f : share > 1.0f ? 1.0f : share; };
-  const float far_share = within(cell.far_share);
-  if (step_up) return within(0.5f - far_share + cell.centroid);
-  const float hiding = 2.0f * cell.centroid - far_share, open = 1.0f - far_share;
-  return within(hiding < open ? hiding : open);
+float before_middle(const CrossedCell& cell) {
+  const float far_share = cell.far_share < 0.0f ? 0.0f : cell.far_share > 1.0f ? 1.0f : cell.far_share;
+  return 0.5f - far_share + cell.centroid;
+}
+
+float move_before_shadow(LineFit::Segment& line, const Viewpoint& view, const Shadow& shadow) {
+  if (!(shadow.above_m > 0.0f)) return 0.0f;
+  const float away_m = line.normal_x * (0.5f * (line.x0_m + line.x1_m) - view.x_m) +
+                       line.normal_y * (0.5f * (line.y0_m + line.y1_m) - view.y_m);
+  // The edge is away_m / (1 + drop / (2 above)) away.
+  const float width_m = away_m * shadow.drop_m / (shadow.above_m + 0.5f * shadow.drop_m);
+  if (width_m > shadow.gap_m || width_m < -shadow.gap_m) return 0.0f;
+  line.x0_m -= 0.5f * width_m * line.normal_x;
+  line.y0_m -= 0.5f * width_m * line.normal_y;
+  line.x1_m -= 0.5f * width_m * line.normal_x;
+  line.y1_m -= 0.5f * width_m * line.normal_y;
+  return width_m < 0.0f ? -width_m : width_m;
 }
 
 float overlap_m(const Curb& now, const Curb& before, float near_m) {

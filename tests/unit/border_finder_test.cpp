@@ -1,7 +1,12 @@
-// Where within its cells an edge lies.
+// Where within its cells an edge lies, and how far before its shadow.
 #include "curbline/border_finder.hpp"
 
 #include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
 
 #include "support/small_map.hpp"
 
@@ -12,70 +17,170 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// What points on a metre of two planes 1 apart make of a cell with its edge there: `face` times as many on the face as
-/// on a cell of ground, the share of the far plane's ground behind the edge that the laser does not see.
-CrossedCell crossed(double edge, double face, double hidden) {
-  double points = 0, heights = 0, places = 0;
-  const auto add = [&](double number, double height, double place) {
-    points += number;
-    heights += number * height;
-    places += number * place;
-  };
-  const double seen = (1 - edge) * (1 - hidden);
-  add(edge, 0, edge / 2);
-  add(face, 0.5, edge);
-  add(seen, 1, 1 - seen / 2);
-  return {static_cast<float>(heights / points), static_cast<float>(places / points)};
+/// Points as many a metre on a near plane from 0 to `from` and a far one from `to` on, 1 apart, `face` times as many on
+/// the slope between; what the cell from k to k + 1 holds of them.
+struct Ground {
+  double from, to, face;
+
+  bool seen(int k) const { return face > 0 || from > k || to < k + 1; }
+  CrossedCell cell(int k) const {
+    double points = 0, heights = 0, places = 0;
+    const auto add = [&](double first, double last, double density, auto&& height) {
+      const double a = std::clamp(first - k, 0.0, 1.0), b = std::clamp(last - k, 0.0, 1.0), number = density * (b - a);
+      points += number;
+      heights += number * height(k + (a + b) / 2);
+      places += number * (a + b) / 2;
+    };
+    add(0, from, 1, [](double) { return 0.0; });
+    if (face > 0) add(from, to, face, [&](double x) { return (x - from) / (to - from); });
+    add(to, 9, 1, [](double) { return 1.0; });
+    return {static_cast<float>(heights / points), static_cast<float>(places / points)};
+  }
+  /// Of three cells.
+  double middle() const {
+    double before = 0;
+    for (int k = 0; k < 3; ++k) before += seen(k) ? before_middle(cell(k)) : 0.5;
+    return before;
+  }
+};
+
+TEST_CASE("border finder: a sloped face that is seen as the planes are is told by its middle, wherever cells part it") {
+  for (const double from : {0.2, 0.5, 0.8, 1.0}) {
+    for (const double width : {0.1, 0.5, 1.0, 1.6})
+      CHECK((Ground{from, from + width, 1}.middle()) == Approx(from + width / 2).margin(1e-5));
+  }
 }
 
-TEST_CASE("border finder: an edge that steps up lies where it is in a cell, however many points its face has") {
+TEST_CASE("border finder: half of what is hidden lies before the middle, within a cell or over several") {
+  for (const double from : {0.2, 0.5, 0.8, 1.0}) {
+    for (const double shadow : {0.0, 0.3, 0.7, 1.0, 1.6})
+      CHECK((Ground{from, from + shadow, 0}.middle()) == Approx(from + shadow / 2).margin(1e-5));
+  }
+}
+
+TEST_CASE("border finder: a few readings in what is hidden, a mixture of both sides, do not move its middle") {
+  double sum = 0;
+  constexpr int phases = 50;
+  for (int k = 0; k < phases; ++k) {
+    const double from = 0.2 + k / static_cast<double>(phases);
+    sum += Ground{from, from + 1.0, 0.15}.middle() - from - 0.5;
+  }
+  CHECK(sum / phases == Approx(0.0).margin(0.01));
+}
+
+TEST_CASE("border finder: a vertical face stands where it does in a cell, however many points it shows") {
   for (const double edge : {0.05, 0.3, 0.5, 0.8}) {
-    for (const double face : {0.0, 0.5, 3.0})
-      CHECK(edge_in_cell(crossed(edge, face, 0), true) == Approx(edge).margin(1e-5));
+    for (const double face : {0.5, 3.0}) {
+      const double points = 1 + face;  // a cell's, of ground and face
+      const double share = (1 - edge + face / 2) / points, centroid = (0.5 + face * edge) / points;
+      CHECK(before_middle({static_cast<float>(share), static_cast<float>(centroid)}) == Approx(edge).margin(1e-5));
+    }
   }
 }
 
-TEST_CASE("border finder: an edge that steps down lies where the near ground ends, whatever it hides") {
-  // A cell of which all beyond the edge is hidden holds the near ground alone.
-  for (const double edge : {0.3, 0.5, 0.9})
-    CHECK(edge_in_cell(crossed(edge, 0, 1), false) == Approx(edge).margin(1e-5));
-  for (const double edge : {0.1, 0.5, 0.9})
-    CHECK(edge_in_cell(crossed(edge, 0, 0), false) == Approx(edge).margin(1e-5));
-}
-
-TEST_CASE("border finder: cells beside the edge are whole") {
-  for (const bool step_up : {false, true}) {
-    CHECK(edge_in_cell({0.0f, 0.5f}, step_up) == Approx(1.0));
-    CHECK(edge_in_cell({1.0f, 0.5f}, step_up) == Approx(0.0));
-    CHECK(edge_in_cell({-0.1f, 0.5f}, step_up) == Approx(1.0));
-    CHECK(edge_in_cell({1.1f, 0.5f}, step_up) == Approx(0.0));
+TEST_CASE("border finder: cells of few points have no bias, those wholly on a plane or parted by an edge") {
+  test::Noise noise;
+  constexpr int draws = 40000;
+  for (const double edge : {0.0, 0.3, 0.5, 1.0}) {
+    for (int points = 1; points <= 6; ++points) {
+      double sum = 0;
+      for (int draw = 0; draw < draws; ++draw) {
+        float far = 0, place = 0;
+        for (int k = 0; k < points; ++k) {
+          const double x = noise.uniform();
+          far += x > edge ? 1.0f : 0.0f;
+          place += static_cast<float>(x);
+        }
+        sum +=
+            static_cast<double>(before_middle({far / static_cast<float>(points), place / static_cast<float>(points)}));
+      }
+      CHECK(sum / draws == Approx(edge).margin(0.007));  // four standard errors
+    }
   }
 }
 
-//  ______________
-//                |               the shadow of a laser 1 m above: 12 cm high, at 1.2 m, 14 cm long
-//                |  shadow
-//                '.......________
-TEST_CASE("border finder: a step down lies before its shadow") {
-  Stages<small_limits> stages(small_settings());
+TEST_CASE("border finder: heights beyond the planes are no part of the step") {
+  CHECK(before_middle({-0.3f, 0.5f}) == Approx(1.0));
+  CHECK(before_middle({1.3f, 0.5f}) == Approx(0.0));
+}
+
+/// A line at right angles to (cos, sin) of an angle, `away` from the origin.
+LineFit::Segment line_at(double angle, double away) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto at = [&](double along) {
+    return std::array{static_cast<float>(away * c - along * s), static_cast<float>(away * s + along * c)};
+  };
+  return {at(0.5)[0], at(0.5)[1], at(2.0)[0], at(2.0)[1], static_cast<float>(c), static_cast<float>(s)};
+}
+
+TEST_CASE("shadow: a line in the middle of the shadow moves to the edge that casts it, in any direction") {
+  for (const double angle : {0.0, 0.7, 2.0, -1.9}) {
+    const double edge = 1.5, width = edge * 0.12 / 0.9;
+    LineFit::Segment line = line_at(angle, edge + width / 2);
+    CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.12f, 0.9f, 1.0f}) == Approx(width));
+    const LineFit::Segment expected = line_at(angle, edge);
+    CHECK(line.x0_m == Approx(expected.x0_m).margin(1e-5));
+    CHECK(line.y0_m == Approx(expected.y0_m).margin(1e-5));
+    CHECK(line.x1_m == Approx(expected.x1_m).margin(1e-5));
+    CHECK(line.y1_m == Approx(expected.y1_m).margin(1e-5));
+  }
+}
+
+TEST_CASE("shadow: the side to which a line's normal points does not matter") {
+  LineFit::Segment line = line_at(0.0, 1.6);
+  line.normal_x = -1.0f;
+  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.12f, 0.9f, 1.0f}) == Approx(0.2));
+  CHECK(line.x0_m == Approx(1.5));
+}
+
+TEST_CASE("shadow: none is wider than the gap, and there is none for a laser below the upper plane") {
+  LineFit::Segment line = line_at(0.0, 2.0);
+  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.2f, 0.4f}) == 0.0f);
+  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, -0.1f, 0.4f}) == 0.0f);
+  CHECK(line.x0_m == Approx(2.0));
+}
+
+/// The one curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up, and there only
+/// one point in `thinner`; none for 0.
+Curb curb_of(double drop, double from, double to, bool face_seen) {
+  auto stages = std::make_unique<Stages<small_limits>>(small_settings());
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {
       for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
         const double x = 0.1 * i + at, y = 0.1 * j + at;
-        if (x > 1.2 && x < 1.2 + 0.12 * 1.2 / 0.88) continue;
-        stages.dem.add({static_cast<float>(x), static_cast<float>(y), x < 1.2 ? 0.12f : 0.0f, 1e-4f});
+        if (x > from && x < to && !face_seen) continue;
+        const double fallen = x < from ? 0 : x >= to ? 1 : (x - from) / (to - from);
+        stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(drop * (1 - fallen)), 1e-4f});
       }
     }
   }
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
-  stages.tracer.trace(stages.dem, stages.mixture, stages.field, {0.0f, 1.2f, 1.0f}, stages.work.curbs(),
-                      stages.counters);
-  REQUIRE(stages.tracer.curbs().size() == 1);
-  const Curb& curb = stages.tracer.curbs()[0];
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace(0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb curb = stages->tracer.curbs()[0];
   CHECK(curb.kind == CurbKind::step_down);
-  CHECK(curb.x0_m == Approx(1.2).margin(0.01));
-  CHECK(curb.x1_m == Approx(1.2).margin(0.01));
-  CHECK(curb.face_width_m < 0.05f);
+  CHECK(curb.x1_m == Approx(curb.x0_m).margin(0.01));
+  return curb;
+}
+
+//  ______________
+//                |               the shadow of a laser 1 m above: 12 cm high, 14 % of the way long
+//                |  shadow
+//                '.......________
+TEST_CASE("border finder: a step down lies before its shadow, wherever cells part it") {
+  for (const double edge : {1.2, 1.24, 1.26, 1.3}) {
+    const Curb curb = curb_of(0.12, edge, edge + 0.12 * edge / 0.88, false);
+    CHECK(curb.x0_m == Approx(edge).margin(0.012));
+    CHECK(curb.face_width_m < 0.05f);
+  }
+}
+
+TEST_CASE("border finder: a sloped face that is seen is told half its shadow before its middle, on the face") {
+  for (const double from : {0.55, 0.57, 0.60}) {
+    const Curb curb = curb_of(0.06, from, from + 0.1, true);
+    CHECK(curb.x0_m == Approx(from + 0.05 - 0.5 * 0.06 * 0.6 / 0.94).margin(0.012));
+    CHECK(curb.x0_m > from);
+  }
 }
 
 }  // namespace

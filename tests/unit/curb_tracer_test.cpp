@@ -69,10 +69,10 @@ TEST_CASE("curb tracer: seen from above the same step goes down") {
 }
 
 TEST_CASE("curb tracer: a step across y is found as well as one across x") {
-  const auto stages = traced([](double, double y) { return y < 1.0 ? 0.12 : 0.0; });
+  const auto stages = traced([](double, double y) { return y < 1.0 ? 0.12 : 0.0; }, 0.0f, 2.3f);
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
-  CHECK(curb.kind == CurbKind::step_down);
+  CHECK(curb.kind == CurbKind::step_up);
   CHECK(curb.y0_m == Approx(1.0).margin(0.01));
   CHECK(curb.y1_m == Approx(1.0).margin(0.01));
 }
