@@ -19,12 +19,12 @@ struct Viewpoint {
 struct Shadow {
   float drop_m;   ///< of the step
   float above_m;  ///< the laser, above the upper plane
-  float gap_m;    ///< between the planes as they are seen
+  float gap_m;    ///< between the planes as they are seen: no shadow is wider
 };
 
-/// Moves a line from the middle of a shadow to the edge that casts it, and returns how wide the shadow is. 0, and
-/// the line stays, if the laser is not above the upper plane, or the shadow would be wider than the gap: the ground was
-/// seen from elsewhere.
+/// Moves a line from the middle of a shadow to the edge that casts it, and returns how wide the shadow is. 0, and the
+/// line stays, unless the laser is above the upper plane by more than the drop: a robot's is, and a cloud whose heights
+/// are not from its laser tells nothing of shadows.
 float move_before_shadow(LineFit::Segment& line, const Viewpoint& view, const Shadow& shadow);
 
 }  // namespace curbline

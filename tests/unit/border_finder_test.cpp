@@ -133,11 +133,13 @@ TEST_CASE("shadow: the side to which a line's normal points does not matter") {
   CHECK(line.x0_m == Approx(1.5));
 }
 
-TEST_CASE("shadow: none is wider than the gap, and there is none for a laser below the upper plane") {
+TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no higher above the step than it falls") {
   LineFit::Segment line = line_at(0.0, 2.0);
   CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.2f, 0.4f}) == 0.0f);
   CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, -0.1f, 0.4f}) == 0.0f);
   CHECK(line.x0_m == Approx(2.0));
+  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.5f, 0.4f}) == Approx(0.4));
+  CHECK(line.x0_m == Approx(1.8));
 }
 
 /// The one curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up, and there only
