@@ -79,14 +79,15 @@ class BorderFinder {
 };
 
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
-/// robust standard deviation (1.4826 times the median residual) exceeds the bound. Returns how many are.
+/// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
+/// a face or an obstacle do not speak for it. Returns how many are.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};
   const float bound = settings_.max_roughness_m / 1.4826f;
   dem_.for_each_valid([&](int i, int j, int s) {
     const LabelType label = field_.label(s);
-    if (label == none) return;
+    if (label == none || !mixture_.on_ground(s)) return;
     const Cell& cell = dem_.cell(s);
     const float residual = dem_.above_m(i, j, cell, mixture_.plane(label));
     ++cells[label];

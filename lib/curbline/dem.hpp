@@ -84,6 +84,8 @@ class Dem {
   float noise_m2() const { return prior_.noise_m2; }
   /// Variance of a cell's mean height, from the noise of its points.
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
+  /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
+  float spread_m2(const Cell& cell) const { return cell.scatter_m2 - prior_.noise_m2 * cell.points; }
   /// How far a cell's mean height lies above a plane, at its centroid.
   float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
     return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));

@@ -2,8 +2,7 @@
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
-//   - the fringe of an obstacle: a thin region within whose cells the heights spread as on a slope of more than 45
-//     degrees.
+//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: three
 // passes over the window.
 #pragma once
@@ -32,11 +31,10 @@ class Ground {
   static constexpr int longest_strip = 3;
   static constexpr int widest_gap = 2;   ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
-  static constexpr float thin = 4.0f;  ///< cells of a run on average: an obstacle hides what lies behind its near side
 
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
-    float cells = 0.0f, runs = 0.0f, scatter_m2 = 0.0f, weight = 0.0f;
+    float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
 
     bool face() const {
@@ -46,9 +44,7 @@ class Ground {
       return cells > 0.0f && 2.0f * strip_cells >= cells &&
              mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
-    bool fringe(float cell_area_m2) const {
-      return 2.0f * cells < thin * runs && scatter_m2 > cell_area_m2 * (1.0f / 12) * weight;
-    }
+    bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
   };
   /// Cells of one plane that follow each other on a row or column.
   template <typename LabelType>
@@ -74,10 +70,8 @@ template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, Changed&& changed) {
   std::array<Tally, limits.planes> tallies{};
   const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
-    if (run.label == none) return;
+    if (run.label == none || before.label == none || next.label == none || !run.between(before, next)) return;
     Tally& tally = tallies[run.label];
-    tally.runs += 1.0f;
-    if (before.label == none || next.label == none || !run.between(before, next)) return;
     const float step_m = next.first_height_m - before.last_height_m;
     tally.strips += 1.0f;
     tally.strip_cells += static_cast<float>(run.last - run.first + 1);
@@ -119,12 +113,12 @@ void Ground<limits>::update(const Dem<limits>& dem, LabelType none, LabelOf&& la
     if (label == none) return;
     Tally& tally = tallies[label];
     tally.cells += 1.0f;
-    tally.scatter_m2 += dem.cell(s).scatter_m2;
+    tally.spread_m2 += dem.spread_m2(dem.cell(s));
     tally.weight += dem.cell(s).weight;
   });
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
   for (std::size_t l = 0; l < ground_.size(); ++l) {
-    const bool ground = !tallies[l].face() && !tallies[l].fringe(cell_area_m2);
+    const bool ground = !tallies[l].face() && !tallies[l].obstacle(cell_area_m2);
     if (ground != ground_[l]) changed(static_cast<LabelType>(l));
     ground_[l] = ground;
   }

@@ -37,7 +37,7 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
     return off_m * off_m <= square_m2;
   };
   const Cell& here = dem.cell(slot);
-  const float spread_m2 = here.scatter_m2 - dem.noise_m2() * here.points;
+  const float spread_m2 = dem.spread_m2(here);
   if (!level(i, j, here) || 12.0f * spread_m2 > square_m2 * here.weight) return false;
   for (std::size_t d = 0; d < directions; ++d) {
     const int g = dem.next_valid(slot, static_cast<int>(d), 2);

@@ -66,7 +66,7 @@ class RegionGraph {
     const Node& b = node_[end_[2 * link + 1].target];
     PlaneMoments both = a.moments;
     both.add(b.moments);
-    return evidence.score(both) - a.score - b.score;
+    return evidence.gain(a.moments, a.score, b.moments, b.score, both);
   }
   int refresh_all(const PlaneEvidence& evidence);
   void build_heap() {

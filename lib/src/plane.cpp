@@ -66,20 +66,38 @@ void PlaneMoments::add_cell(const PlaneMoments& cell) {
 }
 
 PlaneEvidence::PlaneEvidence(const PlanePrior& prior)
-    : noise_m2_(prior.noise_m2),
-      degrees_(prior.degrees),
+    : prior_(prior),
       constant_(0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees)) {
   for (std::size_t n = 1; n < log_gamma_.size(); ++n) log_gamma_[n] = log_gamma(static_cast<float>(n));
 }
 
 float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
-  const float ridge = noise_m2_;
+  const float ridge = prior_.noise_m2;
   const Slopes slopes = solve(m, ridge);
-  const float shape = degrees_ + 0.5f * m.points;
-  const float rate = degrees_ + 0.5f * slopes.residual_m2 / noise_m2_;  // in units of the expected noise
+  const float shape = prior_.degrees + 0.5f * m.points;
+  const float rate = prior_.degrees + 0.5f * slopes.residual_m2 / prior_.noise_m2;  // in units of the expected noise
   const float volume = (m.weight + ridge) * (slopes.determinant / (ridge * ridge * ridge));
   // lnG(shape) - shape ln(rate) by Stirling, with the large parts joined so that float keeps the digits.
   return shape * (log(shape / rate) - 1.0f) + (1.0f / 12) / shape - 0.5f * log(shape * volume) + constant_;
+}
+
+float PlaneEvidence::gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b,
+                          const PlaneMoments& both) const {
+  const float gain = score(both) - score_a - score_b;
+  if (gain < 0.0f) return gain;
+  const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
+  return by_evidence < 0.0f && is_step(a, b) ? by_evidence : gain;
+}
+
+bool PlaneEvidence::is_step(const PlaneMoments& a, const PlaneMoments& b) const {
+  const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
+  const auto above_m = [&](float x_m, float y_m) { return second.height_m(x_m, y_m) - first.height_m(x_m, y_m); };
+  const auto apart = [&](float x_m, float y_m) {
+    const float square_m2 = above_m(x_m, y_m) * above_m(x_m, y_m);
+    return square_m2 > 9.0f * (first.height_variance_m2(x_m, y_m) + second.height_variance_m2(x_m, y_m)) &&
+           square_m2 > 4.0f * prior_.common_share * prior_.noise_m2;
+  };
+  return above_m(a.x, a.y) * above_m(b.x, b.y) > 0.0f && apart(a.x, a.y) && apart(b.x, b.y);
 }
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {

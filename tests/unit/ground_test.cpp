@@ -42,13 +42,16 @@ TEST_CASE("ground: a strip that has cells of its own is ground") {
 }
 
 //         |
-//         | .          a wall of which the laser sees 40 cm, at the end of the window
+//         | .          a wall of which the laser sees 40 cm, at the end of the window; a hedge
 //  _______|_
-TEST_CASE("ground: the fringe of an obstacle is left to the ground before it") {
-  CHECK(borne([](double x, double y) {
-          const bool wall = x >= 2.3;
-          return wall ? 0.2 + (static_cast<int>(y * 100) % 10 < 5 ? -0.15 : 0.15) : 0.0;
-        }) == 1);
+TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") {
+  const auto until = [](double begin) {
+    return [=](double x, double y) {
+      return x >= begin ? 0.2 + (static_cast<int>(y * 100) % 10 < 5 ? -0.15 : 0.15) : 0.0;
+    };
+  };
+  CHECK(borne(until(2.3)) == 1);
+  CHECK(borne(until(1.2)) == 1);
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {

@@ -198,7 +198,7 @@ TEST_CASE("plane mixture: the same share of every cell leaves a plane and its no
   settings.planes.update = PlaneUpdate::responsibilities;
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(
-      stages->dem, [](double x, double) { return 0.1 * x; }, 0.03);
+      stages->dem, [](double x, double) { return 0.1 * x; }, 0.02);
   stages->infer(true);
   const int label = stages->label_at(0, 0);
   const auto variance = [&](float share) {

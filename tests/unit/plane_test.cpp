@@ -141,6 +141,28 @@ TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a
   CHECK(gain(-0.10) < 0.0f);
 }
 
+//  ___________                                  __-------__
+//             |___________  2.5 cm: two        _-           -_  bent by as much: one
+TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, ground that bends as much is one") {
+  Noise noise;
+  const PlaneEvidence evidence;
+  const auto gain = [&](auto&& height_m) {
+    const PlaneMoments first = of_points(test::sample({0, 2, 0, 4}, 0.1, 0.007, noise, height_m));
+    const PlaneMoments second = of_points(test::sample({2, 4, 0, 4}, 0.1, 0.007, noise, height_m));
+    PlaneMoments both = first;
+    both.add(second);
+    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both);
+  };
+  const auto kerb = [](double height_m) {
+    return [=](double x, double) { return 0.02 * x + (x < 2.0 ? 0.0 : height_m); };
+  };
+  CHECK(gain(kerb(0.0)) > 0.0f);
+  CHECK(gain(kerb(0.01)) > 0.0f);
+  CHECK(gain(kerb(0.025)) < 0.0f);
+  CHECK(gain(kerb(-0.025)) < 0.0f);
+  CHECK(gain([](double x, double) { return 0.01 * (x - 2.0) * (x - 2.0); }) > 0.0f);
+}
+
 TEST_CASE("plane fit: recovers level, slopes and noise within their standard deviations") {
   Noise noise;
   const double sd = 0.008;
