@@ -2,15 +2,20 @@
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
-//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
+//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees;
+//   - a veil: readings that mix an obstacle's edge and what lies behind it, which all lie on the rays between. Its plane
+//     holds the laser itself, and no surface that does is seen.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: three
 // passes over the window.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "curbline/dem.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
 
 namespace curbline {
 
@@ -22,7 +27,8 @@ class Ground {
   /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, `none` if it has none; changed(label)
   /// is called for each answer that is another than before.
   template <typename LabelType, typename LabelOf, typename Changed>
-  void update(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, Changed&& changed);
+  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
+              LabelOf&& label_of, Changed&& changed);
 
   bool is(int label) const { return ground_[static_cast<std::size_t>(label)]; }
 
@@ -62,12 +68,31 @@ class Ground {
     }
   };
 
+  /// Within three standard deviations.
+  static bool holds(const Plane& plane, const Viewpoint& view) {
+    const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
+    return above_m * above_m <= 9.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+  }
+  static bool any_veils(std::span<const Plane> planes, const Viewpoint& view);
+
   std::array<bool, limits.planes> ground_{};
 };
 
+/// Not if the largest plane holds the viewpoint too: then it is not where the points were seen from, as of a cloud whose
+/// origin lies on the ground.
+template <Limits limits>
+bool Ground<limits>::any_veils(std::span<const Plane> planes, const Viewpoint& view) {
+  const Plane* largest = nullptr;
+  for (const Plane& plane : planes) {
+    if (plane.alive() && (largest == nullptr || plane.cells > largest->cells)) largest = &plane;
+  }
+  return largest != nullptr && !holds(*largest, view);
+}
+
 template <Limits limits>
 template <typename LabelType, typename LabelOf, typename Changed>
-void Ground<limits>::update(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, Changed&& changed) {
+void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                            LabelType none, LabelOf&& label_of, Changed&& changed) {
   std::array<Tally, limits.planes> tallies{};
   const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
     if (run.label == none || before.label == none || next.label == none || !run.between(before, next)) return;
@@ -117,8 +142,10 @@ void Ground<limits>::update(const Dem<limits>& dem, LabelType none, LabelOf&& la
     tally.weight += dem.cell(s).weight;
   });
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
+  const bool veils = any_veils(planes, view);
   for (std::size_t l = 0; l < ground_.size(); ++l) {
-    const bool ground = !tallies[l].face() && !tallies[l].obstacle(cell_area_m2);
+    const bool veil = veils && planes[l].alive() && holds(planes[l], view);
+    const bool ground = !tallies[l].face() && !tallies[l].obstacle(cell_area_m2) && !veil;
     if (ground != ground_[l]) changed(static_cast<LabelType>(l));
     ground_[l] = ground;
   }

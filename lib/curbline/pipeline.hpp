@@ -103,13 +103,20 @@ class Pipeline {
   void follow_regions();
   int follow_labels(FieldScope scope);
   void follow_curbs();
+  Eigen::Vector3f p_base_tilt() const {
+    const MountSettings& mount = settings_.tilt.T_base_tilt;
+    return {mount.x_m, mount.y_m, mount.z_m};
+  }
+  Viewpoint view() const {
+    return {p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
+  }
 
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;  ///< which half of the inference is due
   std::int64_t last_line_ns_ = INT64_MIN;
-  float robot_x_m_ = 0.0f, robot_y_m_ = 0.0f, robot_z_m_ = 0.0f;  ///< in the map frame, of the last line
-  float ceiling_m_ = 0.0f;                                        ///< points above are ignored, z of the map frame
+  Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
+  float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
   Counters counters_{};
   float tilt_rate_rad_s_ = 0.0f;  ///< of the line in hand
   TiltTrack<limits> tilt_track_{};
@@ -136,7 +143,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   counters_ = Counters{};
   planes_next_ = true;
   last_line_ns_ = INT64_MIN;
-  robot_x_m_ = robot_y_m_ = robot_z_m_ = 0.0f;
+  p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
   tilt_track_.init(settings.tilt);
   tilt_latency_.init(settings.tilt, settings.pose);
@@ -192,7 +199,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   if (!motion.still) {
     const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
-    robot_z_m_ = robot.z();
+    p_map_tilt_ = motion.T_map_base_last * p_base_tilt();
     move_window(robot.x(), robot.y());
   }
   auto& projected = workspace_.line();
@@ -276,8 +283,6 @@ void Pipeline<limits>::take_point(const Point& point) {
 /// Moves the window with the robot; what leaves it leaves every stage.
 template <Limits limits>
 void Pipeline<limits>::move_window(float x_m, float y_m) {
-  robot_x_m_ = x_m;
-  robot_y_m_ = y_m;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
   dem_.follow(x_m, y_m, [this](int slot) {
     segmentation_.forget(slot);
@@ -313,7 +318,7 @@ void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
   segmentation_.update(dem_, work, counters_);
   plane_mixture_.update(
-      dem_, work, [this](int slot) { return label_field_.label(slot); }, counters_);
+      dem_, work, view(), [this](int slot) { return label_field_.label(slot); }, counters_);
   label_field_.note_touched(dem_);
   dem_.clear_touched();
 }
@@ -335,9 +340,7 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  const Viewpoint view{robot_x_m_ - dem_.origin_x_m(), robot_y_m_ - dem_.origin_y_m(),
-                       robot_z_m_ + settings_.tilt.T_base_tilt.z_m};
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, view, workspace_.curbs(), counters_);
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, view(), workspace_.curbs(), counters_);
 }
 
 template <Limits limits>

@@ -43,8 +43,8 @@ class PlaneMixture {
   /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
   /// label_of(slot) is the cell's label up to now, none if it has none yet.
   template <typename LabelOf>
-  void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, LabelOf&& label_of,
-              Counters& counters);
+  void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
+              LabelOf&& label_of, Counters& counters);
 
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
   /// responsibility) for each label that a cell may bear.
@@ -71,7 +71,7 @@ class PlaneMixture {
   bool relabelled(int slot) const { return relabelled_[static_cast<std::size_t>(slot)] != 0; }
   /// Is the plane ground, which cells may bear? ground.hpp
   bool ground(int label) const { return ground_.is(label); }
-  /// False if the cell's region is the face of a curb or the fringe of an obstacle.
+  /// False if the cell's region is the face of a curb, an obstacle or a veil.
   bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
   bool any_fresh() const { return any_fresh_; }
   bool any_relabelled() const { return any_relabelled_; }
@@ -105,7 +105,7 @@ class PlaneMixture {
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
-                                  LabelOf&& label_of, Counters& counters) {
+                                  const Viewpoint& view, LabelOf&& label_of, Counters& counters) {
   forget_changes();
   if (!dem.any_touched()) return;
   const int regions = largest_regions(work, counters);
@@ -141,7 +141,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     any_relabelled_ = true;
   });
   ground_.update(
-      dem, none, [this](int s) { return region_label(s); },
+      dem, planes_, view, none, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
 }
 

@@ -1,4 +1,4 @@
-// A point on its way from the laser into a cell.
+// A point on its way from the laser into a cell, and where it was seen from.
 #pragma once
 
 namespace curbline {
@@ -9,6 +9,11 @@ struct Point {
   float y_m = 0.0f;
   float z_m = 0.0f;
   float variance_m2 = 0.0f;
+};
+
+/// Where the laser looks from, the tilt axis: x and y in the window's frame, z of the map frame.
+struct Viewpoint {
+  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
 };
 
 }  // namespace curbline

@@ -8,13 +8,9 @@
 #pragma once
 
 #include "curbline/line_fit.hpp"
+#include "curbline/point.hpp"
 
 namespace curbline {
-
-/// Where the laser looks from: x and y in the window's frame, z of the map frame.
-struct Viewpoint {
-  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
-};
 
 struct Shadow {
   float drop_m;   ///< of the step

@@ -56,7 +56,7 @@ struct Stages {
   }
   void mix() {
     mixture.update(
-        dem, *segmented, [this](int slot) { return field.label(slot); }, counters);
+        dem, *segmented, view, [this](int slot) { return field.label(slot); }, counters);
   }
   int label(bool all = true) {
     field.note_touched(dem);
@@ -71,11 +71,12 @@ struct Stages {
     label(all);
   }
   void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
-    tracer.trace(dem, mixture, field, {robot_x_m, robot_y_m, 1.0f}, work.curbs(), counters);
+    tracer.trace(dem, mixture, field, {robot_x_m, robot_y_m, view.z_m}, work.curbs(), counters);
   }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
 
+  Viewpoint view{0.0f, 0.0f, 1.0f};
   Counters counters{};
   Workspace<limits> work{};
   typename Segmentation<limits>::Work* segmented = nullptr;  ///< until label()

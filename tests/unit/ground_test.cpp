@@ -16,9 +16,10 @@ using test::Stages;
 
 /// How many planes there are that cells of the window bear.
 template <typename Height>
-std::size_t borne(Height&& height_m, double spread_m = 0.002) {
+std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
   Stages<small_limits> stages(small_settings());
-  fill(stages.dem, height_m, spread_m);
+  stages.view.z_m = laser_z_m;
+  fill(stages.dem, height_m);
   for (int pass = 0; pass < 3; ++pass) stages.infer(true);
   std::set<int> labels;
   for (int i = 0; i < 24; ++i) {
@@ -52,6 +53,20 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
   };
   CHECK(borne(until(2.3)) == 1);
   CHECK(borne(until(1.2)) == 1);
+}
+
+//  o_
+//    --_                laser; rays past the edge of a box, and what they hit, mixed
+//      |--_
+//  ____|___--____
+TEST_CASE("ground: a veil behind an obstacle's edge is left to the ground around it, the same slope seen from above is none") {
+  const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
+  CHECK(borne(veil, 1.0f) == 2);  // before it and behind
+  CHECK(borne(veil, 3.0f) == 3);
+}
+
+TEST_CASE("ground: points that were not seen from the laser's place are ground all the same") {
+  CHECK(borne([](double x, double) { return 0.05 * x; }, 0.0f) == 1);
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {

@@ -77,7 +77,7 @@ TEST_CASE("plane mixture: a region takes the label that most of its cells bore")
   }
   using LabelType = decltype(stages->mixture)::LabelType;
   stages->mixture.update(
-      stages->dem, *stages->segmented,
+      stages->dem, *stages->segmented, stages->view,
       [&](int slot) { return static_cast<LabelType>(old[static_cast<std::size_t>(slot)]); }, stages->counters);
   CHECK(stages->mixture.region_label(stages->dem.slot(0, 0)) == 3);
   CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == 0);

@@ -158,7 +158,7 @@ void belief_messages(benchmark::State& state) {
   auto& work = workspace.segmentation();
   segmentation.update(dem, work, counters);
   mixture.init(street().settings.planes);
-  mixture.update(dem, work, [&](int slot) { return field.label(slot); }, counters);
+  mixture.update(dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
   auto& visits = workspace.visits();
   for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, visits, counters));
   state.counters["messages_per_second"] = benchmark::Counter(counters.messages, benchmark::Counter::kIsRate);
