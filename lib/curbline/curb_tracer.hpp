@@ -151,7 +151,7 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
 }
 
 /// Splits the chain where it leaves the chord by more than a cell (a straight line crossing cells stays within one) and
-/// gives out the pieces in order.
+/// than what a border's gap leaves open, and gives out the pieces in order.
 template <Limits limits>
 void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Counters& counters) const {
   const Dem<limits>& dem = stages.dem;
@@ -165,14 +165,15 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
   } while (first < length - 1);
 }
 
-/// The border farthest from the chord between two others, -1 if none is farther than the tolerance.
+/// The border that lies farthest beyond what it may from the chord between two others, -1 if none does: the tolerance,
+/// and by how much half its gap is wider than half a cell.
 template <Limits limits>
 int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m) {
   const Border& a = borders.at(first);
   const Border& b = borders.at(last);
   const float dx = b.x_m - a.x_m, dy = b.y_m - a.y_m;
   const float length2 = dx * dx + dy * dy;
-  float worst = tolerance_m * tolerance_m;
+  float worst_m = 0.0f;
   int found = -1;
   for (int k = first + 1; k < last; ++k) {
     const Border& p = borders.at(k);
@@ -180,8 +181,9 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
     const float cross = dx * py - dy * px;
     // Of a closed chain the ends coincide: the distance from them counts.
     const float distance2 = length2 > 1e-6f ? cross * cross / length2 : px * px + py * py;
-    if (distance2 > worst) {
-      worst = distance2;
+    const float beyond_m = square_root(distance2) - 0.5f * tolerance_m - p.half_gap_m;
+    if (beyond_m > worst_m) {
+      worst_m = beyond_m;
       found = k;
     }
   }
@@ -229,9 +231,10 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   Curb curb;
   curb.height_m = (low_is_near ? height : -height) * n;
   // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
-  // their planes may be the planes' fault wholly, not at all, or in part, each share as likely: a third of its square.
+  // their planes may be the planes' fault not at all, in part or wholly, the less the likelier, since as a rule they
+  // hold points of both sides: by a density that falls evenly to 0, a sixth of its square.
   const float planes_m2 = variance * n, off_m = off * n;
-  curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 3));
+  curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 6));
   curb.probability = probability * n;
   curb.near_label = low_is_near ? a.low : a.high;
   curb.far_label = low_is_near ? a.high : a.low;

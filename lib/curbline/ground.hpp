@@ -3,7 +3,8 @@
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
 //   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees;
-//   - a veil: readings that mix an obstacle's edge and what lies behind it, which all lie on the rays between. Its plane
+//   - a veil: readings that mix an obstacle's edge and what lies behind it, which all lie on the rays between. Its
+//   plane
 //     holds the laser itself, and no surface that does is seen.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Cost: three
 // passes over the window.
@@ -37,6 +38,8 @@ class Ground {
   static constexpr int longest_strip = 3;
   static constexpr int widest_gap = 2;   ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
+
+  static constexpr float lowest_laser_m = 0.3f;  ///< above the ground: no kerb or stair is as high
 
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
@@ -78,15 +81,15 @@ class Ground {
   std::array<bool, limits.planes> ground_{};
 };
 
-/// Not if the largest plane holds the viewpoint too: then it is not where the points were seen from, as of a cloud whose
-/// origin lies on the ground.
+/// Only seen from well above the largest plane. Else the viewpoint is not where the points were seen from, as of a
+/// cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
 template <Limits limits>
 bool Ground<limits>::any_veils(std::span<const Plane> planes, const Viewpoint& view) {
   const Plane* largest = nullptr;
   for (const Plane& plane : planes) {
     if (plane.alive() && (largest == nullptr || plane.cells > largest->cells)) largest = &plane;
   }
-  return largest != nullptr && !holds(*largest, view);
+  return largest != nullptr && view.z_m - largest->height_m(view.x_m, view.y_m) > lowest_laser_m;
 }
 
 template <Limits limits>

@@ -66,8 +66,7 @@ void PlaneMoments::add_cell(const PlaneMoments& cell) {
 }
 
 PlaneEvidence::PlaneEvidence(const PlanePrior& prior)
-    : prior_(prior),
-      constant_(0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees)) {
+    : prior_(prior), constant_(0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees)) {
   for (std::size_t n = 1; n < log_gamma_.size(); ++n) log_gamma_[n] = log_gamma(static_cast<float>(n));
 }
 
