@@ -97,7 +97,18 @@ class CurbTracer {
     const Viewpoint& view;
   };
 
+  /// Borders that lie on one line; means of what they tell.
+  struct Piece {
+    LineFit::Segment line{};
+    float x_m = 0.0f, y_m = 0.0f;               ///< its middle
+    float height_m = 0.0f, variance_m2 = 0.0f;  ///< of the high-numbered plane above the other
+    float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
+    float gap_m = 0.0f, cell_m = 0.0f;  ///< across it: between the cells' centres; of one cell
+    bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
+  };
+
   void cut(const Stages& stages, int length, Work& work, Counters& counters) const;
+  static Piece piece_of(const Stages& stages, const Borders<limits>& borders, int first, int last);
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
   void give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
@@ -190,6 +201,45 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
   return found;
 }
 
+/// Fits a line to the borders and takes the mean of what they tell.
+template <Limits limits>
+auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& borders, int first, int last) -> Piece {
+  const Dem<limits>& dem = stages.dem;
+  const Border& a = borders.at(first);
+  const Border& b = borders.at(last);
+  const Plane& low = stages.mixture.plane(a.low);
+  const Plane& high = stages.mixture.plane(a.high);
+  const float n = 1.0f / static_cast<float>(last - first + 1);
+  Piece piece;
+  LineFit fit;
+  float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
+  for (int k = first; k <= last; ++k) {
+    const Border& border = borders.at(k);
+    const float x_m = border.x_m, y_m = border.y_m;
+    fit.add(x_m, y_m);
+    piece.height_m += n * (high.height_m(x_m, y_m) - low.height_m(x_m, y_m));
+    piece.variance_m2 += n * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
+    piece.probability += n * border.probability;
+    piece.half_gap_m += n * border.half_gap_m;
+    piece.off_m += n * border.off_m;
+    (border.axis == 0 ? toward_x : toward_y) += border.sign;
+  }
+  piece.x_m = fit.x_m();
+  piece.y_m = fit.y_m();
+  piece.low_is_near = toward_x * (piece.x_m - stages.view.x_m) + toward_y * (piece.y_m - stages.view.y_m) >= 0.0f;
+  const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
+  piece.line = first == last ? LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m)
+                             : fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
+  for (int k = first; k <= last; ++k) {
+    const Border& border = borders.at(k);
+    const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
+    const float across = n * (cosine < 0.0f ? -cosine : cosine);
+    piece.gap_m += 2.0f * border.half_gap_m * across;
+    piece.cell_m += (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m()) * across;
+  }
+  return piece;
+}
+
 template <Limits limits>
 void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const {
   if (work.curbs == limits.curbs) {
@@ -197,67 +247,38 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
     return;
   }
   const Dem<limits>& dem = stages.dem;
-  const Border& a = work.borders.at(first);
-  const Border& b = work.borders.at(last);
-  const Plane& low = stages.mixture.plane(a.low);
-  const Plane& high = stages.mixture.plane(a.high);
-  LineFit fit;
-  float height = 0.0f, variance = 0.0f, probability = 0.0f, half_gap = 0.0f, off = 0.0f, toward_x = 0.0f,
-        toward_y = 0.0f;
-  for (int k = first; k <= last; ++k) {
-    const Border& border = work.borders.at(k);
-    fit.add(border.x_m, border.y_m);
-    height += high.height_m(border.x_m, border.y_m) - low.height_m(border.x_m, border.y_m);
-    variance += high.height_variance_m2(border.x_m, border.y_m) + low.height_variance_m2(border.x_m, border.y_m);
-    probability += border.probability;
-    half_gap += border.half_gap_m;
-    off += border.off_m;
-    (border.axis == 0 ? toward_x : toward_y) += border.sign;
-  }
-  const float n = 1.0f / static_cast<float>(last - first + 1);
-  const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
-  LineFit::Segment segment = fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
-  if (first == last) segment = LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m);
-  float gap = 0.0f, cells = 0.0f;  // across the piece, from cell centre to cell centre; of one cell
-  for (int k = first; k <= last; ++k) {
-    const Border& border = work.borders.at(k);
-    const float cosine = border.axis == 0 ? segment.normal_x : segment.normal_y;
-    const float across = cosine < 0.0f ? -cosine : cosine;
-    gap += 2.0f * border.half_gap_m * across;
-    cells += (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m()) * across;
-  }
-  // `toward` points from the low-numbered plane to the other; the robot stands on the near side.
-  const bool low_is_near = toward_x * (fit.x_m() - stages.view.x_m) + toward_y * (fit.y_m() - stages.view.y_m) >= 0.0f;
+  const Border& border = work.borders.at(first);
+  Piece piece = piece_of(stages, work.borders, first, last);
   Curb curb;
-  curb.height_m = (low_is_near ? height : -height) * n;
+  curb.near_label = piece.low_is_near ? border.low : border.high;
+  curb.far_label = piece.low_is_near ? border.high : border.low;
+  curb.probability = piece.probability;
+  curb.height_m = piece.low_is_near ? piece.height_m : -piece.height_m;
   // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
   // their planes may be the planes' fault not at all, in part or wholly, the less the likelier, since as a rule they
   // hold points of both sides: by a density that falls evenly to 0, a sixth of its square.
-  const float planes_m2 = variance * n, off_m = off * n;
-  curb.height_sd_m = square_root(planes_m2 + off_m * off_m * (1.0f / 6));
-  curb.probability = probability * n;
-  curb.near_label = low_is_near ? a.low : a.high;
-  curb.far_label = low_is_near ? a.high : a.low;
+  curb.height_sd_m = square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 6));
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  curb.kind = kind_of(low, high, segment, {height * n, square_root(planes_m2), half_gap * n, reach_m});
+  curb.kind = kind_of(stages.mixture.plane(border.low), stages.mixture.plane(border.high), piece.line,
+                      {piece.height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
   if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;
   } else if (curb.height_m < 0.0f) {
     curb.kind = CurbKind::step_down;
   }
+  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   float shadow_m = 0.0f;
   if (curb.kind == CurbKind::step_down) {
-    const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(fit.x_m(), fit.y_m());
-    shadow_m = move_before_shadow(segment, stages.view, {-curb.height_m, above_m, (gap + cells) * n});
+    const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
+    shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
   }
-  const float width_m = (gap - cells) * n - shadow_m;
+  const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f ? width_m : 0.0f;
-  curb.x0_m = dem.origin_x_m() + segment.x0_m;
-  curb.y0_m = dem.origin_y_m() + segment.y0_m;
-  curb.x1_m = dem.origin_x_m() + segment.x1_m;
-  curb.y1_m = dem.origin_y_m() + segment.y1_m;
-  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
+  curb.x0_m = dem.origin_x_m() + piece.line.x0_m;
+  curb.y0_m = dem.origin_y_m() + piece.line.y0_m;
+  curb.x1_m = dem.origin_x_m() + piece.line.x1_m;
+  curb.y1_m = dem.origin_y_m() + piece.line.y1_m;
   work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
 }
 
