@@ -57,6 +57,7 @@ class BorderFinder {
     int axis, across;
     Place first, second;
   };
+
   int find_ground();
   Border border_of(const Gap& gap) const;
   float middle_m(const Gap& gap) const;
@@ -80,7 +81,7 @@ class BorderFinder {
 
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
 /// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
-/// a face or an obstacle do not speak for it. Returns how many are.
+/// a face, an obstacle or a veil do not speak for it. Returns how many are.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};

@@ -80,8 +80,6 @@ class Dem {
     m.zz = cell.scatter_m2 * share;
     return m;
   }
-  /// Expected variance of the height of a point of weight 1.
-  float noise_m2() const { return prior_.noise_m2; }
   /// Variance of a cell's mean height, from the noise of its points.
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
   /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
@@ -159,8 +157,8 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  std::array<std::uint8_t, capacity>
-      touched_{};  ///< bit 0; above it the number of the sweep that touched the cell last
+  /// Bit 0; above it the number of the sweep that touched the cell last.
+  std::array<std::uint8_t, capacity> touched_{};
   std::uint8_t sweep_ = 0;
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;

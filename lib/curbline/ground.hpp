@@ -36,9 +36,8 @@ class Ground {
  private:
   /// In cells: as many as a face of one and a half touches when it lies across the grid.
   static constexpr int longest_strip = 3;
-  static constexpr int widest_gap = 2;   ///< between a strip and the planes beside it, in cells
-  static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
-
+  static constexpr int widest_gap = 2;           ///< between a strip and the planes beside it, in cells
+  static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
   static constexpr float lowest_laser_m = 0.3f;  ///< above the ground: no kerb or stair is as high
 
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.

@@ -87,13 +87,8 @@ class LabelField {
     std::array<std::int16_t, candidates> node{};  ///< log potential of each candidate
     std::array<Message, directions> message{};    ///< to the neighbour there
   };
-  enum Flag : std::uint8_t {
-    quiet = 0,
-    heard = 1,
-    visited = 2,
-    deferred = 4,
-    renew = 8
-  };  ///< bits; renew: its candidates too
+  /// Bits; renew: its candidates too.
+  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
   using Logs = std::array<float, candidates>;
   using Nats = std::array<std::int32_t, candidates>;  ///< in 1 / node_scale nat
   using Planes = PlaneSet<limits.planes>;

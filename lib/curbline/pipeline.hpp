@@ -2,8 +2,9 @@
 //
 //   tilt readings --> TiltTrack --+
 //   poses ----------> PoseTrack --+
-//   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField -->
-//   CurbTracer
+//   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField --+
+//                                                                                                                 |
+//   curbs <------------------------------------------------------------------------------------ CurbTracer <------+
 //
 // No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
 // Except for add_tilt() all calls come from one context, or from two that exclude each other.

@@ -90,19 +90,20 @@ float PlaneEvidence::gain(const PlaneMoments& a, float score_a, const PlaneMomen
 
 bool PlaneEvidence::is_step(const PlaneMoments& a, const PlaneMoments& b) const {
   const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
-  const auto above_m = [&](float x_m, float y_m) { return second.height_m(x_m, y_m) - first.height_m(x_m, y_m); };
-  const auto apart = [&](float x_m, float y_m) {
-    const float square_m2 = above_m(x_m, y_m) * above_m(x_m, y_m);
-    return square_m2 > 9.0f * (first.height_variance_m2(x_m, y_m) + second.height_variance_m2(x_m, y_m)) &&
+  const auto above_m = [&](const PlaneMoments& at) { return second.height_m(at.x, at.y) - first.height_m(at.x, at.y); };
+  const auto apart = [&](const PlaneMoments& at, float step_m) {
+    const float square_m2 = step_m * step_m;
+    return square_m2 > 9.0f * (first.height_variance_m2(at.x, at.y) + second.height_variance_m2(at.x, at.y)) &&
            square_m2 > 4.0f * prior_.common_share * prior_.noise_m2;
   };
-  return above_m(a.x, a.y) * above_m(b.x, b.y) > 0.0f && apart(a.x, a.y) && apart(b.x, b.y);
+  const float at_a_m = above_m(a), at_b_m = above_m(b);
+  return at_a_m * at_b_m > 0.0f && apart(a, at_a_m) && apart(b, at_b_m);
 }
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   const Slopes slopes = solve(m, prior.noise_m2);
-  const float per_cell =
-      m.weight / cells / slopes.determinant;  // positions weigh by points; one cell is one observation
+  // Positions weigh by points; one cell is one observation.
+  const float per_cell = m.weight / cells / slopes.determinant;
   Plane plane;
   plane.x_m = m.x;
   plane.y_m = m.y;
