@@ -210,6 +210,7 @@ bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slo
   if (mixture.relabelled(slot)) return true;
   const Site& site = sites_[static_cast<std::size_t>(slot)];
   if (mixture.any_fresh()) {
+    if (mixture.region_label(slot) != none && mixture.fresh(mixture.region_label(slot))) return true;
     for (const LabelType label : site.label) {
       if (label != none && mixture.fresh(label)) return true;
     }
@@ -241,7 +242,8 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
   }
 }
 
-/// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept.
+/// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept. Where the ground
+/// is covered they are alike, and the cells around decide.
 template <Limits limits>
 void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
                                            int slot) {
@@ -275,8 +277,9 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   }
   Site& site = sites_[static_cast<std::size_t>(slot)];
   if (label != site.label) keep_messages(site, label);
+  const bool covered = mixture.covered(slot);
   for (std::size_t c = 0; c < candidates; ++c) {
-    const float below = label[c] == none ? 0.0f : best[c] - best[0];
+    const float below = label[c] == none || covered ? 0.0f : best[c] - best[0];
     site.node[c] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
   }
 }

@@ -71,8 +71,10 @@ class PlaneMixture {
   bool relabelled(int slot) const { return relabelled_[static_cast<std::size_t>(slot)] != 0; }
   /// Is the plane ground, which cells may bear? ground.hpp
   bool ground(int label) const { return ground_.is(label); }
-  /// False if the cell's region is the face of a curb, an obstacle or a veil.
+  /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
+  /// Is the ground below it covered, so that its height tells nothing of it? True of all of them but a face.
+  bool covered(int slot) const { return region_label(slot) != none && ground_.covers(region_label(slot)); }
   bool any_fresh() const { return any_fresh_; }
   bool any_relabelled() const { return any_relabelled_; }
   PlaneUpdate mode() const { return settings_.update; }

@@ -55,11 +55,28 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
   CHECK(borne(until(1.2)) == 1);
 }
 
+//           |
+//         __|          the foot of a wall and the ground before it, in one reading
+//  _______|
+TEST_CASE(
+    "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a kerb is none") {
+  const auto strip = [](double foot_m) {
+    return [=](double x, double y) {
+      if (x >= 1.2) return foot_m + 0.6 * (x - 1.2) + (static_cast<int>(y * 100) % 10 < 5 ? -foot_m : foot_m);
+      return x < 1.0 ? 0.0 : 0.04;
+    };
+  };
+  CHECK(borne(strip(0.5)) == 1);
+  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
+}
+
 //  o_
 //    --_                laser; rays past the edge of a box, and what they hit, mixed
 //      |--_
 //  ____|___--____
-TEST_CASE("ground: a veil behind an obstacle's edge is left to the ground around it, the same slope seen from above is none") {
+TEST_CASE(
+    "ground: a veil behind an obstacle's edge is left to the ground around it, the same slope seen from above is "
+    "none") {
   const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
   CHECK(borne(veil, 1.0f) == 2);  // before it and behind
   CHECK(borne(veil, 3.0f) == 3);

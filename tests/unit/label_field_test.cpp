@@ -205,6 +205,25 @@ TEST_CASE("label field: a height far from all planes is still given the nearest,
   }
 }
 
+//  ____       _|  a thing on the road, as high as the pavement and higher
+//      |_____| |___
+TEST_CASE("label field: the ground below an obstacle is that of the cells around it, however high it is") {
+  Stages<small_limits> stages(small_settings());
+  const auto stands = [](double x, double y) { return x > 1.2 && x < 1.6 && y > 0.8 && y < 1.6; };
+  fill(stages.dem, [&](double x, double y) {
+    if (stands(x, y)) return 0.3 + (static_cast<int>(y * 100) % 10 < 5 ? -0.2 : 0.2);
+    return x < 1.0 ? 0.10 : 0.0;
+  });
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  const auto road = stages.label_at(20, 2);
+  CHECK(stages.label_at(2, 2) != road);
+  int on_road = 0;
+  for (int i = 12; i < 16; ++i) {
+    for (int j = 8; j < 16; ++j) on_road += stages.label_at(i, j) == road;
+  }
+  CHECK(on_road == 4 * 8);
+}
+
 TEST_CASE("label field: two pavements of one height keep their labels apart") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
