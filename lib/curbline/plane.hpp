@@ -31,8 +31,11 @@ struct PlanePrior {
   float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
   float common_share =
       0.5f;  ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
+  float curvature_1_m = 0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre
 };
 // The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
+
+struct Plane;
 
 /// How well one plane explains points; what depends on the prior alone is computed once.
 class PlaneEvidence {
@@ -50,16 +53,19 @@ class PlaneEvidence {
 
   /// By how much the posterior of the partition rises, in nats, when two regions of which the scores are known become
   /// `both`. The prior keeps ground that is bent from falling apart into the planes that follow it; it takes no part
-  /// where two planes stand apart as bent ground does not, see is_step().
+  /// where two planes are parted as bent ground is not, see parted().
   float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b,
              const PlaneMoments& both) const;
 
-  /// Does one plane lie above the other at both centroids, by three standard deviations and by more than what the
-  /// points of a place share of their noise (two standard deviations)? Planes that follow one bent surface meet between
-  /// their centroids. About 150 operations.
-  bool is_step(const PlaneMoments& a, const PlaneMoments& b) const;
+  /// Two planes that follow one bent surface meet between their centroids, at an angle that its curvature makes over
+  /// the distance between them. Parted are two of which one lies above the other at both centroids (a step), by three
+  /// standard deviations and by more than what the points of a place share of their noise (two standard deviations); or
+  /// which meet at an angle that is more by three standard deviations (a crease). About 200 operations.
+  bool parted(const PlaneMoments& a, const PlaneMoments& b) const;
 
  private:
+  bool step_between(const Plane& first, const Plane& second) const;
+  bool crease_between(const Plane& first, const Plane& second) const;
   float log_gamma_of(float cells) const {
     const auto n = static_cast<unsigned>(cells);
     return n < log_gamma_.size() ? log_gamma_[n] : log_gamma(cells);

@@ -85,19 +85,36 @@ float PlaneEvidence::gain(const PlaneMoments& a, float score_a, const PlaneMomen
   const float gain = score(both) - score_a - score_b;
   if (gain < 0.0f) return gain;
   const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
-  return by_evidence < 0.0f && is_step(a, b) ? by_evidence : gain;
+  return by_evidence < 0.0f && parted(a, b) ? by_evidence : gain;
 }
 
-bool PlaneEvidence::is_step(const PlaneMoments& a, const PlaneMoments& b) const {
+bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b) const {
   const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
-  const auto above_m = [&](const PlaneMoments& at) { return second.height_m(at.x, at.y) - first.height_m(at.x, at.y); };
-  const auto apart = [&](const PlaneMoments& at, float step_m) {
+  return step_between(first, second) || crease_between(first, second);
+}
+
+bool PlaneEvidence::step_between(const Plane& first, const Plane& second) const {
+  const auto above_m = [&](const Plane& at) {
+    return second.height_m(at.x_m, at.y_m) - first.height_m(at.x_m, at.y_m);
+  };
+  const auto apart = [&](const Plane& at, float step_m) {
     const float square_m2 = step_m * step_m;
-    return square_m2 > 9.0f * (first.height_variance_m2(at.x, at.y) + second.height_variance_m2(at.x, at.y)) &&
+    return square_m2 > 9.0f * (first.height_variance_m2(at.x_m, at.y_m) + second.height_variance_m2(at.x_m, at.y_m)) &&
            square_m2 > 4.0f * prior_.common_share * prior_.noise_m2;
   };
-  const float at_a_m = above_m(a), at_b_m = above_m(b);
-  return at_a_m * at_b_m > 0.0f && apart(a, at_a_m) && apart(b, at_b_m);
+  const float at_first_m = above_m(first), at_second_m = above_m(second);
+  return at_first_m * at_second_m > 0.0f && apart(first, at_first_m) && apart(second, at_second_m);
+}
+
+/// The angle, across the line along which they meet, and what is known of it; all times its own square.
+bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) const {
+  const float x = second.slope_x - first.slope_x, y = second.slope_y - first.slope_y;
+  const float square = x * x + y * y;
+  const auto variance = [&](const Plane& plane) {
+    return plane.variance_m2 * (x * x * plane.pxx + 2.0f * x * y * plane.pxy + y * y * plane.pyy);
+  };
+  const float bend = prior_.curvature_1_m * (x * (second.x_m - first.x_m) + y * (second.y_m - first.y_m));
+  return square * square > 9.0f * (variance(first) + variance(second) + bend * bend);
 }
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {

@@ -89,6 +89,7 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.texture_m2; }, {-1e-6f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.degrees; }, {0.9f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.planes.prior.common_share; }, {-0.1f, 1.1f, nan});
+  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.curvature_1_m; }, {-0.1f, 11.0f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.planes.min_cells; }, {2.0f, nan});
   refuses(bad, [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
   refuses(bad, [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
