@@ -84,7 +84,7 @@ struct PlaneSettings {
 };
 
 struct LabelSettings {
-  float coupling = 3.0f;    ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
+  float coupling = 1.5f;    ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
   int link_reach = 10;      ///< as SegmentationSettings; the coupling falls as 1 / distance
   int refresh_rows = 1;     ///< rows of the window that every line visits in turn, changed or not, >= 0
   int max_messages = 1600;  ///< a call; what is left over waits for the next, >= 4
