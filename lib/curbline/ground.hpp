@@ -6,7 +6,7 @@
 //   - a veil: readings that mix an obstacle's edge and what lies behind it, which all lie on the rays between. Its
 //     plane holds the laser itself, and no surface that does is seen.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
-//     long: readings that mix the obstacle and the ground around it.
+//     long, and higher than the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. All but a face
 // cover the ground: their heights tell nothing of it. Cost: three passes over the window.
 #pragma once
@@ -38,10 +38,11 @@ class Ground {
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
+  using PlaneFlags = std::array<bool, limits.planes>;
   enum class Kind : std::uint8_t { ground, face, cover };
 
-  /// In cells: as many as a face of one and a half touches when it lies across the grid; and as the spot of a range-
-  /// finder is long, 10 mrad wide and seen at a grazing angle of a few degrees.
+  /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
+  /// beam of 10 mrad is on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr int widest_gap = 2;           ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
@@ -93,12 +94,14 @@ class Ground {
     }
   };
 
-  /// Within three standard deviations.
-  static bool holds(const Plane& plane, const Viewpoint& view) {
+  /// Within five standard deviations, since an edge need not be straight, and nearer to it than to what it is above the
+  /// ground, `laser_m`: of a plane that is hardly known there both may be.
+  static bool holds(const Plane& plane, const Viewpoint& view, float laser_m) {
     const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
-    return above_m * above_m <= 9.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+    return above_m < 0.5f * laser_m &&
+           above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
-  static bool any_veils(std::span<const Plane> planes, const Viewpoint& view);
+  static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
   template <typename LabelType, typename LabelOf, typename SlotOf, typename EndRun>
   static void walk(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, int line_count, int length,
                    SlotOf&& slot_of, EndRun&& end_run);
@@ -107,15 +110,15 @@ class Ground {
   std::array<Kind, limits.planes> kind_{};
 };
 
-/// Only seen from well above the largest plane. Else the viewpoint is not where the points were seen from, as of a
-/// cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
+/// What the others are measured against: the largest plane that is no obstacle, null if there is none.
 template <Limits limits>
-bool Ground<limits>::any_veils(std::span<const Plane> planes, const Viewpoint& view) {
-  const Plane* largest = nullptr;
-  for (const Plane& plane : planes) {
-    if (plane.alive() && (largest == nullptr || plane.cells > largest->cells)) largest = &plane;
+const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneFlags& obstacle) {
+  const Plane* found = nullptr;
+  for (std::size_t l = 0; l < planes.size(); ++l) {
+    if (!planes[l].alive() || obstacle[l]) continue;
+    if (found == nullptr || planes[l].cells > found->cells) found = &planes[l];
   }
-  return largest != nullptr && view.z_m - largest->height_m(view.x_m, view.y_m) > highest_step_m;
+  return found;
 }
 
 /// Calls end_run(before, run, next) for each run of each line of cells, `line_count` of them, that slot_of(line, k)
@@ -161,7 +164,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     if (label != none) tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
   });
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
-  std::array<bool, limits.planes> obstacle{}, high{};
+  PlaneFlags obstacle{}, high{};
   for (std::size_t l = 0; l < obstacle.size(); ++l) {
     obstacle[l] = tallies[l].obstacle(cell_area_m2);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
@@ -181,10 +184,16 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   axis = 1;
   walk(
       dem, none, label_of, dem.cols(), dem.rows(), [&](int j, int i) { return dem.slot(i, j); }, end_run);
-  const bool veils = any_veils(planes, view);
+  // Veils are only seen from well above the ground. Else the viewpoint is not where the points were seen from, as of a
+  // cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
+  const Plane* ground = largest(planes, obstacle);
+  const float laser_m = ground == nullptr ? 0.0f : view.z_m - ground->height_m(view.x_m, view.y_m);
+  const bool veils = laser_m > highest_step_m;
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const bool veil = veils && planes[l].alive() && holds(planes[l], view);
-    const bool cover = obstacle[l] || veil || tallies[l].fringe();
+    const bool veil = veils && planes[l].alive() && holds(planes[l], view, laser_m);
+    const bool fringe =
+        tallies[l].fringe() && ground != nullptr && planes[l].z_m > ground->height_m(planes[l].x_m, planes[l].y_m);
+    const bool cover = obstacle[l] || veil || fringe;
     const Kind kind = tallies[l].face() ? Kind::face : cover ? Kind::cover : Kind::ground;
     if (kind != kind_[l]) changed(static_cast<LabelType>(l));
     kind_[l] = kind;

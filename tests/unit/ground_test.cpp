@@ -67,6 +67,8 @@ TEST_CASE(
     };
   };
   CHECK(borne(strip(0.5)) == 1);
+  CHECK(borne([&](double x, double y) { return x < 1.2 ? strip(0.5)(x, y) * -1.0 : strip(0.5)(x, y); }) ==
+        2);  // a gutter
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
 }
 
@@ -80,6 +82,10 @@ TEST_CASE(
   const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
   CHECK(borne(veil, 1.0f) == 2);  // before it and behind
   CHECK(borne(veil, 3.0f) == 3);
+}
+
+TEST_CASE("ground: a row of cells at the window's end, of which the slope is not known, is no veil") {
+  CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
 
 TEST_CASE("ground: points that were not seen from the laser's place are ground all the same") {
