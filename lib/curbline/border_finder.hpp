@@ -81,7 +81,7 @@ class BorderFinder {
 
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
 /// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
-/// a face, an obstacle or a veil do not speak for it. Returns how many are.
+/// what is no ground do not speak for it. Returns how many are.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};

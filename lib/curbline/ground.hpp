@@ -7,8 +7,9 @@
 //     plane holds the laser itself, and no surface that does is seen.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, and higher than the ground: readings that mix the obstacle and the ground around it.
-// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. All but a face
-// cover the ground: their heights tell nothing of it. Cost: three passes over the window.
+// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
+// veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
+// tell nothing of it. Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -34,12 +35,12 @@ class Ground {
               LabelOf&& label_of, Changed&& changed);
 
   bool is(int label) const { return kind(label) == Kind::ground; }
-  /// Is it an obstacle, a veil or a fringe?
+  /// Is it an obstacle or a fringe?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
   using PlaneFlags = std::array<bool, limits.planes>;
-  enum class Kind : std::uint8_t { ground, face, cover };
+  enum class Kind : std::uint8_t { ground, mixture, cover };
 
   /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
   /// beam of 10 mrad is on the ground 6 m away, seen from 1.2 m above it.
@@ -94,8 +95,8 @@ class Ground {
     }
   };
 
-  /// Within five standard deviations, since an edge need not be straight, and nearer to it than to what it is above the
-  /// ground, `laser_m`: of a plane that is hardly known there both may be.
+  /// Within five standard deviations, since an edge need not be straight; and nearer than half of `laser_m`, the
+  /// laser's height above the ground: of a plane that is hardly known there it may be either.
   static bool holds(const Plane& plane, const Viewpoint& view, float laser_m) {
     const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
     return above_m < 0.5f * laser_m &&
@@ -193,8 +194,10 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     const bool veil = veils && planes[l].alive() && holds(planes[l], view, laser_m);
     const bool fringe =
         tallies[l].fringe() && ground != nullptr && planes[l].z_m > ground->height_m(planes[l].x_m, planes[l].y_m);
-    const bool cover = obstacle[l] || veil || fringe;
-    const Kind kind = tallies[l].face() ? Kind::face : cover ? Kind::cover : Kind::ground;
+    const Kind kind = tallies[l].face()       ? Kind::mixture
+                      : obstacle[l] || fringe ? Kind::cover
+                      : veil                  ? Kind::mixture
+                                              : Kind::ground;
     if (kind != kind_[l]) changed(static_cast<LabelType>(l));
     kind_[l] = kind;
   }

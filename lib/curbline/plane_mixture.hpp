@@ -73,7 +73,7 @@ class PlaneMixture {
   bool ground(int label) const { return ground_.is(label); }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
-  /// Is the ground below it covered, so that its height tells nothing of it? True of all of them but a face.
+  /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.
   bool covered(int slot) const { return region_label(slot) != none && ground_.covers(region_label(slot)); }
   bool any_fresh() const { return any_fresh_; }
   bool any_relabelled() const { return any_relabelled_; }
