@@ -87,10 +87,10 @@ class Ground {
     float scatter_m2, weight;
 
     int length() const { return last - first + 1; }
-    /// Does a step from `before` to `next` lead over it?
+    /// Of a strip: does a step from `before` to `next` lead over it?
     bool between(const Run& before, const Run& next) const {
       const float from = before.last_height_m, to = next.first_height_m;
-      return length() <= longest_strip && first - before.last <= widest_gap && next.first - last <= widest_gap &&
+      return first - before.last <= widest_gap && next.first - last <= widest_gap &&
              ((from < lowest_m && highest_m < to) || (from > highest_m && lowest_m > to));
     }
   };
