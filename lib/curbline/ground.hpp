@@ -3,8 +3,9 @@
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
 //   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
-//   - a veil: readings that mix an obstacle's edge and what lies behind it, which all lie on the rays between. Its
-//     plane holds the laser itself, and no surface that does is seen.
+//   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
+//     and no surface that does is seen; or it falls away as rays do and is no wider than the shadow of a step down:
+//     what is seen beyond an edge is flatter than the ray that grazes it, and so wider.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, and higher than the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
@@ -53,7 +54,9 @@ class Ground {
   struct Tally {
     float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
-    std::array<float, 2> fringe_cells{};  ///< in strips along y, along x beside an obstacle higher than a step
+    // By the direction of the strip, along y or along x.
+    std::array<float, 2> shadow_cells{};  ///< in strips that a step down leaves in its shadow
+    std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
       cells += 1.0f;
@@ -76,7 +79,16 @@ class Ground {
              mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
-    bool fringe() const { return cells > 0.0f && (2.0f * fringe_cells[0] >= cells || 2.0f * fringe_cells[1] >= cells); }
+    bool shadow() const { return mostly(shadow_cells); }
+    bool fringe() const { return mostly(fringe_cells); }
+    bool mostly(const std::array<float, 2>& in_strips) const {
+      return cells > 0.0f && (2.0f * in_strips[0] >= cells || 2.0f * in_strips[1] >= cells);
+    }
+  };
+  /// How the laser sees a row or column.
+  struct Sight {
+    float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
+    float cell_m;          ///< of a cell, along it
   };
   /// Cells of one plane that follow each other on a row or column.
   template <typename LabelType>
@@ -93,14 +105,26 @@ class Ground {
       return first - before.last <= widest_gap && next.first - last <= widest_gap &&
              ((from < lowest_m && highest_m < to) || (from > highest_m && lowest_m > to));
     }
+    /// Of a strip between two planes: does the step lead down as the laser sees it, and is the strip no wider than its
+    /// shadow, and a cell for what those at its ends have of the planes?
+    bool in_shadow(const Run& before, const Run& next, const Sight& sight) const {
+      const float ahead_m = static_cast<float>(first) * sight.cell_m - sight.eye_m;
+      const float behind_m = sight.eye_m - static_cast<float>(last + 1) * sight.cell_m;
+      const bool ahead = ahead_m > 0.0f;
+      const float near_m = ahead ? before.last_height_m : next.first_height_m;
+      const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
+      const float away_m = ahead ? ahead_m : behind_m, above_m = sight.eye_z_m - near_m;
+      return above_m > 0.0f && static_cast<float>(length() - 1) * sight.cell_m * above_m <= away_m * drop_m;
+    }
   };
 
-  /// Within five standard deviations, since an edge need not be straight; and nearer than half of `laser_m`, the
-  /// laser's height above the ground: of a plane that is hardly known there it may be either.
-  static bool holds(const Plane& plane, const Viewpoint& view, float laser_m) {
+  /// Does a plane rise toward the laser, `laser_m` above the ground, at least half as steeply as the rays? What mixes
+  /// an edge and the ground behind does. If it holds the laser, within five standard deviations, since an edge need not
+  /// be straight, or if it lies in the shadow of a step, it is no surface.
+  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view, float laser_m) {
     const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
-    return above_m < 0.5f * laser_m &&
-           above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+    if (!(above_m < 0.5f * laser_m)) return false;
+    return in_shadow || above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
   template <typename LabelType, typename LabelOf, typename SlotOf, typename EndRun>
@@ -171,14 +195,18 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
   std::size_t axis = 0;
+  const std::array<Sight, 2> sight{{{view.y_m, view.z_m, dem.cell_y_m()}, {view.x_m, view.z_m, dem.cell_x_m()}}};
   const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
-    if (run.label == none || run.length() > longest_strip) return;
+    if (run.label == none) return;
+    const bool leads = before.label != none && next.label != none && run.between(before, next);
+    if (leads && run.in_shadow(before, next, sight[axis])) {
+      tallies[run.label].shadow_cells[axis] += static_cast<float>(run.length());
+    }
+    if (run.length() > longest_strip) return;
     const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
     const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
     if (after_high || before_high) tallies[run.label].fringe_cells[axis] += static_cast<float>(run.length());
-    if (before.label != none && next.label != none && run.between(before, next)) {
-      tallies[run.label].add_strip(run, next.first_height_m - before.last_height_m);
-    }
+    if (leads) tallies[run.label].add_strip(run, next.first_height_m - before.last_height_m);
   };
   walk(
       dem, none, label_of, dem.rows(), dem.cols(), [&](int i, int j) { return dem.slot(i, j); }, end_run);
@@ -191,12 +219,12 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const float laser_m = ground == nullptr ? 0.0f : view.z_m - ground->height_m(view.x_m, view.y_m);
   const bool veils = laser_m > highest_step_m;
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const bool veil = veils && planes[l].alive() && holds(planes[l], view, laser_m);
+    const bool veiled = veils && planes[l].alive() && veil(planes[l], tallies[l].shadow(), view, laser_m);
     const bool fringe =
         tallies[l].fringe() && ground != nullptr && planes[l].z_m > ground->height_m(planes[l].x_m, planes[l].y_m);
     const Kind kind = tallies[l].face()       ? Kind::mixture
                       : obstacle[l] || fringe ? Kind::cover
-                      : veil                  ? Kind::mixture
+                      : veiled                ? Kind::mixture
                                               : Kind::ground;
     if (kind != kind_[l]) changed(static_cast<LabelType>(l));
     kind_[l] = kind;

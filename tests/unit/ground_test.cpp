@@ -84,6 +84,22 @@ TEST_CASE(
   CHECK(borne(veil, 3.0f) == 3);
 }
 
+//  o
+//  ____________
+//              --__       the edge and the road behind, mixed, in the shadow of the step
+//                  |___
+TEST_CASE("ground: readings in the shadow of a step down are left to both sides, a stair there is ground") {
+  const auto down = [](double slope, double wide_m) {
+    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.4 + wide_m ? -0.1 - slope * (x - 1.55) : -0.2; };
+  };
+  CHECK(borne(down(0.4, 0.3)) == 2);
+  CHECK(borne(down(0.0, 0.3)) == 3);
+  CHECK(borne([](double x, double) {
+          return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
+        }) == 3);  // up: seen from below
+  CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
+}
+
 TEST_CASE("ground: a row of cells at the window's end, of which the slope is not known, is no veil") {
   CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
