@@ -81,6 +81,8 @@ TEST_CASE(
     "none") {
   const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
   CHECK(borne(veil, 1.0f) == 2);  // before it and behind
+  CHECK(borne(veil, 1.04f) == 2);
+  CHECK(borne(veil, 1.1f) == 3);  // as far as ten standard deviations beside it
   CHECK(borne(veil, 3.0f) == 3);
 }
 
