@@ -85,6 +85,7 @@ class Ground {
       return cells > 0.0f && (2.0f * in_strips[0] >= cells || 2.0f * in_strips[1] >= cells);
     }
   };
+  using Tallies = std::array<Tally, limits.planes>;
   /// How the laser sees a row or column.
   struct Sight {
     float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
@@ -130,6 +131,11 @@ class Ground {
   template <typename LabelType, typename LabelOf, typename SlotOf, typename EndRun>
   static void walk(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, int line_count, int length,
                    SlotOf&& slot_of, EndRun&& end_run);
+  template <typename LabelType, typename LabelOf>
+  static void tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
+                         const PlaneFlags& high, Tallies& tallies);
+  static Kind kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
+                      const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
 
   std::array<Kind, limits.planes> kind_{};
@@ -179,11 +185,51 @@ void Ground<limits>::walk(const Dem<limits>& dem, LabelType none, LabelOf&& labe
   }
 }
 
+/// What runs tell: strips in the shadow of a step, beside a high obstacle, between two planes.
+template <Limits limits>
+template <typename LabelType, typename LabelOf>
+void Ground<limits>::tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
+                                const PlaneFlags& high, Tallies& tallies) {
+  std::size_t axis = 0;
+  const std::array<Sight, 2> sight{{{view.y_m, view.z_m, dem.cell_y_m()}, {view.x_m, view.z_m, dem.cell_x_m()}}};
+  const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
+    if (run.label == none) return;
+    Tally& tally = tallies[run.label];
+    const auto cells = static_cast<float>(run.length());
+    const bool leads = before.label != none && next.label != none && run.between(before, next);
+    if (leads && run.in_shadow(before, next, sight[axis])) tally.shadow_cells[axis] += cells;
+    if (run.length() > longest_strip) return;
+    const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
+    const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
+    if (after_high || before_high) tally.fringe_cells[axis] += cells;
+    if (leads) tally.add_strip(run, next.first_height_m - before.last_height_m);
+  };
+  walk(
+      dem, none, label_of, dem.rows(), dem.cols(), [&](int i, int j) { return dem.slot(i, j); }, end_run);
+  axis = 1;
+  walk(
+      dem, none, label_of, dem.cols(), dem.rows(), [&](int j, int i) { return dem.slot(i, j); }, end_run);
+}
+
+/// `ground`: the largest plane that is no obstacle, null if there is none. Veils are only seen from well above it: else
+/// the viewpoint is not where the points were seen from, as of a cloud whose origin lies on the ground, and a plane
+/// that holds it may be a pavement.
+template <Limits limits>
+auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
+                             const Viewpoint& view) -> Kind {
+  if (tally.face()) return Kind::mixture;
+  if (obstacle) return Kind::cover;
+  if (ground == nullptr || !plane.alive()) return Kind::ground;
+  if (tally.fringe() && plane.z_m > ground->height_m(plane.x_m, plane.y_m)) return Kind::cover;
+  const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
+  return laser_m > highest_step_m && veil(plane, tally.shadow(), view, laser_m) ? Kind::mixture : Kind::ground;
+}
+
 template <Limits limits>
 template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             LabelType none, LabelOf&& label_of, Changed&& changed) {
-  std::array<Tally, limits.planes> tallies{};
+  Tallies tallies{};
   dem.for_each_valid([&](int, int, int s) {
     const LabelType label = label_of(s);
     if (label != none) tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
@@ -194,38 +240,10 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     obstacle[l] = tallies[l].obstacle(cell_area_m2);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
-  std::size_t axis = 0;
-  const std::array<Sight, 2> sight{{{view.y_m, view.z_m, dem.cell_y_m()}, {view.x_m, view.z_m, dem.cell_x_m()}}};
-  const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
-    if (run.label == none) return;
-    const bool leads = before.label != none && next.label != none && run.between(before, next);
-    if (leads && run.in_shadow(before, next, sight[axis])) {
-      tallies[run.label].shadow_cells[axis] += static_cast<float>(run.length());
-    }
-    if (run.length() > longest_strip) return;
-    const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
-    const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
-    if (after_high || before_high) tallies[run.label].fringe_cells[axis] += static_cast<float>(run.length());
-    if (leads) tallies[run.label].add_strip(run, next.first_height_m - before.last_height_m);
-  };
-  walk(
-      dem, none, label_of, dem.rows(), dem.cols(), [&](int i, int j) { return dem.slot(i, j); }, end_run);
-  axis = 1;
-  walk(
-      dem, none, label_of, dem.cols(), dem.rows(), [&](int j, int i) { return dem.slot(i, j); }, end_run);
-  // Veils are only seen from well above the ground. Else the viewpoint is not where the points were seen from, as of a
-  // cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
+  tally_runs(dem, view, none, label_of, high, tallies);
   const Plane* ground = largest(planes, obstacle);
-  const float laser_m = ground == nullptr ? 0.0f : view.z_m - ground->height_m(view.x_m, view.y_m);
-  const bool veils = laser_m > highest_step_m;
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const bool veiled = veils && planes[l].alive() && veil(planes[l], tallies[l].shadow(), view, laser_m);
-    const bool fringe =
-        tallies[l].fringe() && ground != nullptr && planes[l].z_m > ground->height_m(planes[l].x_m, planes[l].y_m);
-    const Kind kind = tallies[l].face()       ? Kind::mixture
-                      : obstacle[l] || fringe ? Kind::cover
-                      : veiled                ? Kind::mixture
-                                              : Kind::ground;
+    const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);
     if (kind != kind_[l]) changed(static_cast<LabelType>(l));
     kind_[l] = kind;
   }
