@@ -54,7 +54,7 @@ class Ground {
   struct Tally {
     float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
-    // By the direction of the strip, along y or along x.
+    // By the axis along which the strip was found, x or y.
     std::array<float, 2> shadow_cells{};  ///< in strips that a step down leaves in its shadow
     std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
 
@@ -107,7 +107,7 @@ class Ground {
              ((from < lowest_m && highest_m < to) || (from > highest_m && lowest_m > to));
     }
     /// Of a strip between two planes: does the step lead down as the laser sees it, and is the strip no wider than its
-    /// shadow, and a cell for what those at its ends have of the planes?
+    /// shadow (shadow.hpp), and a cell for what those at its ends have of the planes?
     bool in_shadow(const Run& before, const Run& next, const Sight& sight) const {
       const float ahead_m = static_cast<float>(first) * sight.cell_m - sight.eye_m;
       const float behind_m = sight.eye_m - static_cast<float>(last + 1) * sight.cell_m;
@@ -128,9 +128,8 @@ class Ground {
     return in_shadow || above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
-  template <typename LabelType, typename LabelOf, typename SlotOf, typename EndRun>
-  static void walk(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, int line_count, int length,
-                   SlotOf&& slot_of, EndRun&& end_run);
+  template <typename LabelType, typename LabelOf, typename EndRun>
+  static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelType, typename LabelOf>
   static void tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
                          const PlaneFlags& high, Tallies& tallies);
@@ -152,17 +151,19 @@ const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneF
   return found;
 }
 
-/// Calls end_run(before, run, next) for each run of each line of cells, `line_count` of them, that slot_of(line, k)
-/// names in turn; the label of a run that is not there is `none`.
+/// Calls end_run(before, run, next) for each run of cells along x (axis 0) or along y (axis 1); the label of a run that
+/// is not there is `none`.
 template <Limits limits>
-template <typename LabelType, typename LabelOf, typename SlotOf, typename EndRun>
-void Ground<limits>::walk(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, int line_count, int length,
-                          SlotOf&& slot_of, EndRun&& end_run) {
+template <typename LabelType, typename LabelOf, typename EndRun>
+void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of,
+                          EndRun&& end_run) {
+  const bool along_x = axis == 0;
+  const int line_count = along_x ? dem.cols() : dem.rows(), length = along_x ? dem.rows() : dem.cols();
   const Run<LabelType> nothing{none, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int line = 0; line < line_count; ++line) {
     Run<LabelType> before = nothing, run = nothing;
     for (int k = 0; k < length; ++k) {
-      const int s = slot_of(line, k);
+      const int s = along_x ? dem.slot(k, line) : dem.slot(line, k);
       const Cell& cell = dem.cell(s);
       const LabelType label = cell.valid() ? label_of(s) : none;
       if (label == none) continue;
@@ -190,25 +191,22 @@ template <Limits limits>
 template <typename LabelType, typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
                                 const PlaneFlags& high, Tallies& tallies) {
-  std::size_t axis = 0;
-  const std::array<Sight, 2> sight{{{view.y_m, view.z_m, dem.cell_y_m()}, {view.x_m, view.z_m, dem.cell_x_m()}}};
-  const auto end_run = [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
-    if (run.label == none) return;
-    Tally& tally = tallies[run.label];
-    const auto cells = static_cast<float>(run.length());
-    const bool leads = before.label != none && next.label != none && run.between(before, next);
-    if (leads && run.in_shadow(before, next, sight[axis])) tally.shadow_cells[axis] += cells;
-    if (run.length() > longest_strip) return;
-    const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
-    const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
-    if (after_high || before_high) tally.fringe_cells[axis] += cells;
-    if (leads) tally.add_strip(run, next.first_height_m - before.last_height_m);
-  };
-  walk(
-      dem, none, label_of, dem.rows(), dem.cols(), [&](int i, int j) { return dem.slot(i, j); }, end_run);
-  axis = 1;
-  walk(
-      dem, none, label_of, dem.cols(), dem.rows(), [&](int j, int i) { return dem.slot(i, j); }, end_run);
+  const std::array<Sight, 2> sights{{{view.x_m, view.z_m, dem.cell_x_m()}, {view.y_m, view.z_m, dem.cell_y_m()}}};
+  for (std::size_t axis = 0; axis < sights.size(); ++axis) {
+    walk(dem, axis, none, label_of,
+         [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
+           if (run.label == none) return;
+           Tally& tally = tallies[run.label];
+           const auto cells = static_cast<float>(run.length());
+           const bool leads = before.label != none && next.label != none && run.between(before, next);
+           if (leads && run.in_shadow(before, next, sights[axis])) tally.shadow_cells[axis] += cells;
+           if (run.length() > longest_strip) return;
+           const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
+           const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
+           if (after_high || before_high) tally.fringe_cells[axis] += cells;
+           if (leads) tally.add_strip(run, next.first_height_m - before.last_height_m);
+         });
+  }
 }
 
 /// `ground`: the largest plane that is no obstacle, null if there is none. Veils are only seen from well above it: else
