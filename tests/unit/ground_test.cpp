@@ -60,15 +60,14 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
 //  _______|
 TEST_CASE(
     "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a kerb is none") {
-  const auto strip = [](double foot_m) {
-    return [=](double x, double y) {
-      if (x >= 1.2) return foot_m + 0.6 * (x - 1.2) + (static_cast<int>(y * 100) % 10 < 5 ? -foot_m : foot_m);
-      return x < 1.0 ? 0.0 : 0.04;
-    };
+  const auto wall = [](double x, double y) {
+    return 0.5 + 0.6 * (x - 1.2) + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
   };
-  CHECK(borne(strip(0.5)) == 1);
-  CHECK(borne([&](double x, double y) { return x < 1.2 ? strip(0.5)(x, y) * -1.0 : strip(0.5)(x, y); }) ==
-        2);  // a gutter
+  const auto before_wall = [&](double strip_m) {
+    return [=](double x, double y) { return x >= 1.2 ? wall(x, y) : x < 1.0 ? 0.0 : strip_m; };
+  };
+  CHECK(borne(before_wall(0.04)) == 1);
+  CHECK(borne(before_wall(-0.04)) == 2);  // a gutter
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
 }
 
@@ -91,11 +90,11 @@ TEST_CASE(
 //              --__       the edge and the road behind, mixed, in the shadow of the step
 //                  |___
 TEST_CASE("ground: readings in the shadow of a step down are left to both sides, a stair there is ground") {
-  const auto down = [](double slope, double wide_m) {
-    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.4 + wide_m ? -0.1 - slope * (x - 1.55) : -0.2; };
+  const auto down = [](double slope) {
+    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - slope * (x - 1.55) : -0.2; };
   };
-  CHECK(borne(down(0.4, 0.3)) == 2);
-  CHECK(borne(down(0.0, 0.3)) == 3);
+  CHECK(borne(down(0.4)) == 2);
+  CHECK(borne(down(0.0)) == 3);
   CHECK(borne([](double x, double) {
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
         }) == 3);  // up: seen from below
