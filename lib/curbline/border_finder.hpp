@@ -1,7 +1,9 @@
 // Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
 // that lie on no plane of the ground, and those that hold something of both sides, are looked through; they tell where
-// between the cells of the one and of the other the edge lies. Cost: two passes over the window and a look at each cell
-// of a gap.
+// between the cells of the one and of the other the edge lies. And where a face ends: a strip that rises away from the
+// laser as no ramp does, and beyond which nothing is seen. Had it gone on, the laser would see it as well as the face;
+// what lies beyond is flatter than the rays, so there is an edge. Cost: two passes over the window and a look at each
+// cell of a gap and of a face.
 #pragma once
 
 #include <array>
@@ -13,6 +15,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/plane_mixture.hpp"
+#include "curbline/point.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -36,8 +39,8 @@ template <Limits limits>
 class BorderFinder {
  public:
   BorderFinder(const CurbSettings& settings, const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
-               const LabelField<limits>& field)
-      : settings_(settings), dem_(dem), mixture_(mixture), field_(field) {}
+               const LabelField<limits>& field, const Viewpoint& view)
+      : settings_(settings), dem_(dem), mixture_(mixture), field_(field), view_(view) {}
 
   /// Fills `borders`, which are empty.
   void find(Borders<limits>& borders, Counters& counters);
@@ -47,35 +50,61 @@ class BorderFinder {
   static constexpr LabelType none = no_label<limits>;
   using Border = typename Borders<limits>::Border;
 
-  /// A cell of a row or column and its plane.
+  static constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
+  static constexpr float widest_face_m = 0.3f;    ///< of a kerb stone
+
+  /// A line of cells: a column, along x (axis 0), or a row, along y (axis 1).
+  struct Line {
+    int axis, across;
+  };
+  /// A cell of a line and its plane.
   struct Place {
     LabelType label = none;
     std::int16_t along = 0;
   };
-  /// From a cell of one plane to one of another: along x (axis 0) on column `across`, or along y on row `across`.
+  /// From a cell of one plane to one of another.
   struct Gap {
-    int axis, across;
+    Line line;
     Place first, second;
+  };
+  /// The last cell of a face beyond which nothing is seen.
+  struct FaceEnd {
+    Line line;
+    Place last;  ///< label is `none` if there is no such end
+    int toward;  ///< 1 if the face is left along the axis, -1 if against it
   };
 
   int find_ground();
   Border border_of(const Gap& gap) const;
+  FaceEnd find_face_end(const Gap& gap, int toward) const;
+  Border border_of(const FaceEnd& end) const;
+  Border border_at(const Line& line, float along_m) const;
   float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
 
-  float pitch_m(const Gap& gap) const { return gap.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
-  /// Of the middle of its row or column.
-  float across_m(const Gap& gap) const {
-    return (static_cast<float>(gap.across) + 0.5f) * (gap.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
+  static int row(const Line& line, int along) { return line.axis == 0 ? along : line.across; }
+  static int col(const Line& line, int along) { return line.axis == 0 ? line.across : along; }
+  int slot(const Line& line, int along) const { return dem_.slot(row(line, along), col(line, along)); }
+  float pitch_m(const Line& line) const { return line.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
+  /// Of the middle of the line.
+  float across_m(const Line& line) const {
+    return (static_cast<float>(line.across) + 0.5f) * (line.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
   }
-  int row(const Gap& gap, int along) const { return gap.axis == 0 ? along : gap.across; }
-  int col(const Gap& gap, int along) const { return gap.axis == 0 ? gap.across : along; }
+  /// Of the cell's centroid from its middle, in cells along the line.
+  float offset(const Line& line, const Cell& cell) const {
+    return (line.axis == 0 ? cell.dx_m : cell.dy_m) / pitch_m(line);
+  }
+  float above_m(const Line& line, int along, const Plane& plane) const {
+    return dem_.above_m(row(line, along), col(line, along), dem_.cell(slot(line, along)), plane);
+  }
+  auto belief(const Line& line, int along) const { return field_.belief(dem_, row(line, along), col(line, along)); }
 
   const CurbSettings& settings_;
   const Dem<limits>& dem_;
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
+  const Viewpoint& view_;
   std::array<bool, limits.planes> ground_{};
 };
 
@@ -109,19 +138,24 @@ bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& 
   return residual * residual <= 9.0f * (plane.variance_m2 + dem_.height_variance_m2(cell));
 }
 
-/// A border wherever the plane changes along a row or column.
+/// A border wherever the plane changes along a row or column, and where a face beyond it ends.
 template <Limits limits>
 void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   if (find_ground() < 2) return;
+  const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
+  const auto pass = [&](Place& before, const Place& here, const Line& line) {
+    const Gap gap{line, before, here};
+    before = here;
+    if (gap.first.label == none || gap.first.label == here.label || here.along - gap.first.along > settings_.link_reach)
+      return;
+    add(border_of(gap));
+    for (const int toward : {-1, 1}) {
+      if (const FaceEnd end = find_face_end(gap, toward); end.last.label != none) add(border_of(end));
+    }
+  };
   std::array<Place, limits.cols> before_in_col{};
   Place before_in_row;
   int row = -1;
-  const auto pass = [&](Place& before, const Place& here, int axis, int across) {
-    const bool border =
-        before.label != none && before.label != here.label && here.along - before.along <= settings_.link_reach;
-    if (border && !borders.add(dem_, border_of({axis, across, before, here}))) ++counters.borders_full;
-    before = here;
-  };
   dem_.for_each_valid([&](int i, int j, int s) {
     const LabelType label = field_.label(s);
     if (label == none || !ground_[label] || !mixture_.on_ground(s) ||
@@ -129,16 +163,15 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
       return;
     if (i != row) before_in_row = {};
     row = i;
-    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, 0, j);
-    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, 1, i);
+    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
+    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {1, i});
   });
 }
 
 /// Probability that the cells on both sides lie on one plane.
 template <Limits limits>
 float BorderFinder<limits>::same_plane(const Gap& gap) const {
-  const auto belief = [&](int along) { return field_.belief(dem_, row(gap, along), col(gap, along)); };
-  const auto p = belief(gap.first.along), q = belief(gap.second.along);
+  const auto p = belief(gap.line, gap.first.along), q = belief(gap.line, gap.second.along);
   float same = 0.0f;
   for (std::size_t m = 0; m < p.label.size(); ++m) {
     for (std::size_t n = 0; n < q.label.size(); ++n) {
@@ -149,50 +182,94 @@ float BorderFinder<limits>::same_plane(const Gap& gap) const {
 }
 
 template <Limits limits>
-auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
-  const float at_m = middle_m(gap);
-  const bool rising = gap.first.label < gap.second.label;
-  Border border;
-  border.x_m = gap.axis == 0 ? at_m : across_m(gap);
-  border.y_m = gap.axis == 0 ? across_m(gap) : at_m;
-  border.probability = 1.0f - same_plane(gap);
-  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap);
-  const auto off = [&](const Place& place) {
-    const int i = row(gap, place.along), j = col(gap, place.along);
-    return dem_.above_m(i, j, dem_.cell(dem_.slot(i, j)), mixture_.plane(place.label));
-  };
-  border.off_m = rising ? off(gap.second) - off(gap.first) : off(gap.first) - off(gap.second);
-  border.low = rising ? gap.first.label : gap.second.label;
-  border.high = rising ? gap.second.label : gap.first.label;
-  border.axis = static_cast<std::int8_t>(gap.axis);
-  border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
-  border.chained = false;
-  border.next_in_cell = 0;
+auto BorderFinder<limits>::border_at(const Line& line, float along_m) const -> Border {
+  Border border{};
+  border.x_m = line.axis == 0 ? along_m : across_m(line);
+  border.y_m = line.axis == 0 ? across_m(line) : along_m;
+  border.axis = static_cast<std::int8_t>(line.axis);
   return border;
 }
 
-/// Along the axis, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
+template <Limits limits>
+auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
+  const bool rising = gap.first.label < gap.second.label;
+  const Place& low = rising ? gap.first : gap.second;
+  const Place& high = rising ? gap.second : gap.first;
+  Border border = border_at(gap.line, middle_m(gap));
+  border.probability = 1.0f - same_plane(gap);
+  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap.line);
+  border.off_m = above_m(gap.line, high.along, mixture_.plane(high.label)) -
+                 above_m(gap.line, low.along, mixture_.plane(low.label));
+  border.low = low.label;
+  border.high = high.label;
+  border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
+  return border;
+}
+
+/// Of the face on the far side of a gap (toward 1), or on its near side (-1).
+template <Limits limits>
+auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> FaceEnd {
+  const Line& line = gap.line;
+  const Place& first = toward > 0 ? gap.second : gap.first;
+  const Plane& plane = mixture_.plane(first.label);
+  const auto sign = static_cast<float>(toward);
+  const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
+  const float eye_m = line.axis == 0 ? view_.x_m : view_.y_m;
+  const bool rises_away = sign * (static_cast<float>(first.along) * pitch_m(line) - eye_m) > 0.0f;
+  if (rise <= steepest_ramp || !rises_away) return {};
+
+  const int widest = static_cast<int>(widest_face_m / pitch_m(line) + 1.5f);  // touched, when it lies across cells
+  const int direction = 2 * line.axis + (toward < 0);
+  int last = first.along;
+  while (const int g = dem_.next_valid(slot(line, last), direction, settings_.link_reach)) {
+    last += toward * g;
+    if (field_.label(slot(line, last)) != first.label || toward * (last - first.along) >= widest) return {};
+  }
+  const bool at_end = last == 0 || last == (line.axis == 0 ? dem_.rows() : dem_.cols()) - 1;
+  if (at_end) return {};  // the window's, perhaps not the face's
+  return {line, {first.label, static_cast<std::int16_t>(last)}, toward};
+}
+
+/// The points of the last cell reach as far beyond their centroid as they lie before it. Where the next one would have
+/// been is open to a cell.
+template <Limits limits>
+auto BorderFinder<limits>::border_of(const FaceEnd& end) const -> Border {
+  const auto sign = static_cast<float>(end.toward);
+  const float centroid = sign * offset(end.line, dem_.cell(slot(end.line, end.last.along)));
+  const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
+  Border border = border_at(end.line, (static_cast<float>(end.last.along) + 0.5f + sign * edge) * pitch_m(end.line));
+  const auto of_cell = belief(end.line, end.last.along);
+  for (std::size_t c = 0; c < of_cell.label.size(); ++c) {
+    if (of_cell.label[c] == end.last.label) border.probability = of_cell.probability[c];
+  }
+  border.half_gap_m = pitch_m(end.line);
+  border.low = end.last.label;
+  border.high = none;
+  border.sign = static_cast<std::int8_t>(end.toward);
+  return border;
+}
+
+/// Along the line, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
 /// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell.
 template <Limits limits>
 float BorderFinder<limits>::middle_m(const Gap& gap) const {
-  const float cell_m = pitch_m(gap);
+  const Line& line = gap.line;
+  const float cell_m = pitch_m(line);
   const float halfway_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * cell_m;
-  const float x_m = gap.axis == 0 ? halfway_m : across_m(gap), y_m = gap.axis == 0 ? across_m(gap) : halfway_m;
+  const Border halfway = border_at(line, halfway_m);
   const Plane& first = mixture_.plane(gap.first.label);
   const Plane& second = mixture_.plane(gap.second.label);
-  const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
+  const float step_m = second.height_m(halfway.x_m, halfway.y_m) - first.height_m(halfway.x_m, halfway.y_m);
   if (2.0f * step_m * step_m <= 9.0f * (first.variance_m2 + second.variance_m2)) return halfway_m;
 
   float before = 0.0f;  // in cells, from the first one's near side
   for (int along = gap.first.along; along <= gap.second.along; ++along) {
-    const int i = row(gap, along), j = col(gap, along);
-    const Cell& cell = dem_.cell(dem_.slot(i, j));
+    const Cell& cell = dem_.cell(slot(line, along));
     if (!cell.valid()) {
       before += 0.5f;
       continue;
     }
-    const float offset = (gap.axis == 0 ? cell.dx_m : cell.dy_m) / cell_m;
-    before += before_middle({dem_.above_m(i, j, cell, first) / step_m, 0.5f + offset});
+    before += before_middle({above_m(line, along, first) / step_m, 0.5f + offset(line, cell)});
   }
   const auto cells = static_cast<float>(gap.second.along - gap.first.along + 1);
   before = before < 0.0f ? 0.0f : before > cells ? cells : before;

@@ -25,7 +25,8 @@ namespace curbline {
 enum class CurbKind : std::uint8_t {
   step_up,    ///< the far side is higher
   step_down,  ///< the far side is lower
-  crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall
+  crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall; and the end
+              ///< of a face beyond which nothing is seen
   ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO
               ///< 21542
 };
@@ -39,11 +40,11 @@ struct Curb {
   float height_sd_m = 0.0f;   ///< from both planes' posteriors, and how far the cells beside the border lie off them
   float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
   float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, less the shadow of a step
-                              ///< down: to a cell
+                              ///< down: to a cell; 0 of the end of a face
   CurbKind kind = CurbKind::crease;
   /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
   std::uint16_t id = 0;
-  std::uint16_t near_label = 0, far_label = 0;
+  std::uint16_t near_label = 0, far_label = 0;  ///< far is no_label where nothing is seen beyond
 };
 
 inline bool is_step(const Curb& curb) {
@@ -107,6 +108,10 @@ class CurbTracer {
     bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
   };
 
+  /// The other plane of a border. At the end of a face that of the face stands for it: no step, no known slope.
+  static const Plane& beyond(const Stages& stages, const Border& border) {
+    return stages.mixture.plane(border.high == no_label<limits> ? border.low : border.high);
+  }
   void cut(const Stages& stages, int length, Work& work, Counters& counters) const;
   static Piece piece_of(const Stages& stages, const Borders<limits>& borders, int first, int last);
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
@@ -124,7 +129,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
                                const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();
-  BorderFinder<limits>(settings_, dem, mixture, field).find(work.borders, counters);
+  BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
   const Stages stages{dem, mixture, view};
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(stages, work.borders.chain(dem, b, settings_.link_reach), work, counters);
@@ -208,7 +213,7 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   const Border& a = borders.at(first);
   const Border& b = borders.at(last);
   const Plane& low = stages.mixture.plane(a.low);
-  const Plane& high = stages.mixture.plane(a.high);
+  const Plane& high = beyond(stages, a);
   const float n = 1.0f / static_cast<float>(last - first + 1);
   Piece piece;
   LineFit fit;
@@ -260,7 +265,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   curb.height_sd_m = square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 6));
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  curb.kind = kind_of(stages.mixture.plane(border.low), stages.mixture.plane(border.high), piece.line,
+  curb.kind = kind_of(stages.mixture.plane(border.low), beyond(stages, border), piece.line,
                       {piece.height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
   if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;
@@ -274,7 +279,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
     shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
   }
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
-  curb.face_width_m = width_m > 0.0f ? width_m : 0.0f;
+  curb.face_width_m = width_m > 0.0f && border.high != no_label<limits> ? width_m : 0.0f;
   curb.x0_m = dem.origin_x_m() + piece.line.x0_m;
   curb.y0_m = dem.origin_y_m() + piece.line.y0_m;
   curb.x1_m = dem.origin_x_m() + piece.line.x1_m;

@@ -81,7 +81,8 @@ class Pipeline {
     return curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
   bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
-    return curbline::passable(curb, plane(curb.near_label), plane(curb.far_label), {max_step_m, max_slope_rad});
+    const auto side = [this](int label) { return label == no_label<limits> ? Plane{} : plane(label); };
+    return curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
   /// Plane of a valid cell (i along x, j along y, from the window's lowest corner); no_label<limits> for the others.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "support/small_map.hpp"
 
@@ -183,6 +184,82 @@ TEST_CASE("border finder: a sloped face that is seen is told half its shadow bef
     CHECK(curb.x0_m == Approx(from + 0.05 - 0.5 * 0.06 * 0.6 / 0.94).margin(0.012));
     CHECK(curb.x0_m > from);
   }
+}
+
+/// A street up to where a face begins, which rises by `slope` a metre; nothing is seen beyond `to`. Along x, from the
+/// laser, unless it is turned to come from the window's other end.
+struct Street {
+  double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< from `top` on it is level again
+  bool turned = false;
+  float laser_x_m = 0.0f;
+  double waver = 0.0;  ///< every other half metre ends so much earlier
+
+  double height(double x) const { return slope * (std::clamp(x, from, top) - from); }
+  std::unique_ptr<Stages<small_limits>> traced() const {
+    auto stages = std::make_unique<Stages<small_limits>>(small_settings());
+    for (int i = 0; i < 24; ++i) {
+      for (int j = 0; j < 24; ++j) {
+        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
+          const double x = 0.1 * i + at, y = 0.1 * j + at, along = turned ? 2.4 - y : x;
+          const bool early = std::fmod(turned ? x : y, 1.0) < 0.5;
+          if (along > (early ? to - waver : to)) continue;
+          stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(height(along)), 1e-4f});
+        }
+      }
+    }
+    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    turned ? stages->trace(1.2f, 2.4f - laser_x_m) : stages->trace(laser_x_m, 1.2f);
+    return stages;
+  }
+  /// Where faces end, along the street, as curbs are given out for it.
+  std::vector<double> ends() const {
+    const auto stages = traced();
+    std::vector<double> found;
+    for (const Curb& curb : stages->tracer.curbs()) {
+      constexpr auto unseen = no_label<small_limits>;
+      if (curb.far_label != unseen && curb.near_label != unseen) continue;
+      CHECK(curb.kind == CurbKind::crease);
+      CHECK(curb.height_m == 0.0f);
+      CHECK(curb.face_width_m == 0.0f);
+      CHECK(curb.probability > 0.9f);
+      const int face = static_cast<int>(10 * from) + 1;
+      CHECK(curb.near_label == (turned ? stages->label_at(0, 23 - face) : stages->label_at(face, 0)));
+      CHECK(std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m) == Approx(2.4).margin(0.02));
+      found.push_back(turned ? 2.4 - static_cast<double>(curb.y0_m) : static_cast<double>(curb.x0_m));
+    }
+    return found;
+  }
+};
+
+//            /
+//           /         the face of a kerb; what lies beyond is not seen
+//  ________/
+TEST_CASE("border finder: a face beyond which nothing is seen ends at an edge, in any direction") {
+  const bool turned = GENERATE(false, true);
+  for (const double to : {1.4, 1.44, 1.5, 1.56}) {
+    const std::vector<double> ends = Street{.to = to, .turned = turned}.ends();
+    REQUIRE(ends.size() == 1);
+    CHECK(ends[0] == Approx(to).margin(0.015));
+  }
+}
+
+TEST_CASE("border finder: a ramp, an embankment, ground that falls away and what goes on do not end as faces do") {
+  CHECK(Street{.slope = 0.1}.ends().empty());
+  CHECK(Street{.to = 1.8}.ends().empty());
+  CHECK(Street{.slope = -0.4}.ends().empty());
+  CHECK(Street{.laser_x_m = 2.3f}.ends().empty());
+  CHECK(Street{.to = 9.0, .top = 1.5}.ends().empty());
+}
+
+TEST_CASE("border finder: the end of a face that wavers by more than a cell is one line") {
+  const std::vector<double> ends = Street{.to = 1.5, .waver = 0.14}.ends();
+  REQUIRE(ends.size() == 1);
+  CHECK(ends[0] == Approx(1.43).margin(0.04));
+}
+
+TEST_CASE("border finder: a face that the window cuts has no end") {
+  CHECK(Street{.from = 2.1, .to = 9.0}.ends().empty());
+  CHECK(Street{.from = 2.0, .to = 2.3}.ends().size() == 1);
 }
 
 }  // namespace

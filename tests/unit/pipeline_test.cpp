@@ -71,6 +71,23 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   CHECK(pipeline->counters().lines == 200);
 }
 
+TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatever the robot takes") {
+  const auto pipeline = started();
+  std::vector<Point> face;  // of a kerb, from x = 1.2 to 1.5 m
+  for (float x = 0.01f; x < 1.5f; x += 0.02f) {
+    for (float y = -1.0f; y < 1.0f; y += 0.02f) face.push_back({x, y, x < 1.2f ? 0.0f : 0.4f * (x - 1.2f), 1e-4f});
+  }
+  pipeline->observe(face);
+  pipeline->settle();
+  int ends = 0;
+  for (const Curb& curb : pipeline->curbs()) {
+    const bool end = curb.far_label == no_label<Limits{}>;
+    ends += end;
+    CHECK(pipeline->passable(curb, 1.0f, 1.0f) == !end);
+  }
+  CHECK(ends == 1);
+}
+
 TEST_CASE("pipeline: settings beyond the limits, or bad, are refused with the status that names them") {
   const auto pipeline = std::make_unique<FullPipeline>();
   const auto init = [&](auto&& change) {
