@@ -169,6 +169,24 @@ TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exact
   CHECK(read_labels(files.labels).size() == 13 * 7);
 }
 
+TEST_CASE("program: a strip at the window's edge is known by what lies beyond it, and nothing beyond is given out") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  // One row of cells of the pavement behind the step lies in the window.
+  const Words narrow{"--origin", "0.1", "-1", "--size", "2", "1.5"};
+  check_done(curbline(Words{"map", cloud_with_a_step(dir)} + narrow + files.options()));
+  CHECK(read_labels(files.labels).size() == 20 * 15);
+  const std::vector<MapCurb> curbs = read_curbs(files.curbs);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].height_m == Approx(0.12).margin(0.005));
+  CHECK(curbs[0].height_sd_m < 0.004);
+  CHECK(std::minmax(curbs[0].y0_m, curbs[0].y1_m).first == Approx(-1.0).margin(1e-3));
+  CHECK(std::minmax(curbs[0].y0_m, curbs[0].y1_m).second == Approx(0.5).margin(1e-3));
+  const Words before{"--origin", "0", "-1", "--size", "1.9", "1.5"};
+  check_done(curbline(Words{"map", cloud_with_a_step(dir)} + before + files.options()));
+  CHECK(read_curbs(files.curbs).empty());
+}
+
 TEST_CASE("program: pictures are SVG or PNG by their ending") {
   const TemporaryDirectory dir;
   const std::string cloud = cloud_with_a_step(dir);

@@ -30,5 +30,19 @@ TEST_CASE("polygon: a line through a corner is crossed once") {
   CHECK_FALSE(contains(diamond, {2.5, 1}));
 }
 
+TEST_CASE("polygon: of a segment counts what lies in the rectangle, none of one beside it") {
+  const Bounds box{0, 0, 2, 1};
+  const Share through = share_in(box, {-1, 0.5}, {3, 0.5});
+  CHECK(through.from == Approx(0.25));
+  CHECK(through.to == Approx(0.75));
+  const Share within = share_in(box, {0.5, 0.5}, {1, 0.75});
+  CHECK(within.from == 0.0);
+  CHECK(within.to == 1.0);
+  CHECK_FALSE(share_in(box, {-1, 1.5}, {3, 1.5}).any());
+  CHECK_FALSE(share_in(box, {-1, 0.5}, {1, 2.6}).any());
+  CHECK(crosses(box, {2, -1}, {2, 2}));
+  CHECK_FALSE(crosses(box, {2.1, -1}, {2.1, 2}));
+}
+
 }  // namespace
 }  // namespace curbline::tools

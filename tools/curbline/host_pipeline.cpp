@@ -97,7 +97,8 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
                    std::to_string(largest_limits.beams));
   }
   throw BadInput("a window of " + std::to_string(settings.window.rows) + " x " + std::to_string(settings.window.cols) +
-                 " cells; expected at most 512 x 512");
+                 " cells; expected at most " + std::to_string(largest_limits.rows) + " x " +
+                 std::to_string(largest_limits.cols));
 }
 
 MapCurb to_map_curb(const Curb& curb) {

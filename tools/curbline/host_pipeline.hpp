@@ -26,8 +26,11 @@ inline constexpr Limits wide_limits{.rows = 128,
                                     .links = 16000,
                                     .borders = 8192,
                                     .curbs = 2048};
-inline constexpr Limits largest_limits{.rows = 512,
-                                       .cols = 512,
+inline constexpr int most_cells = 512;  ///< along one side of a window
+/// Beyond the window of a finished map that is mapped too, map_cloud.hpp: a block.
+inline constexpr int margin_cells = 4;
+inline constexpr Limits largest_limits{.rows = most_cells + 2 * margin_cells,
+                                       .cols = most_cells + 2 * margin_cells,
                                        .planes = 250,
                                        .beams = 2881,
                                        .tilt_samples = 1024,
@@ -55,7 +58,7 @@ class HostPipeline {
   virtual Map map() const = 0;
 };
 
-/// Throws BadInput if the settings are refused; a window beyond 512 x 512 cells is.
+/// Throws BadInput if the settings are refused; one beyond the largest limits is too.
 std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings);
 
 MapCurb to_map_curb(const Curb& curb);

@@ -5,12 +5,26 @@
 
 namespace curbline::tools {
 
+namespace {
+
+/// What lies beyond the window's edge tells what a strip within is: that much of it is mapped too.
+void widen(WindowSettings& window) {
+  window.fixed = true;
+  window.origin_x_m -= static_cast<float>(margin_cells) * window.cell_x_m;
+  window.origin_y_m -= static_cast<float>(margin_cells) * window.cell_y_m;
+  window.rows += 2 * margin_cells;
+  window.cols += 2 * margin_cells;
+}
+
+}  // namespace
+
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options) {
   Settings settings;
   apply_window(options, settings.window);
   const Grid grid = asked_grid(options, settings.window);
   if (options.method != MapMethod::curbline)
     return map_batch(cloud, grid, static_cast<double>(settings.window.max_height_m), options);
+  widen(settings.window);
   // Nothing is known of the sensor: every point has the variance that the prior expects.
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;

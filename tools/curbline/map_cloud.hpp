@@ -10,7 +10,8 @@
 
 namespace curbline::tools {
 
-/// Window, cell size, height and method as the options have them; the robot stands at the origin.
+/// Window, cell size, height and method as the options have them; the robot stands at the origin. By curbline itself
+/// margin_cells around the window are mapped too, and not given out.
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
 
 /// The same by the paper's methods or its peers' (options.method is one of them) on a given grid.

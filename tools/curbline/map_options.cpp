@@ -5,16 +5,16 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "curbline/dem.hpp"
+#include "curbline/host_pipeline.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/csv.hpp"
 #include "picture/picture.hpp"
 
 namespace curbline::tools {
 namespace {
-
-constexpr int most_cells = 512;
 
 constexpr double count_slack = 1e-6;  ///< of a cell
 
@@ -130,16 +130,25 @@ Grid asked_grid(const MapOptions& options, const WindowSettings& window) {
 }
 
 Map crop(const Map& map, const Grid& asked) {
+  const auto first_i = std::lround((asked.x0_m - map.grid.x0_m) / asked.dx_m);
+  const auto first_j = std::lround((asked.y0_m - map.grid.y0_m) / asked.dy_m);
   Map out;
   out.grid = asked;
-  out.planes = map.planes;
   out.cells.resize(asked.cells());
+  std::set<int> borne;
   for (int i = 0; i < asked.rows; ++i) {
-    for (int j = 0; j < asked.cols; ++j) out.cells[asked.at(i, j)] = map.cells[map.grid.at(i, j)];
+    for (int j = 0; j < asked.cols; ++j) {
+      const MapCell& cell = map.cells[map.grid.at(static_cast<int>(first_i) + i, static_cast<int>(first_j) + j)];
+      out.cells[asked.at(i, j)] = cell;
+      borne.insert(cell.label);
+    }
   }
-  const double x1 = asked.x0_m + asked.rows * asked.dx_m, y1 = asked.y0_m + asked.cols * asked.dy_m;
-  std::copy_if(map.curbs.begin(), map.curbs.end(), std::back_inserter(out.curbs),
-               [&](const MapCurb& curb) { return curb.x0_m + curb.x1_m < 2 * x1 && curb.y0_m + curb.y1_m < 2 * y1; });
+  std::copy_if(map.planes.begin(), map.planes.end(), std::back_inserter(out.planes),
+               [&](const MapPlane& plane) { return borne.contains(plane.label); });
+  for (const MapCurb& curb : map.curbs) {
+    const Share share = share_in(asked.bounds(), {curb.x0_m, curb.y0_m}, {curb.x1_m, curb.y1_m});
+    if (share.any()) out.curbs.push_back(part_of(curb, share));
+  }
   return out;
 }
 

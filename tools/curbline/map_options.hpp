@@ -44,7 +44,7 @@ void apply_window(const MapOptions& options, WindowSettings& window);
 /// The grid that was asked for: the window of the flags exactly, without the rounding.
 Grid asked_grid(const MapOptions& options, const WindowSettings& window);
 
-/// The part of a map that lies in the grid asked for.
+/// The part of a map that lies in the grid asked for, which is within the map's, and what planes its cells bear.
 Map crop(const Map& map, const Grid& asked);
 
 /// Writes the files that were asked for, all or none, and the summary with --json. `summary` may hold more to say.

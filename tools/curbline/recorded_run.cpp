@@ -21,10 +21,6 @@ ReplayLogs logs_of(const std::string& dir, const Robot& robot) {
   return {dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
 }
 
-Bounds bounds_of(const Grid& grid) {
-  return {grid.x0_m, grid.y0_m, grid.x0_m + grid.rows * grid.dx_m, grid.y0_m + grid.cols * grid.dy_m};
-}
-
 /// Keeps what a run must not forget, look by look.
 class Record {
  public:
@@ -37,7 +33,7 @@ class Record {
     for (const LabelledCell& cell : cells) run_.seen.add(cell.x_m, cell.y_m);
     const double time_s = static_cast<double>(replay.line().time_ns - truth_start_ns_) * 1e-9;
     const RobotMarker robot = replay.robot();
-    detections_.observe(time_s, {robot.x_m, robot.y_m}, bounds_of(map.grid), run_.seen, map.curbs);
+    detections_.observe(time_s, {robot.x_m, robot.y_m}, map.grid.bounds(), run_.seen, map.curbs);
     if (run_.drove && std::hypot(robot.x_m - last_.x_m, robot.y_m - last_.y_m) > 0.5 * map.grid.rows * map.grid.dx_m) {
       run_.found.windows.push_back(cells);
       last_ = robot;

@@ -14,36 +14,11 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-/// The share of a segment, from its start to its end, that lies in a grid's rectangle (Liang and Barsky 1984), a cell within: a curb has
-/// ground on both sides, and is gone when one side is.
-struct Inside {
-  double from = 0, to = 1;
-  bool any() const { return from < to; }
-};
-
-Inside inside_of(const Grid& grid, const MapCurb& c) {
-  Inside in;
-  const auto clip = [&](double at, double along, double low, double high) {
-    if (along == 0) {
-      if (at < low || at >= high) in.to = in.from;
-      return;
-    }
-    const double a = (low - at) / along, b = (high - at) / along;
-    in.from = std::max(in.from, std::min(a, b));
-    in.to = std::min(in.to, std::max(a, b));
-  };
-  clip(c.x0_m, c.x1_m - c.x0_m, grid.x0_m + grid.dx_m, grid.x0_m + (grid.rows - 1) * grid.dx_m);
-  clip(c.y0_m, c.y1_m - c.y0_m, grid.y0_m + grid.dy_m, grid.y0_m + (grid.cols - 1) * grid.dy_m);
-  return in;
-}
-
-MapCurb part_of(const MapCurb& c, double from, double to) {
-  MapCurb part = c;
-  part.x0_m = c.x0_m + from * (c.x1_m - c.x0_m);
-  part.y0_m = c.y0_m + from * (c.y1_m - c.y0_m);
-  part.x1_m = c.x0_m + to * (c.x1_m - c.x0_m);
-  part.y1_m = c.y0_m + to * (c.y1_m - c.y0_m);
-  return part;
+/// What of a curb lies in a grid, a cell within: a curb has ground on both sides, and is gone when one side is.
+Share inside_of(const Grid& grid, const MapCurb& c) {
+  Bounds box = grid.bounds();
+  box = {box.x0 + grid.dx_m, box.y0 + grid.dy_m, box.x1 - grid.dx_m, box.y1 - grid.dy_m};
+  return share_in(box, {c.x0_m, c.y0_m}, {c.x1_m, c.y1_m});
 }
 
 std::string hexadecimal(std::uint32_t id) {
@@ -175,10 +150,10 @@ void Replay::keep_leaving_curbs() {
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;
   const auto keep = [&](const MapCurb& curb, double from, double to) {
     const bool worth_a_row = (to - from) * std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m) > 0.25 * grid.dx_m;
-    if (worth_a_row) left_behind_.push_back(part_of(curb, from, to));
+    if (worth_a_row) left_behind_.push_back(part_of(curb, {from, to}));
   };
   for (const MapCurb& curb : curbs_before_) {
-    const Inside before = inside_of(grid_before_, curb), now = inside_of(grid, curb);
+    const Share before = inside_of(grid_before_, curb), now = inside_of(grid, curb);
     keep(curb, before.from, now.any() ? std::min(before.to, now.from) : before.to);
     if (now.any()) keep(curb, std::max(before.from, now.to), before.to);
   }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "map/polygon.hpp"
+
 namespace curbline::tools {
 
 /// The place of a grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
@@ -17,6 +19,7 @@ struct Grid {
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j); }
   double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< of a cell's centre
   double y_m(int j) const { return y0_m + (j + 0.5) * dy_m; }
+  Bounds bounds() const { return {x0_m, y0_m, x0_m + rows * dx_m, y0_m + cols * dy_m}; }
 };
 
 struct MapCell {
@@ -43,6 +46,9 @@ struct MapCurb {
   double face_width_m = 0;
   int id = 0;  ///< 0: it has none
 };
+
+/// That part of a curb line, all else as it is.
+MapCurb part_of(const MapCurb& curb, const Share& share);
 
 struct Map {
   Grid grid;

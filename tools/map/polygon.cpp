@@ -153,18 +153,25 @@ Bounds bounds(const Polygon& polygon) {
   return box;
 }
 
-bool crosses(const Bounds& box, Point2 a, Point2 b) {
-  double from = 0, to = 1;
+Share share_in(const Bounds& box, Point2 a, Point2 b) {
+  Share share;
   const auto clip = [&](double start, double step, double low, double high) {
     if (step == 0) {
-      return start >= low && start <= high;
+      if (start < low || start > high) share.to = -1;
+      return;
     }
     const double t0 = (low - start) / step, t1 = (high - start) / step;
-    from = std::max(from, std::min(t0, t1));
-    to = std::min(to, std::max(t0, t1));
-    return from <= to;
+    share.from = std::max(share.from, std::min(t0, t1));
+    share.to = std::min(share.to, std::max(t0, t1));
   };
-  return clip(a.x, b.x - a.x, box.x0, box.x1) && clip(a.y, b.y - a.y, box.y0, box.y1);
+  clip(a.x, b.x - a.x, box.x0, box.x1);
+  clip(a.y, b.y - a.y, box.y0, box.y1);
+  return share;
+}
+
+bool crosses(const Bounds& box, Point2 a, Point2 b) {
+  const Share share = share_in(box, a, b);
+  return share.from <= share.to;
 }
 
 }  // namespace curbline::tools

@@ -30,6 +30,15 @@ bool is_simple(const Polygon& polygon);  ///< three corners or more, some area, 
 bool contains(const Polygon& polygon, Point2 point);
 Bounds bounds(const Polygon& polygon);
 
+/// A part of a segment, as shares of the way from its start to its end.
+struct Share {
+  double from = 0, to = 1;
+  bool any() const { return from < to; }
+};
+
+/// The part of the segment from a to b that lies in the rectangle (Liang and Barsky 1984); from > to if none does.
+Share share_in(const Bounds& box, Point2 a, Point2 b);
+
 /// True if the segment from a to b has a point in the rectangle.
 bool crosses(const Bounds& box, Point2 a, Point2 b);
 
