@@ -260,9 +260,10 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   curb.probability = piece.probability;
   curb.height_m = piece.low_is_near ? piece.height_m : -piece.height_m;
   // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
-  // their planes may be the planes' fault not at all, in part or wholly, the less the likelier, since as a rule they
-  // hold points of both sides: by a density that falls evenly to 0, a sixth of its square.
-  curb.height_sd_m = square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 6));
+  // their planes may be the planes' fault too, not at all or up to the half, the less the likelier, since as a rule
+  // they hold points of both sides, and those that show it have no part in the fit: by a density that falls evenly to
+  // 0, a sixth of the square of that half.
+  curb.height_sd_m = square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 24));
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
   curb.kind = kind_of(stages.mixture.plane(border.low), beyond(stages, border), piece.line,

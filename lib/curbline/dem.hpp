@@ -84,6 +84,15 @@ class Dem {
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
   /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
   float spread_m2(const Cell& cell) const { return cell.scatter_m2 - prior_.noise_m2 * cell.points; }
+  /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
+  /// its plane make? Then it holds more than the plane.
+  bool mixed(const Cell& cell, const Plane& plane) const {
+    const float rise_x_m = plane.slope_x * settings_.cell_x_m, rise_y_m = plane.slope_y * settings_.cell_y_m;
+    const float slope_m2 = (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
+    const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
+    const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / prior_.noise_m2 - freedom;
+    return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
+  }
   /// How far a cell's mean height lies above a plane, at its centroid.
   float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
     return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));

@@ -81,8 +81,9 @@ struct Plane {
   float x_m = 0.0f, y_m = 0.0f;              ///< centroid
   float z_m = 0.0f;                          ///< height there
   float slope_x = 0.0f, slope_y = 0.0f;      ///< dz/dx, dz/dy
-  float variance_m2 = 0.0f;                  ///< of a point about the plane
-  float cells = 0.0f;                        ///< how many support it; 0: no such plane
+  float variance_m2 = 0.0f;                  ///< of a point of its region about the plane
+  float fit_variance_m2 = 0.0f;              ///< of a point of the cells that it is fitted to
+  float cells = 0.0f;                        ///< how many these are; 0: no such plane
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
   bool alive() const { return cells > 0.0f; }
@@ -93,7 +94,7 @@ struct Plane {
   float height_variance_m2(float px_m, float py_m) const {
     const float dx = px_m - x_m, dy = py_m - y_m;
     const float away = dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy;
-    return variance_m2 * (1.0f / cells + (away > 0.0f ? away : 0.0f));
+    return fit_variance_m2 * (1.0f / cells + (away > 0.0f ? away : 0.0f));
   }
 };
 

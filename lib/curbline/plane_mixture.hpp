@@ -1,6 +1,6 @@
 // The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become
 // planes again and take the label with which their cells overlap most, so that a plane keeps its label while it grows,
-// is cut and merged; a label that no region took dies. Cost: two passes over the window, K^3 for the matching.
+// is cut and merged; a label that no region took dies. Cost: three passes over the window, K^3 for the matching.
 #pragma once
 
 #include <array>
@@ -85,9 +85,14 @@ class PlaneMixture {
     Node node;
     const PlaneMoments* moments;
   };
+  /// Below as many nothing is known of a plane beside its three parameters.
+  static constexpr float least_clean_cells = 4.0f;
+
   int largest_regions(const typename Segmentation<limits>::Work& work, Counters& counters);
   void forget_changes();
   void match(int regions);
+  template <typename RankOf>
+  void fit(const Dem<limits>& dem, int regions, RankOf&& rank_of);
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -125,13 +130,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   });
 
   match(regions);
-  for (int r = 0; r < regions; ++r) {
-    const auto n = static_cast<std::size_t>(r);
-    Plane& plane = planes_[label_of_rank_[n]];
-    const PlaneMoments& moments = *largest_[n].moments;
-    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label_of_rank_[n]]) continue;
-    plane = fit_plane(moments, moments.cells, settings_.prior);
-  }
+  fit(dem, regions, rank_of);
 
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
@@ -145,6 +144,34 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   ground_.update(
       dem, planes_, view, none, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
+}
+
+/// Fits planes to their regions, then to those of their cells that hold nothing else: what mixes both sides of a step
+/// would tilt the plane of a small region toward the other.
+template <Limits limits>
+template <typename RankOf>
+void PlaneMixture<limits>::fit(const Dem<limits>& dem, int regions, RankOf&& rank_of) {
+  std::array<bool, limits.planes> fitted{};
+  for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
+    Plane& plane = planes_[label_of_rank_[r]];
+    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label_of_rank_[r]]) continue;
+    plane = fit_plane(*largest_[r].moments, largest_[r].moments->cells, settings_.prior);
+    fitted[r] = true;
+  }
+  std::array<PlaneMoments, limits.planes> clean{};
+  dem.for_each_valid([&](int i, int j, int s) {
+    const LabelType rank = rank_of(s);
+    if (rank == none || !fitted[rank]) return;
+    const Cell& cell = dem.cell(s);
+    if (!dem.mixed(cell, planes_[label_of_rank_[rank]])) clean[rank].add_cell(dem.moments(i, j, cell));
+  });
+  for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
+    if (clean[r].cells < least_clean_cells) continue;
+    Plane& plane = planes_[label_of_rank_[r]];
+    const float of_region_m2 = plane.variance_m2;
+    plane = fit_plane(clean[r], clean[r].cells, settings_.prior);
+    plane.variance_m2 = of_region_m2;
+  }
 }
 
 template <Limits limits>

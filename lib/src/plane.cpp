@@ -129,7 +129,7 @@ Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   plane.slope_y = slopes.y;
   const float mean_square = slopes.residual_m2 / m.weight;
   const float floor_m2 = prior.common_share * prior.noise_m2;
-  plane.variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
+  plane.variance_m2 = plane.fit_variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
   plane.cells = cells;
   plane.pxx = (m.yy + prior.noise_m2) * per_cell;
   plane.pxy = -m.xy * per_cell;

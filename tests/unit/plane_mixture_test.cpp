@@ -45,6 +45,34 @@ TEST_CASE("plane mixture: each large region becomes a plane with its level and s
   CHECK(low.cells == 288.0f);
 }
 
+//             ____     a pavement of which the window holds a strip; the cells at its edge hold the road too
+//            |
+//  __________|
+TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the plane of a small region") {
+  for (const double edge : {2.03, 2.05, 2.07}) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise;
+    for (const Point& p :
+         test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, [&](double x, double) { return x < edge ? 0.0 : 0.06; }))
+      stages->dem.add(p);
+    stages->infer();
+    const Plane& strip = stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(22, 12)));
+    CHECK(strip.height_m(static_cast<float>(edge), 1.2f) == Approx(0.06).margin(0.002));
+    CHECK(strip.slope_x == Approx(0.0).margin(0.02));
+  }
+}
+
+TEST_CASE("plane mixture: a face whose cells all spread is fitted all the same") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.02, noise, [](double x, double) { return 0.8 * x; }))
+    stages->dem.add(p);
+  stages->infer();
+  const Plane& plane = stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(12, 12)));
+  CHECK(plane.slope_x == Approx(0.8).margin(0.01));
+  CHECK(plane.cells > 0.0f);
+}
+
 TEST_CASE("plane mixture: labels stay with their planes while regions grow") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
