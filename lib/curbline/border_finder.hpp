@@ -238,10 +238,7 @@ auto BorderFinder<limits>::border_of(const FaceEnd& end) const -> Border {
   const float centroid = sign * offset(end.line, dem_.cell(slot(end.line, end.last.along)));
   const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
   Border border = border_at(end.line, (static_cast<float>(end.last.along) + 0.5f + sign * edge) * pitch_m(end.line));
-  const auto of_cell = belief(end.line, end.last.along);
-  for (std::size_t c = 0; c < of_cell.label.size(); ++c) {
-    if (of_cell.label[c] == end.last.label) border.probability = of_cell.probability[c];
-  }
+  border.probability = belief(end.line, end.last.along).of(end.last.label);
   border.half_gap_m = pitch_m(end.line);
   border.low = end.last.label;
   border.high = none;

@@ -38,6 +38,15 @@ class LabelField {
   struct Belief {
     std::array<LabelType, candidates> label;    ///< `none` where there are fewer
     std::array<float, candidates> probability;  ///< sums to 1
+
+    /// Probability of one label, 0 if it is no candidate.
+    float of(LabelType wanted) const {
+      float found = 0.0f;
+      for (std::size_t c = 0; c < label.size(); ++c) {
+        if (label[c] == wanted) found = probability[c];
+      }
+      return found;
+    }
   };
 
   /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.

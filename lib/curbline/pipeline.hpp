@@ -347,12 +347,7 @@ void Pipeline<limits>::follow_curbs() {
 
 template <Limits limits>
 float Pipeline<limits>::label_probability(int i, int j) const {
-  const auto belief = label_field_.belief(dem_, i, j);
-  float probability = 0.0f;
-  for (std::size_t c = 0; c < belief.label.size(); ++c) {
-    if (belief.label[c] == label(i, j)) probability = belief.probability[c];
-  }
-  return probability;
+  return label_field_.belief(dem_, i, j).of(label(i, j));
 }
 
 }  // namespace curbline
