@@ -23,7 +23,7 @@
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/ground.hpp"           // which planes are ground
 #include "curbline/label_field.hpp"      // belief propagation
-#include "curbline/plane_set.hpp"        // planes near by, as bits
+#include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell
 #include "curbline/curb_tracer.hpp"      // out: curbs

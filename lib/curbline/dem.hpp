@@ -137,6 +137,13 @@ class Dem {
   bool mapped_before(int slot) const {
     return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) > 1;
   }
+  /// Mean of its points' growth by the tilt's latency.
+  float growth_m_s(int slot) const {
+    return static_cast<float>(growth_[static_cast<std::size_t>(slot)]) * (1.0f / growth_scale);
+  }
+  /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
+  /// it has not, to where they would have been put.
+  void delay(float this_sweep_s, float earlier_s);
   /// The cell under a point; -1 outside the window.
   int slot_at(float x_m, float y_m) const;
 
@@ -148,6 +155,7 @@ class Dem {
   }
 
  private:
+  static constexpr int growth_scale = 1024;
   static int wrap(std::int32_t index, int size) {
     const int r = index % size;
     return r < 0 ? r + size : r;
@@ -157,6 +165,7 @@ class Dem {
     auto& distances = distances_[static_cast<std::size_t>(slot)];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
   }
+  void add_growth(std::size_t s, float growth_m_s, float weight);
   void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
@@ -169,6 +178,7 @@ class Dem {
   /// Bit 0; above it the number of the sweep that touched the cell last.
   std::array<std::uint8_t, capacity> touched_{};
   std::uint8_t sweep_ = 0;
+  std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;
 };
@@ -179,6 +189,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior, 
   prior_ = prior;
   cells_.fill(Cell{});
   touched_.fill(0);
+  growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;
   first_row_ = first_col_ = 0;
@@ -250,6 +261,7 @@ void Dem<limits>::leave(int i, int j) {
     if (g > 0) set_distance(slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
   }
   cells_[static_cast<std::size_t>(s)] = Cell{};
+  growth_[static_cast<std::size_t>(s)] = 0;
   distances_[static_cast<std::size_t>(s)] = 0;
   touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;
@@ -278,11 +290,29 @@ bool Dem<limits>::add(const Point& point) {
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const auto s = static_cast<std::size_t>(slot(i, j));
   if (!cells_[s].valid()) meet_neighbours(i, j);
+  const float weight = prior_.noise_m2 / variance_m2;
   cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m,
-                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m, prior_.noise_m2 / variance_m2);
+                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m, weight);
+  add_growth(s, point.growth_m_s, weight);
   touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;
   return true;
+}
+
+/// After the point has been added. No servo makes ground grow by 31 m/s.
+template <Limits limits>
+void Dem<limits>::add_growth(std::size_t s, float growth_m_s, float weight) {
+  const float before = static_cast<float>(growth_[s]), point = growth_m_s * growth_scale;
+  const float now = before + weight / cells_[s].weight * (point - before);
+  if (now > -31.0f * growth_scale && now < 31.0f * growth_scale)
+    growth_[s] = static_cast<std::int16_t>(now + (now < 0.0f ? -0.5f : 0.5f));
+}
+
+template <Limits limits>
+void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
+  for_each_valid([&](int, int, int s) {
+    cells_[static_cast<std::size_t>(s)].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s);
+  });
 }
 
 /// Two valid cells with no valid cell between them on a row or column.

@@ -13,9 +13,9 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane_mixture.hpp"
-#include "curbline/plane_set.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -100,7 +100,7 @@ class LabelField {
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
   using Logs = std::array<float, candidates>;
   using Nats = std::array<std::int32_t, candidates>;  ///< in 1 / node_scale nat
-  using Planes = PlaneSet<limits.planes>;
+  using Planes = IndexSet<limits.planes>;
 
   static std::size_t block_of(const Dem<limits>& dem, int i, int j) {
     return static_cast<std::size_t>((i / block_side) * (dem.cols() / block_side) + j / block_side);

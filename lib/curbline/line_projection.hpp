@@ -28,21 +28,16 @@ struct LineMotion {
   bool still = true;  ///< both are the identity
 };
 
-struct ProjectedPoint {
-  Point point;
-  float growth_m_s;  ///< of its height, by a second of tilt latency
-};
-
 /// The points of a line, in the order of the beams; those that did not return are left out.
 template <Limits limits>
 class ProjectedLine {
  public:
   ProjectedLine() {}
-  void add(const ProjectedPoint& point) { points_[count_++] = point; }
-  std::span<const ProjectedPoint> points() const { return {points_.data(), count_}; }
+  void add(const Point& point) { points_[count_++] = point; }
+  std::span<const Point> points() const { return {points_.data(), count_}; }
 
  private:
-  std::array<ProjectedPoint, limits.beams> points_;
+  std::array<Point, limits.beams> points_;
   std::size_t count_ = 0;
 };
 
@@ -131,7 +126,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
     const float variance_m2 =
         height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
-    out.add({{p_map.x(), p_map.y(), p_map.z(), variance_m2}, by_tilt * angle.rate_rad_s});
+    out.add({p_map.x(), p_map.y(), p_map.z(), variance_m2, by_tilt * angle.rate_rad_s});
   }
 }
 

@@ -97,9 +97,9 @@ class Pipeline {
   const Settings& settings() const { return settings_; }
 
  private:
-  Status place_line(const ScanLine& line, LineMotion& motion);
+  Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
   void compare_with_map(const ProjectedLine<limits>& line);
-  void compare_with_cell(const ProjectedPoint& p, int slot);
+  void compare_with_cell(const Point& p, int slot);
   void move_window(float x_m, float y_m);
   void take_point(const Point& point);
   void follow_regions();
@@ -123,7 +123,6 @@ class Pipeline {
   float tilt_rate_rad_s_ = 0.0f;  ///< of the line in hand
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
-  TiltSnapshot<limits> tilt_snapshot_{};
   PoseTrack<limits> pose_track_{};
   LineProjection<limits> line_projection_{};
   Dem<limits> dem_{};
@@ -190,7 +189,8 @@ template <Limits limits>
 template <typename Take>
 Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   LineMotion motion;
-  const Status status = place_line(line, motion);
+  auto& work = workspace_.line();
+  const Status status = place_line(line, motion, work.tilt);
   counters_.tilt_dropped = tilt_track_.dropped();
   if (status != Status::ok) {
     ++counters_.lines_dropped;
@@ -204,10 +204,9 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     p_map_tilt_ = motion.T_map_base_last * p_base_tilt();
     move_window(robot.x(), robot.y());
   }
-  auto& projected = workspace_.line();
-  line_projection_.project(line, tilt_snapshot_, motion, counters_, projected);
-  if (!settings_.tilt.fixed) compare_with_map(projected);
-  for (const ProjectedPoint& p : projected.points()) take(p.point);
+  line_projection_.project(line, work.tilt, motion, counters_, work.points);
+  if (!settings_.tilt.fixed) compare_with_map(work.points);
+  for (const Point& p : work.points.points()) take(p);
   return Status::ok;
 }
 
@@ -217,34 +216,36 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
   bool neighbour = false;
-  for (const ProjectedPoint& p : line.points()) {
-    const int slot = p.point.z_m <= ceiling_m_ ? dem_.slot_at(p.point.x_m, p.point.y_m) : -1;
+  for (const Point& p : line.points()) {
+    const int slot = p.z_m <= ceiling_m_ ? dem_.slot_at(p.x_m, p.y_m) : -1;
     if (neighbour && slot >= 0 && dem_.cell(slot).valid()) compare_with_cell(p, slot);
     neighbour = slot >= 0 && dem_.mapped_before(slot);
   }
-  tilt_latency_.end_line(tilt_rate_rad_s_);
+  const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
+  if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
 }
 
 /// By the slope of the cell's plane from its centroid to the point.
 template <Limits limits>
-void Pipeline<limits>::compare_with_cell(const ProjectedPoint& p, int slot) {
+void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
   const Label<limits> label = label_field_.label(slot);
   if (label == no_label<limits>) return;
   const Cell& cell = dem_.cell(slot);
   const PlanePrior& prior = settings_.planes.prior;
   if (cell.scatter_m2 > 4.0f * prior.noise_m2 * cell.points) return;  // more than one surface, or a steep one
   const Plane& plane = plane_mixture_.plane(label);
-  const float x = p.point.x_m - dem_.origin_x_m(), y = p.point.y_m - dem_.origin_y_m();
+  const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
   const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
-  const float rise =
-      plane.slope_x * (x - dem_.centroid_x_m(i, cell)) + plane.slope_y * (y - dem_.centroid_y_m(j, cell));
-  const float variance_m2 = p.point.variance_m2 + prior.texture_m2 + dem_.height_variance_m2(cell);
-  tilt_latency_.compare(p.point.z_m - cell.height_m - rise, variance_m2, p.growth_m_s);
+  const float dx = x - dem_.centroid_x_m(i, cell), dy = y - dem_.centroid_y_m(j, cell);
+  const float rise = plane.slope_x * dx + plane.slope_y * dy;
+  const float variance_m2 = p.variance_m2 + prior.texture_m2 + dem_.height_variance_m2(cell);
+  tilt_latency_.compare(
+      {p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy), p.growth_m_s, dem_.growth_m_s(slot)});
 }
 
 /// Everything that can be wrong with a line, before anything is changed; the tilt snapshot and the motion for it.
 template <Limits limits>
-Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion) {
+Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt) {
   if (!ready_) return Status::not_initialised;
   if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
   if (line.time_ns <= last_line_ns_) return Status::line_out_of_order;
@@ -255,15 +256,15 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion) {
     motion = {make_transform(first), make_transform(last), false};
   }
   if (settings_.tilt.fixed) return Status::ok;
-  tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
-  const TiltAngle first = tilt_snapshot_.at(line.time_ns), last = tilt_snapshot_.at(last_beam_ns);
-  tilt_snapshot_.rewind();
+  tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
+  const TiltAngle first = tilt.at(line.time_ns), last = tilt.at(last_beam_ns);
+  tilt.rewind();
   if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return Status::no_tilt;
   const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
   tilt_rate_rad_s_ = any.rate_rad_s;
   const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s);
   if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
-  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt_snapshot_, tilt_latency_.offset_s());
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
   return Status::ok;
 }
 

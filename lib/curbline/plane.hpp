@@ -92,9 +92,12 @@ struct Plane {
   /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell
   /// share their errors of tilt and mount.
   float height_variance_m2(float px_m, float py_m) const {
-    const float dx = px_m - x_m, dy = py_m - y_m;
-    const float away = dx * dx * pxx + 2.0f * dx * dy * pxy + dy * dy * pyy;
-    return fit_variance_m2 * (1.0f / cells + (away > 0.0f ? away : 0.0f));
+    return fit_variance_m2 / cells + rise_variance_m2(px_m - x_m, py_m - y_m);
+  }
+  /// Variance of what the plane rises over a distance.
+  float rise_variance_m2(float dx_m, float dy_m) const {
+    const float away = dx_m * dx_m * pxx + 2.0f * dx_m * dy_m * pxy + dy_m * dy_m * pyy;
+    return away > 0.0f ? fit_variance_m2 * away : 0.0f;
   }
 };
 

@@ -11,6 +11,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/ground.hpp"
+#include "curbline/index_set.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
@@ -37,7 +38,7 @@ class PlaneMixture {
     any_fresh_ = any_relabelled_ = false;
     ground_.clear();
     region_label_.fill(none);
-    relabelled_.fill(0);
+    relabelled_.clear();
   }
 
   /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
@@ -68,7 +69,7 @@ class PlaneMixture {
   /// The plane of a cell's region; none if the region is too small for one.
   LabelType region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
   /// True if that changed in the last update().
-  bool relabelled(int slot) const { return relabelled_[static_cast<std::size_t>(slot)] != 0; }
+  bool relabelled(int slot) const { return relabelled_.contains(slot); }
   /// Is the plane ground, which cells may bear? ground.hpp
   bool ground(int label) const { return ground_.is(label); }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
@@ -85,14 +86,22 @@ class PlaneMixture {
     Node node;
     const PlaneMoments* moments;
   };
+  /// Regions by size, and the labels that they take. Of one update().
+  struct Ranking {
+    std::size_t regions = 0;                        ///< how many are planes
+    std::array<LabelType, limits.regions> of_node;  ///< rank of a region's node, `none` if it is too small
+    std::array<Candidate, limits.planes> region;    ///< by rank
+    std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap{};  ///< [rank][label], cells
+    std::array<LabelType, limits.planes> label;                                    ///< by rank
+  };
   /// Below as many nothing is known of a plane beside its three parameters.
   static constexpr float least_clean_cells = 4.0f;
 
-  int largest_regions(const typename Segmentation<limits>::Work& work, Counters& counters);
+  void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
   void forget_changes();
-  void match(int regions);
+  void match(Ranking& ranking);
   template <typename RankOf>
-  void fit(const Dem<limits>& dem, int regions, RankOf&& rank_of);
+  void fit(const Dem<limits>& dem, const Ranking& ranking, RankOf&& rank_of);
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -100,13 +109,7 @@ class PlaneMixture {
   bool any_fresh_ = false, any_relabelled_ = false;
   Ground<limits> ground_{};
   std::array<LabelType, Dem<limits>::capacity> region_label_{};
-  std::array<std::uint8_t, Dem<limits>::capacity> relabelled_{};
-
-  // Working memory of one update().
-  std::array<LabelType, limits.regions> rank_{};  ///< of a region's node by size, `none` if it is too small
-  std::array<Candidate, limits.planes> largest_{};
-  std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap_{};  ///< [rank][label], cells
-  std::array<LabelType, limits.planes> label_of_rank_{};
+  IndexSet<Dem<limits>::capacity> relabelled_{};
 };
 
 template <Limits limits>
@@ -115,10 +118,10 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
                                   const Viewpoint& view, LabelOf&& label_of, Counters& counters) {
   forget_changes();
   if (!dem.any_touched()) return;
-  const int regions = largest_regions(work, counters);
-  for (auto& row : overlap_) row.fill(0);
+  Ranking ranking;
+  rank_regions(work, ranking, counters);
   const auto rank_of = [&](int slot) {
-    return rank_[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])];
+    return ranking.of_node[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])];
   };
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
@@ -126,19 +129,19 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
     const LabelType before = region_label_[static_cast<std::size_t>(s)];
     const LabelType old = before != none ? before : label_of(s);
-    if (old != none) ++overlap_[rank][old];
+    if (old != none) ++ranking.overlap[rank][old];
   });
 
-  match(regions);
-  fit(dem, regions, rank_of);
+  match(ranking);
+  fit(dem, ranking, rank_of);
 
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
-    const LabelType label = rank == none ? none : label_of_rank_[rank];
+    const LabelType label = rank == none ? none : ranking.label[rank];
     LabelType& now = region_label_[static_cast<std::size_t>(s)];
     if (now == label) return;
     now = label;
-    relabelled_[static_cast<std::size_t>(s)] = 1;
+    relabelled_.insert(s);
     any_relabelled_ = true;
   });
   ground_.update(
@@ -150,12 +153,12 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
 /// would tilt the plane of a small region toward the other.
 template <Limits limits>
 template <typename RankOf>
-void PlaneMixture<limits>::fit(const Dem<limits>& dem, int regions, RankOf&& rank_of) {
+void PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking, RankOf&& rank_of) {
   std::array<bool, limits.planes> fitted{};
-  for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
-    Plane& plane = planes_[label_of_rank_[r]];
-    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label_of_rank_[r]]) continue;
-    plane = fit_plane(*largest_[r].moments, largest_[r].moments->cells, settings_.prior);
+  for (std::size_t r = 0; r < ranking.regions; ++r) {
+    Plane& plane = planes_[ranking.label[r]];
+    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[ranking.label[r]]) continue;
+    plane = fit_plane(*ranking.region[r].moments, ranking.region[r].moments->cells, settings_.prior);
     fitted[r] = true;
   }
   std::array<PlaneMoments, limits.planes> clean{};
@@ -163,11 +166,11 @@ void PlaneMixture<limits>::fit(const Dem<limits>& dem, int regions, RankOf&& ran
     const LabelType rank = rank_of(s);
     if (rank == none || !fitted[rank]) return;
     const Cell& cell = dem.cell(s);
-    if (!dem.mixed(cell, planes_[label_of_rank_[rank]])) clean[rank].add_cell(dem.moments(i, j, cell));
+    if (!dem.mixed(cell, planes_[ranking.label[rank]])) clean[rank].add_cell(dem.moments(i, j, cell));
   });
-  for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
+  for (std::size_t r = 0; r < ranking.regions; ++r) {
     if (clean[r].cells < least_clean_cells) continue;
-    Plane& plane = planes_[label_of_rank_[r]];
+    Plane& plane = planes_[ranking.label[r]];
     const float of_region_m2 = plane.variance_m2;
     plane = fit_plane(clean[r], clean[r].cells, settings_.prior);
     plane.variance_m2 = of_region_m2;
@@ -176,63 +179,63 @@ void PlaneMixture<limits>::fit(const Dem<limits>& dem, int regions, RankOf&& ran
 
 template <Limits limits>
 void PlaneMixture<limits>::forget_changes() {
-  if (any_relabelled_) relabelled_.fill(0);
+  if (any_relabelled_) relabelled_.clear();
   any_relabelled_ = false;
   fresh_.fill(false);
   any_fresh_ = false;
 }
 
-/// Keeps the largest regions in largest_ and their ranks in rank_.
+/// Ranks the largest regions.
 template <Limits limits>
-int PlaneMixture<limits>::largest_regions(const typename Segmentation<limits>::Work& work, Counters& counters) {
-  rank_.fill(none);
-  int kept = 0;
+void PlaneMixture<limits>::rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking,
+                                        Counters& counters) const {
+  ranking.of_node.fill(none);
+  auto& region = ranking.region;
+  std::size_t& kept = ranking.regions;
   Segmentation<limits>::for_each_region(work, [&](Node node, const PlaneMoments& moments) {
     if (moments.cells < settings_.min_cells) return;
-    if (kept == limits.planes) {
+    if (kept == region.size()) {
       ++counters.planes_full;
-      if (largest_[static_cast<std::size_t>(kept - 1)].moments->cells >= moments.cells) return;
+      if (region[kept - 1].moments->cells >= moments.cells) return;
     } else {
       ++kept;
     }
-    auto place = static_cast<std::size_t>(kept - 1);
-    for (; place > 0 && largest_[place - 1].moments->cells < moments.cells; --place)
-      largest_[place] = largest_[place - 1];
-    largest_[place] = {node, &moments};
+    std::size_t place = kept - 1;
+    for (; place > 0 && region[place - 1].moments->cells < moments.cells; --place) region[place] = region[place - 1];
+    region[place] = {node, &moments};
   });
-  for (int r = 0; r < kept; ++r) rank_[largest_[static_cast<std::size_t>(r)].node] = static_cast<LabelType>(r);
-  return kept;
+  for (std::size_t r = 0; r < kept; ++r) ranking.of_node[region[r].node] = static_cast<LabelType>(r);
 }
 
 /// Greatest overlap first; regions without one take free labels; labels without one die.
 template <Limits limits>
-void PlaneMixture<limits>::match(int regions) {
+void PlaneMixture<limits>::match(Ranking& ranking) {
   std::array<bool, limits.planes> taken{};
-  label_of_rank_.fill(none);
-  for (int round = 0; round < regions; ++round) {
+  ranking.label.fill(none);
+  for (std::size_t round = 0; round < ranking.regions; ++round) {
     std::size_t best_rank = 0, best_label = 0;
     std::uint32_t best = 0;
-    for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
-      if (label_of_rank_[r] != none) continue;
+    for (std::size_t r = 0; r < ranking.regions; ++r) {
+      if (ranking.label[r] != none) continue;
       for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
-        if (!taken[l] && overlap_[r][l] > best) {
-          best = overlap_[r][l];
+        if (!taken[l] && ranking.overlap[r][l] > best) {
+          best = ranking.overlap[r][l];
           best_rank = r;
           best_label = l;
         }
       }
     }
     if (best == 0) break;
-    label_of_rank_[best_rank] = static_cast<LabelType>(best_label);
+    ranking.label[best_rank] = static_cast<LabelType>(best_label);
     taken[best_label] = true;
   }
   std::size_t free = 0;
-  for (std::size_t r = 0; r < static_cast<std::size_t>(regions); ++r) {
-    if (label_of_rank_[r] != none) continue;
+  for (std::size_t r = 0; r < ranking.regions; ++r) {
+    if (ranking.label[r] != none) continue;
     while (taken[free]) ++free;
     taken[free] = true;
     fresh_[free] = any_fresh_ = true;
-    label_of_rank_[r] = static_cast<LabelType>(free);
+    ranking.label[r] = static_cast<LabelType>(free);
   }
   for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
     if (taken[l] || !planes_[l].alive()) continue;

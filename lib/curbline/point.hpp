@@ -9,6 +9,7 @@ struct Point {
   float y_m = 0.0f;
   float z_m = 0.0f;
   float variance_m2 = 0.0f;
+  float growth_m_s = 0.0f;  ///< of z, by a second that is added to the tilt's latency; 0 of what no servo tilts
 };
 
 /// Where the laser looks from, the tilt axis: x and y in the window's frame, z of the map frame.

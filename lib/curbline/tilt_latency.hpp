@@ -1,10 +1,13 @@
 // How late the tilt readings are, found on the way: a servo's stamps lag or lead the beams by some milliseconds, and
-// not by the same amount in every sweep. Where a sweep looks at ground that an earlier one has mapped, heights differ
-// by the sweep's tilt rate times what is missing in the latency. A Kalman filter with one state for upward and one for
-// downward sweeps makes each agree with the map; the first sweep is the datum. Each sweep may have a latency of its
-// own, except on a robot that drives: there the datum stays behind, ground is looked at again from nearer, and two
-// offsets would wander, upward and downward sweeps agreeing on a tilted ground. It has one constant offset, which tilts
-// both the other way. Cost: 20 operations a point.
+// not by the same amount in every sweep. Where a sweep looks at ground that an earlier one has mapped, its heights lie
+// off the map's by what is missing in both offsets, each times the growth of a height by a second of latency. A Kalman
+// filter keeps the offset of this sweep and of the ground mapped before it.
+//   - A robot that stands has the first sweep for a datum, and nothing else; each later one is made to agree with the
+//     map, upward and downward sweeps beginning with what the last of their direction had.
+//   - One that drives leaves its datum behind. Sweeps of opposite direction then tell of a constant: it moves them
+//     apart. Each may differ from it by a part of what is not known of it, or upward and downward sweeps would agree on
+//     a tilted ground. What becomes known of the ground mapped before mends the map (Correction).
+// Cost: 20 operations a point.
 #pragma once
 
 #include <array>
@@ -21,45 +24,71 @@ class TiltLatency {
 
   enum class Turn : std::uint8_t {
     none,
-    back,  ///< of a damaged reading, or play: the offset is another, the sweep goes on
+    back,  ///< of a damaged reading, or play: the sweep goes on
     new_sweep,
   };
   /// The angle and its rate at the beginning of a line: has the servo turned round since the last?
   Turn follow(float angle_rad, float rate_rad_s);
 
-  /// A point of the line on ground that an earlier sweep has mapped: how far it lies above it, the variance of that,
-  /// and by how much its height grows a second of latency.
-  void compare(float above_m, float variance_m2, float growth_m_s);
+  /// A point of the line on ground that an earlier sweep has mapped.
+  struct Sighting {
+    float above_m;             ///< how far it lies above that ground
+    float variance_m2;         ///< of that, its own
+    float common_variance_m2;  ///< and what it shares with the line's other points: the slope of the ground
+    float growth_m_s;          ///< of its height, by a second of latency
+    float map_growth_m_s;      ///< of the ground's
+  };
+  void compare(const Sighting& seen);
 
-  /// The line is over: its points together are one observation of the sweep's latency.
-  void end_line(float tilt_rate_rad_s);
+  /// By how much latency has turned out to be greater than what heights were mapped with.
+  struct Correction {
+    float this_sweep_s = 0.0f, earlier_s = 0.0f;
+    bool any() const { return this_sweep_s != 0.0f || earlier_s != 0.0f; }
+  };
+  /// The line is over: its points together are one observation. What it says of the map; nothing of a robot that
+  /// stands.
+  Correction end_line(float tilt_rate_rad_s);
 
   /// To be added to TiltSettings::latency_s, and its standard deviation.
-  float offset_s() const { return state().offset_s; }
+  float offset_s() const { return offset_s_; }
   float sd_s() const;
-  /// The larger of both sweeps' offsets: how far ahead of a line its readings may be wanted.
-  float latest_offset_s() const {
-    const State& other = one_offset_ ? state_[0] : state_[1];
-    return state_[0].offset_s > other.offset_s ? state_[0].offset_s : other.offset_s;
-  }
+  /// The larger of this sweep's offset and the one that the next begins with: how far ahead of a line its readings may
+  /// be wanted.
+  float latest_offset_s() const;
 
  private:
-  struct State {
-    float offset_s = 0.0f;
-    float variance_s2 = 0.0f;
+  enum State : std::size_t { constant, now, earlier };  ///< offsets: of all sweeps, of this one, of the ground before
+  static constexpr std::size_t states = 3;
+  struct Known {
+    float offset_s = 0.0f, variance_s2 = 0.0f;
   };
-  const State& state() const { return state_[one_offset_ ? 0 : sweep_]; }
-  State& state() { return state_[one_offset_ ? 0 : sweep_]; }
 
-  float new_sweep_variance_s2_ = 0.0f;  ///< by how much a sweep's latency differs from the last one's of its direction
+  struct Observation {
+    float missing_s;  ///< this sweep's offset lacks so much more than ...
+    float variance_s2;
+    float mapped_share;  ///< ... this part of what the ground's lacks
+  };
+
+  void take_up_direction();
+  void leave_sweep();
+  Correction update(const Observation& seen);
+
+  bool drives_ = false;
+  float prior_variance_s2_ =
+      0.0f;  ///< of the constant; standing, of what a sweep's differs by from the last of its direction
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong and not the servo late
   float slow_rad_s_ = 0.0f;        ///< below it a wrong latency is less than the error of an angle
-  bool begun_ = false, one_offset_ = false;
+  bool begun_ = false;
   float turned_at_rad_ = 0.0f;  ///< where the sweep began
-  std::size_t sweep_ = 0;       ///< 0: upward (the angle falls), 1: downward
-  std::array<State, 2> state_{};
-  float precision_ = 0.0f, weighted_ = 0.0f, growth_ = 0.0f, points_ = 0.0f;  ///< sums of a line
+  std::size_t direction_ = 0;   ///< 0: upward (the angle falls), 1: downward
+
+  float constant_s_ = 0.0f, offset_s_ = 0.0f;
+  std::array<std::array<float, states>, states> covariance_{};
+  std::array<Known, 2> last_{};  ///< standing: of the last sweep of each direction
+
+  float precision_ = 0.0f, weighted_ = 0.0f, mapped_ = 0.0f, growth_ = 0.0f, common_m2_ = 0.0f,
+        points_ = 0.0f;  ///< sums of a line
 };
 
 }  // namespace curbline

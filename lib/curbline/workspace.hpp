@@ -1,5 +1,6 @@
-// Memory that stages use one after the other within a call: the points of a line, the segmentation's region graph, the
-// cells that the label field visits, the border points of curbs and the curbs they make. None outlives the call.
+// Memory that stages use one after the other within a call: the tilt readings and points of a line, the segmentation's
+// region graph, the cells that the label field visits, the border points of curbs and the curbs they make. None
+// outlives the call.
 #pragma once
 
 #include <new>
@@ -8,6 +9,7 @@
 #include "curbline/label_field.hpp"
 #include "curbline/line_projection.hpp"
 #include "curbline/segmentation.hpp"
+#include "curbline/tilt_track.hpp"
 
 namespace curbline {
 
@@ -16,8 +18,13 @@ class Workspace {
  public:
   Workspace() {}
 
+  struct Line {
+    TiltSnapshot<limits> tilt;
+    ProjectedLine<limits> points;
+  };
+
   /// Each begins anew and ends what another holds.
-  ProjectedLine<limits>& line() { return *::new (static_cast<void*>(&line_)) ProjectedLine<limits>; }
+  Line& line() { return *::new (static_cast<void*>(&line_)) Line; }
   typename Segmentation<limits>::Work& segmentation() {
     return *::new (static_cast<void*>(&segmentation_)) typename Segmentation<limits>::Work;
   }
@@ -30,7 +37,7 @@ class Workspace {
 
  private:
   union {
-    ProjectedLine<limits> line_;
+    Line line_;
     typename Segmentation<limits>::Work segmentation_;
     typename LabelField<limits>::Visits visits_;
     typename CurbTracer<limits>::Work curbs_;

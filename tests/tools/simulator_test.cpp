@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 using namespace curbline;
 using namespace curbline::tools;
@@ -181,6 +182,29 @@ TEST_CASE("simulation: a tilt frame bears the angle of its latency ago, rounded 
     worst = std::max(worst, std::abs(error));
   }
   CHECK(worst > 0.002);
+}
+
+TEST_CASE("simulation: each sweep's frames have a latency of their own, if the robot says so") {
+  Robot robot = plain_robot();
+  robot.simulated.tilt_latency_sweep_sd_s = 0.01;
+  const Samples samples = run(scene_of(flat), robot, 8.0);  // eight sweeps
+  std::map<int, std::vector<double>> of_sweep;
+  for (const can::Frame& frame : samples.frames) {
+    const double t = seconds_of(frame.time_ns), in_sweep = t - std::floor(t);
+    if (in_sweep < 0.3 || in_sweep > 0.7) continue;  // the servo's rate is even
+    const double rate = (sweep_angle_rad(robot.sweep, t + 0.01) - sweep_angle_rad(robot.sweep, t - 0.01)) / 0.02;
+    const double angle = can::decode(robot.tilt_signal, frame).value();
+    of_sweep[static_cast<int>(std::floor(t))].push_back((sweep_angle_rad(robot.sweep, t) - angle) / rate);
+  }
+  REQUIRE(of_sweep.size() == 8);
+  std::vector<double> latencies_s;
+  for (const auto& [sweep, seen] : of_sweep) {
+    for (const double latency_s : seen) CHECK(latency_s == Approx(seen[0]).margin(1e-5));
+    latencies_s.push_back(seen[0]);
+  }
+  const auto [least, most] = std::minmax_element(latencies_s.begin(), latencies_s.end());
+  CHECK(*most - *least > 0.01);
+  CHECK(*most - *least < 0.06);
 }
 
 TEST_CASE("simulation: a drive on SYNC gives each angle behind the SYNC frame on which it was sampled") {

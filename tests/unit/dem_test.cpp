@@ -289,6 +289,48 @@ TEST_CASE("dem: what was touched is told until it is cleared") {
   CHECK_FALSE(dem.touched(dem.slot(0, 8)));
 }
 
+TEST_CASE(
+    "dem: a latency that was greater moves heights to where they would have been put, those of this sweep apart") {
+  Map dem = make_map(moving());
+  const auto add = [&](double x, float growth_m_s) {
+    Point point = at(x, 0.05, 0.1);
+    point.growth_m_s = growth_m_s;
+    REQUIRE(dem.add(point));
+  };
+  const auto height_m = [&](int i) { return dem.cell(dem.slot(i, 8)).height_m; };
+  add(0.05, 2.0f);
+  add(0.15, -1.0f);
+  add(0.15, 0.5f);  // seen twice: the mean
+  add(0.25, 0.0f);
+  dem.begin_sweep();
+  add(0.35, 3.0f);
+  dem.delay(0.010f, 0.004f);
+  CHECK(height_m(0) == Approx(0.1 + 0.008).margin(1e-5));
+  CHECK(height_m(1) == Approx(0.1 - 0.001).margin(1e-5));
+  CHECK(height_m(2) == 0.1f);
+  CHECK(height_m(3) == Approx(0.1 + 0.030).margin(1e-5));
+}
+
+TEST_CASE("dem: a cell that comes into the window has no growth left of the one that was in its place") {
+  Map dem = make_map(moving());
+  Point point = at(0.05, 0.05);
+  point.growth_m_s = 2.0f;
+  REQUIRE(dem.add(point));
+  const int slot = dem.slot_at(0.05f, 0.05f);
+  dem.follow(4.8f, 0.0f, [](int) {});
+  REQUIRE(dem.slot_at(4.85f, 0.05f) == slot);
+  CHECK(dem.growth_m_s(slot) == 0.0f);
+}
+
+TEST_CASE("dem: a growth that no servo makes is not kept") {
+  Map dem = make_map(moving());
+  Point point = at(0.05, 0.05);
+  point.growth_m_s =
+      GENERATE(1e6f, -1e6f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN());
+  REQUIRE(dem.add(point));
+  CHECK(dem.growth_m_s(dem.slot_at(0.05f, 0.05f)) == 0.0f);
+}
+
 TEST_CASE("dem: a window smaller than its limits uses the rows and columns it was given") {
   Map dem = make_map({.rows = 8, .cols = 4, .origin_x_m = 0.0f, .origin_y_m = 0.0f});
   dem.follow(1.2f, 0.4f, [](int) {});

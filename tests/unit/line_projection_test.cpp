@@ -30,7 +30,7 @@ struct Bench {
     track.snapshot(snapshot);
     ProjectedLine<limits> line;
     projection.project({time_ns, ranges}, snapshot, motion, counters, line);
-    for (const ProjectedPoint& p : line.points()) points.push_back(p.point);
+    for (const Point& p : line.points()) points.push_back(p);
     return points;
   }
 

@@ -36,7 +36,8 @@ void sweep(TiltLatency& latency, bool downward, float lag_s, test::Noise& noise,
     const float missing_s = lag_s - latency.offset_s();
     for (int point = 0; point < 20; ++point) {
       const float other = point % 5 == 0 ? outliers_m : 0.0f;
-      latency.compare(-growth * missing_s + point_sd_m * static_cast<float>(noise.normal()) + other, point_sd_m * point_sd_m, growth);
+      latency.compare({-growth * missing_s + point_sd_m * static_cast<float>(noise.normal()) + other,
+                       point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
     }
     latency.end_line(rate);
   }
@@ -64,19 +65,87 @@ TEST_CASE("tilt latency: upward and downward sweeps have their own, which may ch
   }
 }
 
-TEST_CASE("tilt latency: on a drive many sweeps know it better than one, and what is known does not wander") {
-  PoseSettings pose;
-  pose.still = false;
-  TiltLatency latency = started(pose);
-  test::Noise noise(3);
-  sweep(latency, false, 0.006f, noise);
-  const float of_one_s = latency.sd_s();
-  for (int k = 0; k < 5; ++k) {
-    sweep(latency, true, 0.006f, noise);
-    sweep(latency, false, 0.006f, noise);
+/// A drive over ground that each sweep sees from nearer than the one before, which went the other way: the more so, the
+/// longer ago.
+struct Drive {
+  TiltLatency latency = [] {
+    PoseSettings pose;
+    pose.still = false;
+    return started(pose);
+  }();
+  test::Noise noise{3};
+  int sweeps = 0;
+  float map_lag_s = 0.0f, map_offset_s = 0.0f;  ///< of the ground before: its servo's, and what it was put down with
+
+  void sweep(float lag_s) {
+    const bool downward = sweeps++ % 2 == 1;
+    const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
+    for (int line = 0; line < 40; ++line) {
+      const float advance = 0.025f * static_cast<float>(line);
+      latency.follow(downward ? 0.2f + advance : 1.2f - advance, rate);
+      const float map_growth = -growth * (1.0f + advance);
+      const float above_m = -growth * (lag_s - latency.offset_s()) + map_growth * (map_lag_s - map_offset_s);
+      for (int point = 0; point < 20 && sweeps > 1; ++point) {
+        const float by_chance_m = point_sd_m * static_cast<float>(noise.normal());
+        latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, growth, map_growth});
+      }
+      map_offset_s += latency.end_line(rate).earlier_s;
+    }
+    ground_before_s = map_offset_s;
+    map_lag_s = lag_s;
+    map_offset_s = latency.offset_s();
   }
-  CHECK(latency.sd_s() < 0.5f * of_one_s);
-  CHECK(latency.offset_s() == Approx(0.006f).margin(0.001));
+  float ground_before_s = 0.0f;  ///< what the ground before the last sweep is put down with in the end
+};
+
+TEST_CASE("tilt latency: on a drive the first turn tells it, and what was mapped before is mended") {
+  const float lag_s = GENERATE(-0.015f, 0.006f, 0.02f);
+  Drive drive;
+  drive.sweep(lag_s);
+  CHECK(drive.latency.offset_s() == 0.0f);
+  drive.sweep(lag_s);
+  CHECK(drive.latency.offset_s() == Approx(lag_s).margin(0.003));
+  CHECK(std::abs(drive.latency.offset_s() - lag_s) < 3.0f * drive.latency.sd_s());
+  CHECK(drive.ground_before_s == Approx(lag_s).margin(0.003));
+}
+
+TEST_CASE("tilt latency: on a drive many sweeps know it better than one, and what is known does not wander") {
+  Drive drive;
+  for (int k = 0; k < 2; ++k) drive.sweep(0.006f);
+  const float of_two_s = drive.latency.sd_s();
+  for (int k = 0; k < 100; ++k) {
+    drive.sweep(0.006f);
+    CHECK(drive.latency.offset_s() == Approx(0.006f).margin(0.0025));
+  }
+  CHECK(drive.latency.sd_s() < of_two_s);
+}
+
+TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
+  Drive drive;
+  test::Noise lot(7);
+  float missing_s2 = 0.0f, apart_s2 = 0.0f;
+  for (int k = 0; k < 100; ++k) {
+    const float lag_s = 0.006f + 0.003f * static_cast<float>(lot.normal()), before_s = drive.map_lag_s;
+    drive.sweep(lag_s);
+    if (k < 2) continue;
+    const float missing_s = lag_s - drive.latency.offset_s(), ground_missing_s = before_s - drive.ground_before_s;
+    missing_s2 += missing_s * missing_s / 98.0f;
+    apart_s2 += (missing_s + ground_missing_s) * (missing_s + ground_missing_s) / 98.0f;
+  }
+  CHECK(std::sqrt(missing_s2) < 0.002f);
+  CHECK(std::sqrt(apart_s2) < 0.001f);  // by which the ground seen by both is torn
+}
+
+TEST_CASE("tilt latency: ground of which the slope is not known says little") {
+  const float slope_sd = GENERATE(0.0f, 0.02f);
+  TiltLatency latency = started();
+  latency.follow(0.2f, rate_rad_s);
+  latency.follow(1.2f, -rate_rad_s);
+  const float rise_m = 0.05f * slope_sd;  // all points lie five centimetres beyond the ground's middle
+  for (int point = 0; point < 100; ++point) latency.compare({rise_m, 1e-4f, rise_m * rise_m, -0.05f, 0.0f});
+  latency.end_line(-rate_rad_s);
+  CHECK(latency.offset_s() == Approx(0.0f).margin(0.006));
+  if (slope_sd > 0.0f) CHECK(latency.sd_s() > 0.009f);
 }
 
 TEST_CASE("tilt latency: another surface in a fifth of the points does not move it") {
@@ -88,7 +157,7 @@ TEST_CASE("tilt latency: another surface in a fifth of the points does not move 
 
 TEST_CASE("tilt latency: a line that disagrees by more than latency can explain is left out") {
   TiltLatency latency = started();
-  for (int point = 0; point < 100; ++point) latency.compare(0.03f, 1e-4f, 0.05f);  // 0.6 s
+  for (int point = 0; point < 100; ++point) latency.compare({0.03f, 1e-4f, 0.0f, 0.05f, 0.0f});  // 0.6 s
   latency.end_line(rate_rad_s);
   CHECK(latency.offset_s() == 0.0f);
   CHECK(latency.sd_s() == Approx(0.01f));

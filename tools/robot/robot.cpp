@@ -73,6 +73,7 @@ void read_simulated(TomlTable table, SimulatedErrors& errors) {
   table.read("beam_divergence_rad", errors.beam_divergence_rad, {0.0, 0.1});
   table.read("tilt_rate_hz", errors.tilt_rate_hz, {0.1, 10'000.0});
   table.read("tilt_latency_s", errors.tilt_latency_s, {-1.0, 1.0});
+  table.read("tilt_latency_sweep_sd_s", errors.tilt_latency_sweep_sd_s, {0.0, 1.0});
   table.read("tilt_jitter_s", errors.tilt_jitter_s, {0.0, 1.0});
   table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, 10'000.0});
   table.read("pose_position_sd_m", errors.pose_position_sd_m, {0.0, 1.0});

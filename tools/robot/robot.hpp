@@ -14,11 +14,12 @@ namespace curbline::tools {
 
 /// What only the simulator needs to know of the robot's sensors.
 struct SimulatedErrors {
-  double dropout = 0.0;              ///< share of returns that are lost
-  double beam_divergence_rad = 0.0;  ///< full angle; a beam across an edge gives a mixed pixel
-  double tilt_rate_hz = 40.0;        ///< tilt frames a second
-  double tilt_latency_s = 0.0;       ///< of tilt frames, beyond the TiltSettings::latency_s that the robot knows of
-  double tilt_jitter_s = 0.0;        ///< standard deviation of a frame's time stamp
+  double dropout = 0.0;                  ///< share of returns that are lost
+  double beam_divergence_rad = 0.0;      ///< full angle; a beam across an edge gives a mixed pixel
+  double tilt_rate_hz = 40.0;            ///< tilt frames a second
+  double tilt_latency_s = 0.0;           ///< of tilt frames, beyond the TiltSettings::latency_s that the robot knows of
+  double tilt_latency_sweep_sd_s = 0.0;  ///< standard deviation of what each sweep's latency differs by
+  double tilt_jitter_s = 0.0;            ///< standard deviation of a frame's time stamp
   double pose_rate_hz = 20.0;
   double pose_position_sd_m = 0.0;
   double pose_attitude_sd_rad = 0.0;

@@ -60,6 +60,7 @@ Simulation::Simulation(const Scene& scene, const Robot& robot, std::uint64_t see
       laser_(robot.laser, robot.simulated, 3 * seed),
       tilt_random_(3 * seed + 1),
       pose_random_(3 * seed + 2),
+      sweep_random_(~seed),
       T_base_tilt_(transform(robot.tilt.T_base_tilt)),
       T_tilt_laser_(transform(robot.tilt.T_tilt_laser)),
       duration_s_(duration_s.value_or(default_duration_s(robot, motion_))),
@@ -127,11 +128,17 @@ can::Frame Simulation::take_frame() {
   return sync;
 }
 
+double Simulation::tilt_latency_s(double time_s) {
+  const double sweep = std::floor(2 * time_s / robot_.sweep.period_s);
+  if (sweep != sweep_) sweep_latency_s_ = robot_.simulated.tilt_latency_sweep_sd_s * sweep_random_.normal();
+  sweep_ = sweep;
+  return static_cast<double>(robot_.tilt.latency_s) + robot_.simulated.tilt_latency_s + sweep_latency_s_;
+}
+
 can::Frame Simulation::take_position() {
   const double due_s = static_cast<double>(frames_) / robot_.simulated.tilt_rate_hz - simulated_margin_s;
   can::Frame frame;
-  const double latency_s = static_cast<double>(robot_.tilt.latency_s) + robot_.simulated.tilt_latency_s;
-  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - latency_s), frame);
+  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - tilt_latency_s(due_s)), frame);
   frame.time_ns = stamp_ns(frame_stamp_s_);
   ++frames_;
   synced_ = false;

@@ -4,8 +4,9 @@
 //
 // Servo: from `sweep.from_rad` to `sweep.to_rad` and back at constant speed, which it takes up and gives up evenly over
 // a tenth of the half period at each end. A frame stamped t bears the angle that was true at t - latency_s -
-// tilt_latency_s; jitter is added to the stamp after that, and stamps stay in order. The angle is rounded as
-// tilt_signal rounds it. Poses: the true pose with white noise of position and attitude.
+// tilt_latency_s, less what the sweep's own latency differs by, which is drawn at each turn; jitter is added to the
+// stamp after that, and stamps stay in order. The angle is rounded as tilt_signal rounds it. Poses: the true pose with
+// white noise of position and attitude.
 #pragma once
 
 #include "can/frame.hpp"
@@ -56,18 +57,20 @@ class Simulation {
   can::Frame take_position();
   SimulatedPose take_pose();
   void stamp_next_frame();
+  double tilt_latency_s(double time_s);
 
   Robot robot_;
   Scene scene_;  // in the map frame
   RobotMotion motion_;
   RayCaster world_;
   SimulatedLaser laser_;
-  Random tilt_random_, pose_random_;
+  Random tilt_random_, pose_random_, sweep_random_;
   Eigen::Isometry3d T_base_tilt_, T_tilt_laser_;
   double duration_s_;
   std::int64_t lines_ = 0, frames_ = 0, poses_ = 0;  // given out
   double frame_stamp_s_;
-  bool synced_ = false;  ///< the position whose SYNC has been given out comes next
+  double sweep_ = 0.0, sweep_latency_s_ = 0.0;  ///< of the last frame: its number, and what its latency differs by
+  bool synced_ = false;                         ///< the position whose SYNC has been given out comes next
   std::vector<float> ranges_m_;
 };
 

@@ -1,4 +1,4 @@
-// A small set of plane numbers, walked in ascending order at a cost of its members.
+// A set of whole numbers below a size, a bit each; walked in ascending order at a cost of its members.
 #pragma once
 
 #include <array>
@@ -8,13 +8,15 @@
 
 namespace curbline {
 
-template <int planes>
-class PlaneSet {
+template <int size>
+class IndexSet {
  public:
-  void insert(int plane) { words_[static_cast<std::size_t>(plane) / 32] |= 1u << (plane % 32); }
-  void insert(const PlaneSet& other) {
+  void clear() { words_.fill(0); }
+  void insert(int index) { words_[static_cast<std::size_t>(index) / 32] |= 1u << (index % 32); }
+  void insert(const IndexSet& other) {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
   }
+  bool contains(int index) const { return (words_[static_cast<std::size_t>(index) / 32] >> (index % 32) & 1u) != 0; }
 
   template <typename Visit>
   void for_each(Visit&& visit) const {
@@ -25,7 +27,7 @@ class PlaneSet {
   }
 
  private:
-  std::array<std::uint32_t, (planes + 31) / 32> words_{};
+  std::array<std::uint32_t, (size + 31) / 32> words_{};
 };
 
 }  // namespace curbline
