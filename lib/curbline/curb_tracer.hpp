@@ -1,8 +1,8 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
-// chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces. Each piece tells
-// how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the window, 50
-// look-ups a border point, the square of a chain's length for cutting it, and 20 operations for each pair of a curb and
-// one of the call before.
+// chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height.
+// Each tells how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the
+// window, 50 look-ups a border point, the square of a chain's length for cutting it, and 20 operations for each pair of
+// a curb and one of the call before.
 #pragma once
 
 #include <array>
@@ -35,8 +35,9 @@ const char* to_string(CurbKind kind);
 /// A straight piece of curb line, in the map frame. Near is the side of the robot.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
-  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them; above 0 is a step up; 0
-                          ///< of a crease or the edge of a ramp
+  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them and of the piece, along
+                          ///< which it changes by 2 cm at most; above 0 is a step up; 0 of a crease or the edge of a
+                          ///< ramp
   float height_sd_m = 0.0f;   ///< from both planes' posteriors, and how far the cells beside the border lie off them
   float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
   float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, less the shadow of a step
@@ -114,6 +115,10 @@ class CurbTracer {
   }
   void cut(const Stages& stages, int length, Work& work, Counters& counters) const;
   static Piece piece_of(const Stages& stages, const Borders<limits>& borders, int first, int last);
+  /// By how much the height may change along a piece: from its middle to an end by no more than the repeatability of a
+  /// range-finder.
+  static constexpr float most_change_m = 0.02f;
+  static float height_change_m(const Stages& stages, const Border& from, const Border& to);
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
   void give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
@@ -167,7 +172,8 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
 }
 
 /// Splits the chain where it leaves the chord by more than a cell (a straight line crossing cells stays within one) and
-/// than what a border's gap leaves open, and gives out the pieces in order.
+/// than what a border's gap leaves open, halves what is straight until its height is one, and gives out the pieces in
+/// order.
 template <Limits limits>
 void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Counters& counters) const {
   const Dem<limits>& dem = stages.dem;
@@ -176,6 +182,8 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
   do {
     int end = length - 1;
     for (int split = end; split >= 0; split = farthest_from_chord(work.borders, first, end, tolerance_m)) end = split;
+    while (end - first > 1 && height_change_m(stages, work.borders.at(first), work.borders.at(end)) > most_change_m)
+      end = (first + end) / 2;
     give_out(stages, first, end, work, counters);
     first = end;
   } while (first < length - 1);
@@ -204,6 +212,16 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
     }
   }
   return found;
+}
+
+/// By how much the step between two planes changes from one border to another.
+template <Limits limits>
+float CurbTracer<limits>::height_change_m(const Stages& stages, const Border& from, const Border& to) {
+  const Plane& low = stages.mixture.plane(from.low);
+  const Plane& high = beyond(stages, from);
+  const float change_m =
+      (high.slope_x - low.slope_x) * (to.x_m - from.x_m) + (high.slope_y - low.slope_y) * (to.y_m - from.y_m);
+  return change_m < 0.0f ? -change_m : change_m;
 }
 
 /// Fits a line to the borders and takes the mean of what they tell.

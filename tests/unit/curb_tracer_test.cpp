@@ -132,6 +132,23 @@ TEST_CASE("curb tracer: a curved border becomes several pieces along the curve")
 //            ________
 //           /
 //  ________/           the face within the cells from 1.0 to 1.1 m
+TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of which the height holds") {
+  const auto step_m = [](double y) { return 0.03 + 0.05 * y; };
+  const auto stages = traced([&](double x, double y) { return x < 1.4 ? 0.0 : step_m(y); });
+  const auto curbs = stages->tracer.curbs();
+  REQUIRE(curbs.size() >= 6);  // 12 cm in all
+  REQUIRE(curbs.size() <= 16);
+  for (const Curb& curb : curbs) {
+    CHECK(curb.kind == CurbKind::step_up);
+    for (const float y : {curb.y0_m, curb.y1_m})
+      CHECK(curb.height_m == Approx(step_m(static_cast<double>(y))).margin(0.016));
+    const double middle = 0.5 * static_cast<double>(curb.y0_m + curb.y1_m);
+    CHECK(curb.height_m == Approx(step_m(middle)).margin(4 * curb.height_sd_m));
+  }
+  CHECK(total_length_m(curbs) > 2.35);
+  CHECK(total_length_m(curbs) < 2.4 + 0.1 * static_cast<double>(curbs.size()));  // they meet to a cell
+}
+
 TEST_CASE("curb tracer: a curb's face is looked through, the full step and the width told") {
   const auto stages = traced([&](double x, double) { return x < 1.0 ? 0.0 : x < 1.05 ? 0.03 : x < 1.1 ? 0.11 : 0.14; });
   REQUIRE(stages->tracer.curbs().size() == 1);
