@@ -1,12 +1,14 @@
 // How late the tilt readings are, found on the way: a servo's stamps lag or lead the beams by some milliseconds, and
 // not by the same amount in every sweep. Where a sweep looks at ground that an earlier one has mapped, its heights lie
 // off the map's by what is missing in both offsets, each times the growth of a height by a second of latency. A Kalman
-// filter keeps the offset of this sweep and of the ground mapped before it.
-//   - A robot that stands has the first sweep for a datum, and nothing else; each later one is made to agree with the
-//     map, upward and downward sweeps beginning with what the last of their direction had.
-//   - One that drives leaves its datum behind. Sweeps of opposite direction then tell of a constant: it moves them
-//     apart. Each may differ from it by a part of what is not known of it, or upward and downward sweeps would agree on
-//     a tilted ground. What becomes known of the ground mapped before mends the map (Correction).
+// filter keeps the offset of this sweep and of the ground mapped before it; what becomes known of that ground mends the
+// map (Correction).
+//   - A robot that stands takes its first two sweeps, of opposite direction, to be late by the same time. Their ground
+//   is
+//     the datum of all later ones: each has an offset of its own, which begins with what the last of its direction had.
+//   - One that drives leaves its datum behind, so the ground before is always that of the last sweep, and all offsets
+//     are a constant and a little more: each sweep may differ from it by a part of what is not known of it, or upward
+//     and downward sweeps would agree on a tilted ground.
 // Cost: 20 operations a point.
 #pragma once
 
@@ -45,9 +47,11 @@ class TiltLatency {
     float this_sweep_s = 0.0f, earlier_s = 0.0f;
     bool any() const { return this_sweep_s != 0.0f || earlier_s != 0.0f; }
   };
-  /// The line is over: its points together are one observation. What it says of the map; nothing of a robot that
-  /// stands.
+  /// The line is over: its points together are one observation. What it says of the map.
   Correction end_line(float tilt_rate_rad_s);
+
+  /// Sum of Correction::earlier_s of all lines.
+  float mended_s() const { return mended_s_; }
 
   /// To be added to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return offset_s_; }
@@ -69,23 +73,22 @@ class TiltLatency {
     float mapped_share;  ///< ... this part of what the ground's lacks
   };
 
-  void take_up_direction();
-  void leave_sweep();
+  void turn_standing();
+  void turn_driving();
+  void take_up_other_direction();
   Correction update(const Observation& seen);
 
-  bool drives_ = false;
-  float prior_variance_s2_ =
-      0.0f;  ///< of the constant; standing, of what a sweep's differs by from the last of its direction
+  bool drives_ = false, begun_ = false, turned_ = false;
+  bool downward_ = false;           ///< the angle grows
+  float turned_at_rad_ = 0.0f;      ///< where the sweep began
+  float prior_variance_s2_ = 0.0f;  ///< of an offset of which nothing has been seen
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong and not the servo late
   float slow_rad_s_ = 0.0f;        ///< below it a wrong latency is less than the error of an angle
-  bool begun_ = false;
-  float turned_at_rad_ = 0.0f;  ///< where the sweep began
-  std::size_t direction_ = 0;   ///< 0: upward (the angle falls), 1: downward
 
-  float constant_s_ = 0.0f, offset_s_ = 0.0f;
+  float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
   std::array<std::array<float, states>, states> covariance_{};
-  std::array<Known, 2> last_{};  ///< standing: of the last sweep of each direction
+  Known other_{};  ///< standing: of the last sweep of the other direction
 
   float precision_ = 0.0f, weighted_ = 0.0f, mapped_ = 0.0f, growth_ = 0.0f, common_m2_ = 0.0f,
         points_ = 0.0f;  ///< sums of a line

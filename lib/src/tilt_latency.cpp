@@ -32,49 +32,53 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   time_variance_s2_ = square(tilt.time_sd_s);
   angle_variance_ = square(tilt.angle_sd_rad);
   if (tilt.latency_sd_s > 0.0f) slow_rad_s_ = tilt.angle_sd_rad / tilt.latency_sd_s;
-  if (drives_) {
-    angle_variance_ += square(pose.attitude_sd_rad);
-    height_variance_m2_ = square(pose.height_sd_m);
-    covariance_[constant][constant] = prior_variance_s2_;
-    leave_sweep();
-  } else {
-    last_.fill({0.0f, prior_variance_s2_});
-    covariance_[now][now] = prior_variance_s2_;
-  }
+  covariance_[now][now] = other_.variance_s2 = prior_variance_s2_;
+  if (!drives_) return;
+  angle_variance_ += square(pose.attitude_sd_rad);
+  height_variance_m2_ = square(pose.height_sd_m);
+  covariance_[constant][constant] = prior_variance_s2_;
+  turn_driving();
 }
 
 TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
   const bool slow = rate_rad_s < slow_rad_s_ && rate_rad_s > -slow_rad_s_;
-  const std::size_t direction = slow ? direction_ : rate_rad_s > 0.0f ? 1u : 0u;
+  const bool downward = slow ? downward_ : rate_rad_s > 0.0f;
   if (!begun_) {
     begun_ = true;
-    direction_ = direction;
+    downward_ = downward;
     turned_at_rad_ = angle_rad;
   }
-  if (direction == direction_) return Turn::none;
-  direction_ = direction;
+  if (downward == downward_) return Turn::none;
+  downward_ = downward;
+  if (!drives_) take_up_other_direction();
   const float swept = angle_rad - turned_at_rad_;
-  const bool back = swept < least_sweep_rad && swept > -least_sweep_rad;
-  if (!drives_) take_up_direction();
-  if (back) return Turn::back;
+  if (swept < least_sweep_rad && swept > -least_sweep_rad) return Turn::back;
   turned_at_rad_ = angle_rad;
   if (drives_) {
-    leave_sweep();
+    turn_driving();
   } else {
-    covariance_[now][now] += prior_variance_s2_;
+    turn_standing();
   }
+  turned_ = true;
   return Turn::new_sweep;
 }
 
-/// Standing: what this direction had last, and the other kept.
-void TiltLatency::take_up_direction() {
-  last_[1 - direction_] = {offset_s_, covariance_[now][now]};
-  offset_s_ = last_[direction_].offset_s;
-  covariance_[now][now] = last_[direction_].variance_s2;
+void TiltLatency::take_up_other_direction() {
+  const Known before{offset_s_, covariance_[now][now]};
+  offset_s_ = other_.offset_s;
+  covariance_[now][now] = other_.variance_s2;
+  other_ = before;
 }
 
-/// Driving: the ground that this sweep has mapped is that before the next, which differs from the constant by lot.
-void TiltLatency::leave_sweep() {
+/// The second sweep is late as the first is; after that the ground is the datum.
+void TiltLatency::turn_standing() {
+  auto& p = covariance_;
+  p[now][now] = turned_ ? p[now][now] + prior_variance_s2_ : prior_variance_s2_;
+  p[earlier][earlier] = p[now][earlier] = p[earlier][now] = turned_ ? 0.0f : prior_variance_s2_;
+}
+
+/// The ground that the last sweep has mapped is that before the new one, which differs from the constant by lot.
+void TiltLatency::turn_driving() {
   auto& p = covariance_;
   p[earlier][earlier] = p[now][now];
   p[constant][earlier] = p[earlier][constant] = p[constant][now];
@@ -123,8 +127,10 @@ TiltLatency::Correction TiltLatency::update(const Observation& seen) {
   for (std::size_t a = 0; a < states; ++a) {
     for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
   }
-  if (!drives_) return {};
-  return {offset_s_ - before_s, cross[earlier] * weight};
+  const Correction correction{offset_s_ - before_s, cross[earlier] * weight};
+  mended_s_ += correction.earlier_s;
+  other_.offset_s += correction.earlier_s;
+  return correction;
 }
 
 float TiltLatency::sd_s() const {
@@ -132,7 +138,7 @@ float TiltLatency::sd_s() const {
 }
 
 float TiltLatency::latest_offset_s() const {
-  const float next_s = drives_ ? constant_s_ : last_[1 - direction_].offset_s;
+  const float next_s = drives_ ? constant_s_ : other_.offset_s;
   return offset_s_ > next_s ? offset_s_ : next_s;
 }
 
