@@ -110,7 +110,7 @@ class BorderFinder {
 
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
 /// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
-/// what is no ground do not speak for it. Returns how many are.
+/// what is no ground do not speak for it; a label may outlive its plane by a line. Returns how many are.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};
@@ -125,7 +125,7 @@ int BorderFinder<limits>::find_ground() {
   });
   int ground = 0;
   for (std::size_t l = 0; l < ground_.size(); ++l) {
-    ground_[l] = cells[l] > 0 && 2 * off[l] <= cells[l];
+    ground_[l] = mixture_.plane(static_cast<int>(l)).alive() && cells[l] > 0 && 2 * off[l] <= cells[l];
     ground += ground_[l];
   }
   return ground;

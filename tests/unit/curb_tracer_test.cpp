@@ -266,6 +266,14 @@ TEST_CASE("curb tracer: the stated deviation of a height is no smaller than repe
   CHECK(stated > 0.8 * std::sqrt(sum2 / 40.0));
 }
 
+TEST_CASE("curb tracer: cells whose label outlives its plane make no curb") {
+  const auto stages = traced([](double x, double) { return x < 1.4 ? -0.015 : 0.015; });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  stages->mixture.init(small_settings().planes);
+  stages->trace(0.0f, 0.0f);
+  CHECK(stages->tracer.curbs().empty());
+}
+
 TEST_CASE("curb tracer: full stores refuse and count") {
   constexpr Limits few{.rows = 24, .cols = 24, .planes = 6, .borders = 30, .curbs = 1};
   const auto stages = traced<few>([](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.3; });
