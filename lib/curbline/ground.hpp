@@ -4,8 +4,9 @@
 //     sides makes.
 //   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it falls away as rays do and is no wider than the shadow of a step down:
-//     what is seen beyond an edge is flatter than the ray that grazes it, and so wider.
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and falls away as rays do or
+//     is so narrow that its slope is not known: what is seen beyond an edge is flatter than the ray that grazes it, and
+//     so wider.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, and higher than the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
@@ -56,6 +57,7 @@ class Ground {
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<float, 2> shadow_cells{};  ///< in strips that a step down leaves in its shadow
+    std::array<float, 2> shadows{};       ///< these strips
     std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
@@ -80,6 +82,12 @@ class Ground {
     }
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
     bool shadow() const { return mostly(shadow_cells); }
+    bool narrow_shadow() const {
+      const auto along = [this](std::size_t axis) {
+        return 2.0f * shadow_cells[axis] >= cells && shadow_cells[axis] < narrow * shadows[axis];
+      };
+      return cells > 0.0f && (along(0) || along(1));
+    }
     bool fringe() const { return mostly(fringe_cells); }
     bool mostly(const std::array<float, 2>& in_strips) const {
       return cells > 0.0f && (2.0f * in_strips[0] >= cells || 2.0f * in_strips[1] >= cells);
@@ -199,7 +207,10 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, const Viewpoint& view, L
            Tally& tally = tallies[run.label];
            const auto cells = static_cast<float>(run.length());
            const bool leads = before.label != none && next.label != none && run.between(before, next);
-           if (leads && run.in_shadow(before, next, sights[axis])) tally.shadow_cells[axis] += cells;
+           if (leads && run.in_shadow(before, next, sights[axis])) {
+             tally.shadow_cells[axis] += cells;
+             tally.shadows[axis] += 1.0f;
+           }
            if (run.length() > longest_strip) return;
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
            const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
@@ -220,7 +231,8 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   if (ground == nullptr || !plane.alive()) return Kind::ground;
   if (tally.fringe() && plane.z_m > ground->height_m(plane.x_m, plane.y_m)) return Kind::cover;
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
-  return laser_m > highest_step_m && veil(plane, tally.shadow(), view, laser_m) ? Kind::mixture : Kind::ground;
+  if (laser_m <= highest_step_m) return Kind::ground;
+  return tally.narrow_shadow() || veil(plane, tally.shadow(), view, laser_m) ? Kind::mixture : Kind::ground;
 }
 
 template <Limits limits>

@@ -101,6 +101,15 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
   CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
 }
 
+//  _____
+//       _              one cell of them: its slope is not known
+//        ______
+TEST_CASE(
+    "ground: a strip of a cell in the shadow of a step down is left to both sides, seen from below it is ground") {
+  CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.5 ? -0.1 : -0.2; }) == 2);
+  CHECK(borne([](double x, double) { return x < 1.4 ? -0.2 : x < 1.5 ? -0.1 : 0.0; }) == 3);
+}
+
 TEST_CASE("ground: a row of cells at the window's end, of which the slope is not known, is no veil") {
   CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
