@@ -98,6 +98,13 @@ class Ground {
   struct Sight {
     float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
     float cell_m;          ///< of a cell, along it
+
+    /// The same for an edge that lies across the grid, along a strip: as if the laser were where the edge's parallel
+    /// through it crosses the line, which is `aside_m` from the laser.
+    Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
+      const float along = axis == 0 ? strip.pxx : strip.pyy;  // the strip's normal is (pxx, pxy), or (pxy, pyy)
+      return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m};
+    }
   };
   /// Cells of one plane that follow each other on a row or column.
   template <typename LabelType>
@@ -139,8 +146,8 @@ class Ground {
   template <typename LabelType, typename LabelOf, typename EndRun>
   static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelType, typename LabelOf>
-  static void tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
-                         const PlaneFlags& high, Tallies& tallies);
+  static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
+                         LabelOf&& label_of, const PlaneFlags& high, Tallies& tallies);
   static Kind kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
                       const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
@@ -159,8 +166,8 @@ const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneF
   return found;
 }
 
-/// Calls end_run(before, run, next) for each run of cells along x (axis 0) or along y (axis 1); the label of a run that
-/// is not there is `none`.
+/// Calls end_run(before, run, next, line) for each run of cells along x (axis 0) or along y (axis 1); the label of a
+/// run that is not there is `none`.
 template <Limits limits>
 template <typename LabelType, typename LabelOf, typename EndRun>
 void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of,
@@ -178,7 +185,7 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
       const float h = cell.height_m;
       if (label != run.label) {
         const Run<LabelType> next{label, k, k, h, h, h, h, cell.scatter_m2, cell.weight};
-        end_run(before, run, next);
+        end_run(before, run, next, line);
         before = run;
         run = next;
         continue;
@@ -190,24 +197,26 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
       run.scatter_m2 += cell.scatter_m2;
       run.weight += cell.weight;
     }
-    end_run(before, run, nothing);
+    end_run(before, run, nothing, line);
   }
 }
 
 /// What runs tell: strips in the shadow of a step, beside a high obstacle, between two planes.
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
-void Ground<limits>::tally_runs(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
-                                const PlaneFlags& high, Tallies& tallies) {
+void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                                LabelType none, LabelOf&& label_of, const PlaneFlags& high, Tallies& tallies) {
   const std::array<Sight, 2> sights{{{view.x_m, view.z_m, dem.cell_x_m()}, {view.y_m, view.z_m, dem.cell_y_m()}}};
   for (std::size_t axis = 0; axis < sights.size(); ++axis) {
     walk(dem, axis, none, label_of,
-         [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next) {
+         [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next, int line) {
            if (run.label == none) return;
            Tally& tally = tallies[run.label];
            const auto cells = static_cast<float>(run.length());
            const bool leads = before.label != none && next.label != none && run.between(before, next);
-           if (leads && run.in_shadow(before, next, sights[axis])) {
+           const Sight& other = sights[1 - axis];
+           const float aside_m = (static_cast<float>(line) + 0.5f) * other.cell_m - other.eye_m;
+           if (leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m))) {
              tally.shadow_cells[axis] += cells;
              tally.shadows[axis] += 1.0f;
            }
@@ -250,7 +259,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     obstacle[l] = tallies[l].obstacle(cell_area_m2);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
-  tally_runs(dem, view, none, label_of, high, tallies);
+  tally_runs(dem, planes, view, none, label_of, high, tallies);
   const Plane* ground = largest(planes, obstacle);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);

@@ -101,6 +101,13 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
   CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
 }
 
+TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {
+  CHECK(borne([](double x, double y) {
+          const double d = x + y;
+          return d < 2.0 ? 0.0 : d < 2.35 ? -0.1 - 0.36 * (d - 2.175) : -0.2;
+        }) == 2);
+}
+
 //  _____
 //       _              one cell of them: its slope is not known
 //        ______
