@@ -142,7 +142,7 @@ class Dem {
     return static_cast<float>(growth_[static_cast<std::size_t>(slot)]) * (1.0f / growth_scale);
   }
   /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
-  /// it has not, to where they would have been put.
+  /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
   /// The cell under a point; -1 outside the window.
   int slot_at(float x_m, float y_m) const;
