@@ -17,6 +17,16 @@ def robot(name):
     return os.path.join(ROOT, "tools", "robots", name + ".toml")
 
 
+def late_robot(laser, directory, errors):
+    """The shipped robot with these lines in its [simulated], in DIRECTORY/late.toml; its path."""
+    with open(robot(laser)) as file:
+        text = file.read()
+    path = os.path.join(directory, "late.toml")
+    with open(path, "w") as file:
+        file.write(text.replace("[simulated]\n", f"[simulated]\n{errors}\n"))
+    return path
+
+
 def mean(values, weights=None):
     """Of those that are there; None of none."""
     pairs = [(v, w) for v, w in zip(values, weights or [1] * len(values)) if v is not None and w > 0]

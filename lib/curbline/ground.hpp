@@ -77,20 +77,18 @@ class Ground {
       const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
       // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within
       // each.
-      return cells > 0.0f && 2.0f * strip_cells >= cells &&
+      return most(strip_cells) &&
              mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
-    bool shadow() const { return mostly(shadow_cells); }
-    bool narrow_shadow() const {
-      const auto along = [this](std::size_t axis) {
-        return 2.0f * shadow_cells[axis] >= cells && shadow_cells[axis] < narrow * shadows[axis];
-      };
-      return cells > 0.0f && (along(0) || along(1));
-    }
-    bool fringe() const { return mostly(fringe_cells); }
-    bool mostly(const std::array<float, 2>& in_strips) const {
-      return cells > 0.0f && (2.0f * in_strips[0] >= cells || 2.0f * in_strips[1] >= cells);
+    bool shadow() const { return most(shadow_cells[0]) || most(shadow_cells[1]); }
+    bool narrow_shadow() const { return narrow_shadow(0) || narrow_shadow(1); }
+    bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
+
+   private:
+    bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
+    bool narrow_shadow(std::size_t axis) const {
+      return most(shadow_cells[axis]) && shadow_cells[axis] < narrow * shadows[axis];
     }
   };
   using Tallies = std::array<Tally, limits.planes>;
@@ -214,8 +212,8 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
            Tally& tally = tallies[run.label];
            const auto cells = static_cast<float>(run.length());
            const bool leads = before.label != none && next.label != none && run.between(before, next);
-           const Sight& other = sights[1 - axis];
-           const float aside_m = (static_cast<float>(line) + 0.5f) * other.cell_m - other.eye_m;
+           const Sight& aside = sights[1 - axis];
+           const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
            if (leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m))) {
              tally.shadow_cells[axis] += cells;
              tally.shadows[axis] += 1.0f;

@@ -204,9 +204,9 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     p_map_tilt_ = motion.T_map_base_last * p_base_tilt();
     move_window(robot.x(), robot.y());
   }
-  line_projection_.project(line, work.tilt, motion, counters_, work.points);
-  if (!settings_.tilt.fixed) compare_with_map(work.points);
-  for (const Point& p : work.points.points()) take(p);
+  line_projection_.project(line, work.tilt, motion, counters_, work.projected);
+  if (!settings_.tilt.fixed) compare_with_map(work.projected);
+  for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }
 

@@ -20,7 +20,7 @@ class Workspace {
 
   struct Line {
     TiltSnapshot<limits> tilt;
-    ProjectedLine<limits> points;
+    ProjectedLine<limits> projected;
   };
 
   /// Each begins anew and ends what another holds.

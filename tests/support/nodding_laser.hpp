@@ -58,7 +58,6 @@ class NoddingLaser {
     const double phase = std::fmod(time_s + 20.0 * sweep_s, 2.0 * sweep_s) / sweep_s;
     return 0.26 + 1.05 * (phase < 1.0 ? phase : 2.0 - phase);
   }
-  static TiltReading tilt(double time_s) { return {ns(time_s), static_cast<float>(tilt_rad(time_s))}; }
 
   /// Ranges of a line while the robot drives straight along x, at x_m(time) metres.
   template <typename Position>

@@ -129,9 +129,6 @@ TEST_CASE("curb tracer: a curved border becomes several pieces along the curve")
   CHECK(total_length_m(stages->tracer.curbs()) == Approx(1.4 * 1.5708).epsilon(0.15));
 }
 
-//            ________
-//           /
-//  ________/           the face within the cells from 1.0 to 1.1 m
 TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of which the height holds") {
   const auto step_m = [](double y) { return 0.03 + 0.05 * y; };
   const auto stages = traced([&](double x, double y) { return x < 1.4 ? 0.0 : step_m(y); });
@@ -149,6 +146,9 @@ TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of wh
   CHECK(total_length_m(curbs) < 2.4 + 0.1 * static_cast<double>(curbs.size()));  // they meet to a cell
 }
 
+//            ________
+//           /
+//  ________/           the face within the cells from 1.0 to 1.1 m
 TEST_CASE("curb tracer: a curb's face is looked through, the full step and the width told") {
   const auto stages = traced([&](double x, double) { return x < 1.0 ? 0.0 : x < 1.05 ? 0.03 : x < 1.1 ? 0.11 : 0.14; });
   REQUIRE(stages->tracer.curbs().size() == 1);

@@ -136,22 +136,18 @@ TEST_CASE("pipeline: a pose far off moves the window there and back, and the map
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
 }
 
-/// How many lines of a drive over level ground, at 1 m/s, tell of a step. lag_s(sweep) is how late the servo's readings
-/// are.
+/// How many lines of a drive over level ground, at 1 m/s, tell of a step. lag_s(time) is how late a servo's reading is.
 template <typename Lag>
 int lines_with_steps(FullPipeline& pipeline, int lines, Lag&& lag_s) {
   NoddingLaser laser;
   const auto x = [](double time_s) { return time_s; };
   int with_steps = 0;
   for (int line = 0; line < lines; ++line) {
-    const double time_s = NoddingLaser::line_time_s(line), end_s = time_s + 0.03;
-    for (double t = end_s - NoddingLaser::line_s + 0.005; t <= end_s + 1e-9; t += 0.01) {
-      const double true_s = t - lag_s(static_cast<int>(std::floor(t / NoddingLaser::sweep_s)));
-      pipeline.add_tilt({NoddingLaser::ns(t), static_cast<float>(NoddingLaser::tilt_rad(true_s))});
-    }
-    pipeline.add_pose({NoddingLaser::ns(time_s), static_cast<float>(x(time_s))});
-    pipeline.add_pose({NoddingLaser::ns(time_s + 0.02), static_cast<float>(x(time_s + 0.02))});
-    pipeline.take({NoddingLaser::ns(time_s), laser.ranges({1e4, 0.12}, line, x)});
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(pipeline, line, lag_s);
+    pipeline.add_pose({NoddingLaser::ns(t), static_cast<float>(x(t))});
+    pipeline.add_pose({NoddingLaser::ns(t + 0.02), static_cast<float>(x(t + 0.02))});
+    pipeline.take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, x)});
     with_steps += std::any_of(pipeline.curbs().begin(), pipeline.curbs().end(), is_step);
   }
   return with_steps;
@@ -159,13 +155,13 @@ int lines_with_steps(FullPipeline& pipeline, int lines, Lag&& lag_s) {
 
 TEST_CASE("pipeline: while the robot drives over level ground a servo that is in time stays in time") {
   const auto pipeline = started(driving_settings());
-  lines_with_steps(*pipeline, 8000, [](int) { return 0.0; });  // 200 m
+  lines_with_steps(*pipeline, 8000, [](double) { return 0.0; });  // 200 m
   CHECK(std::abs(pipeline->tilt_latency().offset_s()) < 0.005f);
 }
 
 TEST_CASE("pipeline: while the robot drives, a servo that is late makes no steps of level ground") {
   const auto pipeline = started(driving_settings());
-  CHECK(lines_with_steps(*pipeline, 2000, [](int) { return 0.02; }) == 0);
+  CHECK(lines_with_steps(*pipeline, 2000, [](double) { return 0.02; }) == 0);
   CHECK(pipeline->tilt_latency().offset_s() == Approx(0.02).margin(0.003));
 }
 
@@ -174,8 +170,10 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
   test::Noise lot(5);
   std::array<double, 12> lag_s{};
   for (double& lag : lag_s) lag = 0.01 + 0.005 * lot.normal();
-  CHECK(lines_with_steps(*pipeline, 2000, [&](int sweep) { return lag_s.at(static_cast<std::size_t>(sweep + 1)); }) ==
-        0);
+  const auto of_its_sweep = [&](double time_s) {
+    return lag_s.at(static_cast<std::size_t>(std::floor(time_s / NoddingLaser::sweep_s) + 1.0));
+  };
+  CHECK(lines_with_steps(*pipeline, 2000, of_its_sweep) == 0);
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ can::Frame Simulation::take_frame() {
   return sync;
 }
 
-double Simulation::tilt_latency_s(double time_s) {
+double Simulation::draw_tilt_latency_s(double time_s) {
   const double sweep = std::floor(2 * time_s / robot_.sweep.period_s);
   if (sweep != sweep_) sweep_latency_s_ = robot_.simulated.tilt_latency_sweep_sd_s * sweep_random_.normal();
   sweep_ = sweep;
@@ -138,7 +138,7 @@ double Simulation::tilt_latency_s(double time_s) {
 can::Frame Simulation::take_position() {
   const double due_s = static_cast<double>(frames_) / robot_.simulated.tilt_rate_hz - simulated_margin_s;
   can::Frame frame;
-  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - tilt_latency_s(due_s)), frame);
+  can::encode(robot_.tilt_signal, true_tilt_rad(due_s - draw_tilt_latency_s(due_s)), frame);
   frame.time_ns = stamp_ns(frame_stamp_s_);
   ++frames_;
   synced_ = false;

@@ -57,7 +57,7 @@ class Simulation {
   can::Frame take_position();
   SimulatedPose take_pose();
   void stamp_next_frame();
-  double tilt_latency_s(double time_s);
+  double draw_tilt_latency_s(double time_s);  // times that never go back; anew at each turn
 
   Robot robot_;
   Scene scene_;  // in the map frame
