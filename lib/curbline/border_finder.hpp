@@ -1,9 +1,12 @@
 // Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
 // that lie on no plane of the ground, and those that hold something of both sides, are looked through; they tell where
-// between the cells of the one and of the other the edge lies. And where a face ends: a strip that rises away from the
-// laser as no ramp does, and beyond which nothing is seen. Had it gone on, the laser would see it as well as the face;
-// what lies beyond is flatter than the rays, so there is an edge. Cost: two passes over the window and a look at each
-// cell of a gap and of a face.
+// between the cells of the one and of the other the edge lies. Two edges are found although no ground is seen beyond:
+//   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
+//     as well as the face; what lies beyond is flatter than the rays.
+//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils) follow the ground, away from
+//     the laser, and lie below it. They fall as far as is seen of the step.
+// Cost: two passes over the window, two looks at what lies behind each cell, and one at each cell of a gap, a face and
+// a veil.
 #pragma once
 
 #include <array>
@@ -50,8 +53,7 @@ class BorderFinder {
   static constexpr LabelType none = no_label<limits>;
   using Border = typename Borders<limits>::Border;
 
-  static constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
-  static constexpr float widest_face_m = 0.3f;    ///< of a kerb stone
+  static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
 
   /// A line of cells: a column, along x (axis 0), or a row, along y (axis 1).
   struct Line {
@@ -74,18 +76,36 @@ class BorderFinder {
     int toward;  ///< 1 if the face is left along the axis, -1 if against it
   };
 
+  /// The last cell of the ground before a veil behind which none is seen.
+  struct Brink {
+    Line line;
+    Place last;        ///< label is `none` if there is no brink
+    int toward;        ///< 1 if the ground is left along the axis, -1 if against it
+    int last_of_veil;  ///< place along the line
+  };
+
   int find_ground();
   Border border_of(const Gap& gap) const;
   FaceEnd find_face_end(const Gap& gap, int toward) const;
   Border border_of(const FaceEnd& end) const;
+  Brink find_brink(const Line& line, const Place& ground) const;
+  Border border_of(const Brink& brink) const;
   Border border_at(const Line& line, float along_m) const;
   float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
+  bool bears_ground(int slot) const;
+  bool is_veil(int slot) const;
 
   static int row(const Line& line, int along) { return line.axis == 0 ? along : line.across; }
   static int col(const Line& line, int along) { return line.axis == 0 ? line.across : along; }
   int slot(const Line& line, int along) const { return dem_.slot(row(line, along), col(line, along)); }
+  /// Of dem.next_valid(), along the line (toward 1) or against it (-1).
+  static int direction(const Line& line, int toward) { return 2 * line.axis + (toward < 0); }
+  /// 1 if the cell lies farther along the line than the laser, else -1.
+  int away(const Line& line, int along) const {
+    return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
+  }
   float pitch_m(const Line& line) const { return line.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
   /// Of the middle of the line.
   float across_m(const Line& line) const {
@@ -105,12 +125,13 @@ class BorderFinder {
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
   const Viewpoint& view_;
-  std::array<bool, limits.planes> ground_{};
+  std::array<bool, limits.planes> ground_{}, veil_{};
 };
 
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
 /// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
-/// what is no ground do not speak for it; a label may outlive its plane by a line. Returns how many are.
+/// what is no ground do not speak for it; a label may outlive its plane by a line. Those that fall away as rays do are
+/// taken for veils. Returns how many planes are left for curbs to lie between, and before.
 template <Limits limits>
 int BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};
@@ -125,10 +146,26 @@ int BorderFinder<limits>::find_ground() {
   });
   int ground = 0;
   for (std::size_t l = 0; l < ground_.size(); ++l) {
-    ground_[l] = mixture_.plane(static_cast<int>(l)).alive() && cells[l] > 0 && 2 * off[l] <= cells[l];
+    const auto label = static_cast<int>(l);
+    const bool smooth = mixture_.plane(label).alive() && cells[l] > 0 && 2 * off[l] <= cells[l];
+    veil_[l] = smooth && mixture_.falls_as_rays(label);
+    ground_[l] = smooth && !veil_[l];
     ground += ground_[l];
   }
   return ground;
+}
+
+template <Limits limits>
+bool BorderFinder<limits>::bears_ground(int slot) const {
+  const LabelType label = field_.label(slot);
+  return label != none && ground_[label] && mixture_.on_ground(slot);
+}
+
+/// Does a cell mix two sides, or may it?
+template <Limits limits>
+bool BorderFinder<limits>::is_veil(int slot) const {
+  const LabelType label = field_.label(slot);
+  return mixture_.on_ground(slot) ? label != none && veil_[label] : !mixture_.covered(slot);
 }
 
 /// Within three standard deviations.
@@ -138,10 +175,10 @@ bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& 
   return residual * residual <= 9.0f * (plane.variance_m2 + dem_.height_variance_m2(cell));
 }
 
-/// A border wherever the plane changes along a row or column, and where a face beyond it ends.
+/// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
 template <Limits limits>
 void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
-  if (find_ground() < 2) return;
+  if (find_ground() == 0) return;
   const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
   const auto pass = [&](Place& before, const Place& here, const Line& line) {
     const Gap gap{line, before, here};
@@ -158,13 +195,14 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   int row = -1;
   dem_.for_each_valid([&](int i, int j, int s) {
     const LabelType label = field_.label(s);
-    if (label == none || !ground_[label] || !mixture_.on_ground(s) ||
-        !lies_on(i, j, dem_.cell(s), mixture_.plane(label)))
-      return;
+    if (!bears_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) return;
     if (i != row) before_in_row = {};
     row = i;
-    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
-    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {1, i});
+    const Place in_col{label, static_cast<std::int16_t>(i)}, in_row{label, static_cast<std::int16_t>(j)};
+    pass(before_in_col[static_cast<std::size_t>(j)], in_col, {0, j});
+    pass(before_in_row, in_row, {1, i});
+    if (const Brink brink = find_brink({0, j}, in_col); brink.last.label != none) add(border_of(brink));
+    if (const Brink brink = find_brink({1, i}, in_row); brink.last.label != none) add(border_of(brink));
   });
 }
 
@@ -214,14 +252,11 @@ auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> Fa
   const Plane& plane = mixture_.plane(first.label);
   const auto sign = static_cast<float>(toward);
   const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
-  const float eye_m = line.axis == 0 ? view_.x_m : view_.y_m;
-  const bool rises_away = sign * (static_cast<float>(first.along) * pitch_m(line) - eye_m) > 0.0f;
-  if (rise <= steepest_ramp || !rises_away) return {};
+  if (rise <= steepest_ramp || away(line, first.along) != toward) return {};
 
   const int widest = static_cast<int>(widest_face_m / pitch_m(line) + 1.5f);  // touched, when it lies across cells
-  const int direction = 2 * line.axis + (toward < 0);
   int last = first.along;
-  while (const int g = dem_.next_valid(slot(line, last), direction, settings_.link_reach)) {
+  while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
     last += toward * g;
     if (field_.label(slot(line, last)) != first.label || toward * (last - first.along) >= widest) return {};
   }
@@ -243,6 +278,37 @@ auto BorderFinder<limits>::border_of(const FaceEnd& end) const -> Border {
   border.low = end.last.label;
   border.high = none;
   border.sign = static_cast<std::int8_t>(end.toward);
+  return border;
+}
+
+template <Limits limits>
+auto BorderFinder<limits>::find_brink(const Line& line, const Place& ground) const -> Brink {
+  const int toward = away(line, ground.along);
+  int last = ground.along;
+  while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
+    const int next = last + toward * g;
+    if (bears_ground(slot(line, next))) return {};
+    if (!is_veil(slot(line, next))) break;
+    last = next;
+  }
+  const Plane& plane = mixture_.plane(ground.label);
+  const bool below = last != ground.along && above_m(line, last, plane) < 0.0f;
+  if (!below || lies_on(row(line, last), col(line, last), dem_.cell(slot(line, last)), plane)) return {};
+  return {line, ground, toward, last};
+}
+
+/// The veil falls on to the far side of its last cell.
+template <Limits limits>
+auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
+  const int edge = brink.last.along + (brink.toward > 0 ? 1 : 0);
+  const auto cells = static_cast<float>(brink.toward * (brink.last_of_veil - brink.last.along));
+  Border border = border_at(brink.line, static_cast<float>(edge) * pitch_m(brink.line));
+  border.probability = belief(brink.line, brink.last.along).of(brink.last.label);
+  border.half_gap_m = 0.5f * pitch_m(brink.line);
+  border.drop_m = -above_m(brink.line, brink.last_of_veil, mixture_.plane(brink.last.label)) * cells / (cells - 0.5f);
+  border.low = brink.last.label;
+  border.high = none;
+  border.sign = static_cast<std::int8_t>(brink.toward);
   return border;
 }
 

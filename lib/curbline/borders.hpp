@@ -22,7 +22,8 @@ class Borders {
     float probability;    ///< that the cells on both sides lie on different planes
     float half_gap_m;     ///< between the cells of the one and the other
     float off_m;          ///< by how much more the cell on `high` lies above its plane than that on `low`
-    LabelType low, high;  ///< the planes, low < high by number; high is no_label at the end of a face
+    float drop_m;         ///< of a brink: to the lowest that is seen behind it; else 0
+    LabelType low, high;  ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;     ///< 0: found along x, 1: along y
     std::int8_t sign;     ///< +1 if `high` lies in the positive direction of the axis
     bool chained;

@@ -26,7 +26,7 @@ enum class CurbKind : std::uint8_t {
   step_up,    ///< the far side is higher
   step_down,  ///< the far side is lower
   crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall; and the end
-              ///< of a face beyond which nothing is seen
+              ///< of a face beyond which no ground is seen
   ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO
               ///< 21542
 };
@@ -45,7 +45,9 @@ struct Curb {
   CurbKind kind = CurbKind::crease;
   /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
   std::uint16_t id = 0;
-  std::uint16_t near_label = 0, far_label = 0;  ///< far is no_label where nothing is seen beyond
+  /// Far is no_label where no ground is seen beyond: at the end of a face, and at a brink, a step down of which the
+  /// height is what is seen of it, and the standard deviation as if up to as much again were hidden.
+  std::uint16_t near_label = 0, far_label = 0;
 };
 
 inline bool is_step(const Curb& curb) {
@@ -109,7 +111,8 @@ class CurbTracer {
     bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
   };
 
-  /// The other plane of a border. At the end of a face that of the face stands for it: no step, no known slope.
+  /// The other plane of a border. Where no ground is seen beyond the near one stands for it: no step but the drop, no
+  /// known slope.
   static const Plane& beyond(const Stages& stages, const Border& border) {
     return stages.mixture.plane(border.high == no_label<limits> ? border.low : border.high);
   }
@@ -240,7 +243,7 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
     const Border& border = borders.at(k);
     const float x_m = border.x_m, y_m = border.y_m;
     fit.add(x_m, y_m);
-    piece.height_m += n * (high.height_m(x_m, y_m) - low.height_m(x_m, y_m));
+    piece.height_m += n * (high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - border.drop_m);
     piece.variance_m2 += n * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += n * border.probability;
     piece.half_gap_m += n * border.half_gap_m;
@@ -277,11 +280,6 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   curb.far_label = piece.low_is_near ? border.high : border.low;
   curb.probability = piece.probability;
   curb.height_m = piece.low_is_near ? piece.height_m : -piece.height_m;
-  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
-  // their planes may be the planes' fault too, not at all or up to the half, the less the likelier, since as a rule
-  // they hold points of both sides, and those that show it have no part in the fit: by a density that falls evenly to
-  // 0, a sixth of the square of that half.
-  curb.height_sd_m = square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 24));
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
   curb.kind = kind_of(stages.mixture.plane(border.low), beyond(stages, border), piece.line,
@@ -291,14 +289,23 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   } else if (curb.height_m < 0.0f) {
     curb.kind = CurbKind::step_down;
   }
+  const bool one_sided = border.high == no_label<limits>;
+  if (one_sided && is_step(curb) && first == last) return;  // a row's or column's alone is no line
+  const float hidden_m = one_sided ? curb.height_m : 0.0f;
+  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
+  // their planes may be the planes' fault too, not at all or up to the half, the less the likelier, since as a rule
+  // they hold points of both sides, and those that show it have no part in the fit: by a density that falls evenly to
+  // 0, a sixth of the square of that half. Behind a brink as much again as is seen may be hidden, or less, evenly.
+  curb.height_sd_m =
+      square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 24) + hidden_m * hidden_m * (1.0f / 3));
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   float shadow_m = 0.0f;
-  if (curb.kind == CurbKind::step_down) {
+  if (curb.kind == CurbKind::step_down && !one_sided) {
     const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
     shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
   }
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
-  curb.face_width_m = width_m > 0.0f && border.high != no_label<limits> ? width_m : 0.0f;
+  curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;
   curb.x0_m = dem.origin_x_m() + piece.line.x0_m;
   curb.y0_m = dem.origin_y_m() + piece.line.y0_m;
   curb.x1_m = dem.origin_x_m() + piece.line.x1_m;

@@ -11,7 +11,9 @@
 //     long, and higher than the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
-// tell nothing of it. Cost: three passes over the window.
+// tell nothing of it. A plane that falls away as rays do and is not known to be a veil is borne by its cells, but no
+// curb has it for a side: it may be a veil with what little the window holds behind it. Cost: three passes over the
+// window.
 #pragma once
 
 #include <array>
@@ -25,24 +27,29 @@
 
 namespace curbline {
 
+inline constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
+
 template <Limits limits>
 class Ground {
  public:
   void clear() { kind_.fill(Kind::ground); }
 
   /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, `none` if it has none; changed(label)
-  /// is called for each answer that is another than before.
+  /// is called for each that is to be borne otherwise than before.
   template <typename LabelType, typename LabelOf, typename Changed>
   void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
               LabelOf&& label_of, Changed&& changed);
 
-  bool is(int label) const { return kind(label) == Kind::ground; }
+  bool is(int label) const { return borne(kind(label)); }
+  /// Does it, of planes that are ground, fall away from the laser as its rays do?
+  bool falls_as_rays(int label) const { return kind(label) == Kind::steep; }
   /// Is it an obstacle or a fringe?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
   using PlaneFlags = std::array<bool, limits.planes>;
-  enum class Kind : std::uint8_t { ground, mixture, cover };
+  enum class Kind : std::uint8_t { ground, steep, mixture, cover };
+  static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::steep; }
 
   /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
   /// beam of 10 mrad is on the ground 6 m away, seen from 1.2 m above it.
@@ -133,12 +140,21 @@ class Ground {
   };
 
   /// Does a plane rise toward the laser, `laser_m` above the ground, at least half as steeply as the rays? What mixes
-  /// an edge and the ground behind does. If it holds the laser, within five standard deviations, since an edge need not
-  /// be straight, or if it lies in the shadow of a step, it is no surface.
-  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view, float laser_m) {
+  /// an edge and the ground behind does.
+  static bool rises_as_rays(const Plane& plane, const Viewpoint& view, float laser_m) {
+    return view.z_m - plane.height_m(view.x_m, view.y_m) < 0.5f * laser_m;
+  }
+  /// Of one that does: if it holds the laser, within five standard deviations, since an edge need not be straight, or
+  /// if it lies in the shadow of a step, it is no surface.
+  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view) {
     const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
-    if (!(above_m < 0.5f * laser_m)) return false;
     return in_shadow || above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+  }
+  /// Is its slope, between its centroid and the laser, more than that of any ramp?
+  static bool no_ramp(const Plane& plane, const Viewpoint& view) {
+    const float dx_m = view.x_m - plane.x_m, dy_m = view.y_m - plane.y_m;
+    const float rise_m = plane.slope_x * dx_m + plane.slope_y * dy_m;
+    return rise_m * rise_m > steepest_ramp * steepest_ramp * (dx_m * dx_m + dy_m * dy_m);
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
   template <typename LabelType, typename LabelOf, typename EndRun>
@@ -239,7 +255,9 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   if (tally.fringe() && plane.z_m > ground->height_m(plane.x_m, plane.y_m)) return Kind::cover;
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return Kind::ground;
-  return tally.narrow_shadow() || veil(plane, tally.shadow(), view, laser_m) ? Kind::mixture : Kind::ground;
+  if (tally.narrow_shadow()) return Kind::mixture;
+  if (!rises_as_rays(plane, view, laser_m)) return Kind::ground;
+  return veil(plane, tally.shadow(), view) ? Kind::mixture : no_ramp(plane, view) ? Kind::steep : Kind::ground;
 }
 
 template <Limits limits>
@@ -261,8 +279,9 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const Plane* ground = largest(planes, obstacle);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);
-    if (kind != kind_[l]) changed(static_cast<LabelType>(l));
+    const Kind before = kind_[l];
     kind_[l] = kind;
+    if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<LabelType>(l));
   }
 }
 

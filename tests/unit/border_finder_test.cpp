@@ -187,7 +187,7 @@ TEST_CASE("border finder: a sloped face that is seen is told half its shadow bef
 }
 
 /// A street up to where a face begins, which rises by `slope` a metre; nothing is seen beyond `to`. Along x, from the
-/// laser, unless it is turned to come from the window's other end.
+/// laser one metre up, unless it is turned to come from the window's other end.
 struct Street {
   double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< from `top` on it is level again
   bool turned = false;
@@ -207,25 +207,40 @@ struct Street {
         }
       }
     }
+    stages->view = turned ? Viewpoint{1.2f, 2.4f - laser_x_m, 1.0f} : Viewpoint{laser_x_m, 1.2f, 1.0f};
     for (int pass = 0; pass < 3; ++pass) stages->infer(true);
-    turned ? stages->trace(1.2f, 2.4f - laser_x_m) : stages->trace(laser_x_m, 1.2f);
+    stages->trace(stages->view.x_m, stages->view.y_m);
     return stages;
   }
-  /// Where faces end, along the street, as curbs are given out for it.
-  std::vector<double> ends() const {
+  /// A curb that lies across the street, and how far along it.
+  struct Across {
+    double at;
+    Curb curb;
+  };
+  /// The curbs beyond which no ground is seen.
+  std::vector<Across> one_sided() const {
     const auto stages = traced();
-    std::vector<double> found;
+    std::vector<Across> found;
     for (const Curb& curb : stages->tracer.curbs()) {
       constexpr auto unseen = no_label<small_limits>;
       if (curb.far_label != unseen && curb.near_label != unseen) continue;
-      CHECK(curb.kind == CurbKind::crease);
-      CHECK(curb.height_m == 0.0f);
       CHECK(curb.face_width_m == 0.0f);
       CHECK(curb.probability > 0.9f);
-      const int face = static_cast<int>(10 * from) + 1;
-      CHECK(curb.near_label == (turned ? stages->label_at(0, 23 - face) : stages->label_at(face, 0)));
       CHECK(std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m) == Approx(2.4).margin(0.02));
-      found.push_back(turned ? 2.4 - static_cast<double>(curb.y0_m) : static_cast<double>(curb.x0_m));
+      const double at = turned ? 2.4 - static_cast<double>(curb.y0_m) : static_cast<double>(curb.x0_m);
+      const int before = static_cast<int>(10 * at - 0.5);
+      CHECK(curb.near_label == (turned ? stages->label_at(0, 23 - before) : stages->label_at(before, 0)));
+      found.push_back({at, curb});
+    }
+    return found;
+  }
+  /// Where faces end.
+  std::vector<double> ends() const {
+    std::vector<double> found;
+    for (const Across& end : one_sided()) {
+      CHECK(end.curb.kind == CurbKind::crease);
+      CHECK(end.curb.height_m == 0.0f);
+      found.push_back(end.at);
     }
     return found;
   }
@@ -260,6 +275,33 @@ TEST_CASE("border finder: the end of a face that wavers by more than a cell is o
 TEST_CASE("border finder: a face that the window cuts has no end") {
   CHECK(Street{.from = 2.1, .to = 9.0}.ends().empty());
   CHECK(Street{.from = 2.0, .to = 2.3}.ends().size() == 1);
+}
+
+//  o
+//  ________
+//          \\           readings that mix the edge and what lies behind it, on the rays or less steep; no more is seen
+TEST_CASE("border finder: where a veil follows the ground and nothing is seen behind it, a step goes down as far") {
+  const bool turned = GENERATE(false, true);
+  for (const double slope : {-1 / 1.4, -0.5}) {  // at 1.4 m the laser's rays fall by 1 in 1.4
+    const auto brinks = Street{.slope = slope, .from = 1.4, .to = 1.7, .turned = turned}.one_sided();
+    REQUIRE(brinks.size() == 1);
+    const Curb& curb = brinks[0].curb;
+    CHECK(curb.kind == CurbKind::step_down);
+    CHECK(brinks[0].at == Approx(1.4).margin(0.03));
+    CHECK(curb.height_m == Approx(0.3 * slope).margin(0.02));
+    CHECK(curb.height_sd_m > 0.3f * -curb.height_m);  // more may be hidden
+  }
+}
+
+TEST_CASE("border finder: a veil at the window's end hides a step all the same") {
+  CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
+}
+
+TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which there is ground, are no brinks") {
+  CHECK(Street{.slope = 0.0}.one_sided().empty());
+  CHECK(Street{.slope = -0.12, .from = 1.4, .to = 1.7}.one_sided().empty());
+  CHECK(Street{.slope = -0.5, .from = 1.4, .to = 9.0, .top = 1.7}.one_sided().empty());
+  CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
 
 }  // namespace
