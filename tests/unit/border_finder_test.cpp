@@ -187,11 +187,11 @@ TEST_CASE("border finder: a sloped face that is seen is told half its shadow bef
 }
 
 /// A street up to where a face begins, which rises by `slope` a metre; nothing is seen beyond `to`. Along x, from the
-/// laser one metre up, unless it is turned to come from the window's other end.
+/// laser, unless it is turned to come from the window's other end.
 struct Street {
   double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< from `top` on it is level again
   bool turned = false;
-  float laser_x_m = 0.0f;
+  float laser_x_m = 0.0f, laser_z_m = 1.0f;
   double waver = 0.0;  ///< every other half metre ends so much earlier
 
   double height(double x) const { return slope * (std::clamp(x, from, top) - from); }
@@ -207,7 +207,7 @@ struct Street {
         }
       }
     }
-    stages->view = turned ? Viewpoint{1.2f, 2.4f - laser_x_m, 1.0f} : Viewpoint{laser_x_m, 1.2f, 1.0f};
+    stages->view = turned ? Viewpoint{1.2f, 2.4f - laser_x_m, laser_z_m} : Viewpoint{laser_x_m, 1.2f, laser_z_m};
     for (int pass = 0; pass < 3; ++pass) stages->infer(true);
     stages->trace(stages->view.x_m, stages->view.y_m);
     return stages;
@@ -300,6 +300,8 @@ TEST_CASE("border finder: a veil at the window's end hides a step all the same")
 TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which there is ground, are no brinks") {
   CHECK(Street{.slope = 0.0}.one_sided().empty());
   CHECK(Street{.slope = -0.12, .from = 1.4, .to = 1.7}.one_sided().empty());
+  const Street seen_from_low{.slope = -0.12, .from = 1.4, .to = 9.0, .laser_z_m = 0.31f};  // half as steep as the rays
+  CHECK(seen_from_low.one_sided().empty());
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 9.0, .top = 1.7}.one_sided().empty());
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
