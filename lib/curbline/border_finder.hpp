@@ -5,8 +5,7 @@
 //     as well as the face; what lies beyond is flatter than the rays.
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils) follow the ground, away from
 //     the laser, and lie below it. They fall as far as is seen of the step.
-// Cost: two passes over the window, two looks at what lies behind each cell, and one at each cell of a gap, a face and
-// a veil.
+// Cost: two passes over the window and a look at each cell of a gap, a face and a veil.
 #pragma once
 
 #include <array>
@@ -84,11 +83,11 @@ class BorderFinder {
     int last_of_veil;  ///< place along the line
   };
 
-  int find_ground();
+  bool find_ground();
   Border border_of(const Gap& gap) const;
   FaceEnd find_face_end(const Gap& gap, int toward) const;
   Border border_of(const FaceEnd& end) const;
-  Brink find_brink(const Line& line, const Place& ground) const;
+  Brink find_brink(const Line& line, int first_of_veil) const;
   Border border_of(const Brink& brink) const;
   Border border_at(const Line& line, float along_m) const;
   float middle_m(const Gap& gap) const;
@@ -131,14 +130,19 @@ class BorderFinder {
 /// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
 /// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
 /// what is no ground do not speak for it; a label may outlive its plane by a line. Those that fall away as rays do are
-/// taken for veils. Returns how many planes are left for curbs to lie between, and before.
+/// taken for veils. False if there is nothing for a curb to lie between: two planes, or one and what may be a veil.
 template <Limits limits>
-int BorderFinder<limits>::find_ground() {
+bool BorderFinder<limits>::find_ground() {
   std::array<int, limits.planes> cells{}, off{};
+  bool any_veil = false;
   const float bound = settings_.max_roughness_m / 1.4826f;
   dem_.for_each_valid([&](int i, int j, int s) {
+    if (!mixture_.on_ground(s)) {
+      any_veil |= !mixture_.covered(s);
+      return;
+    }
     const LabelType label = field_.label(s);
-    if (label == none || !mixture_.on_ground(s)) return;
+    if (label == none) return;
     const Cell& cell = dem_.cell(s);
     const float residual = dem_.above_m(i, j, cell, mixture_.plane(label));
     ++cells[label];
@@ -151,8 +155,9 @@ int BorderFinder<limits>::find_ground() {
     veil_[l] = smooth && mixture_.falls_as_rays(label);
     ground_[l] = smooth && !veil_[l];
     ground += ground_[l];
+    any_veil |= veil_[l];
   }
-  return ground;
+  return ground > 1 || (ground == 1 && any_veil);
 }
 
 template <Limits limits>
@@ -178,7 +183,7 @@ bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& 
 /// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
 template <Limits limits>
 void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
-  if (find_ground() == 0) return;
+  if (!find_ground()) return;
   const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
   const auto pass = [&](Place& before, const Place& here, const Line& line) {
     const Gap gap{line, before, here};
@@ -190,19 +195,23 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
       if (const FaceEnd end = find_face_end(gap, toward); end.last.label != none) add(border_of(end));
     }
   };
+  const auto end_before = [&](const Line& line, int veil) {
+    if (const Brink brink = find_brink(line, veil); brink.last.label != none) add(border_of(brink));
+  };
   std::array<Place, limits.cols> before_in_col{};
   Place before_in_row;
   int row = -1;
   dem_.for_each_valid([&](int i, int j, int s) {
+    if (!bears_ground(s)) {
+      if (is_veil(s)) end_before({0, j}, i), end_before({1, i}, j);
+      return;
+    }
     const LabelType label = field_.label(s);
-    if (!bears_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) return;
+    if (!lies_on(i, j, dem_.cell(s), mixture_.plane(label))) return;
     if (i != row) before_in_row = {};
     row = i;
-    const Place in_col{label, static_cast<std::int16_t>(i)}, in_row{label, static_cast<std::int16_t>(j)};
-    pass(before_in_col[static_cast<std::size_t>(j)], in_col, {0, j});
-    pass(before_in_row, in_row, {1, i});
-    if (const Brink brink = find_brink({0, j}, in_col); brink.last.label != none) add(border_of(brink));
-    if (const Brink brink = find_brink({1, i}, in_row); brink.last.label != none) add(border_of(brink));
+    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
+    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {1, i});
   });
 }
 
@@ -281,20 +290,26 @@ auto BorderFinder<limits>::border_of(const FaceEnd& end) const -> Border {
   return border;
 }
 
+/// Before the first cell of a veil, as the laser sees it.
 template <Limits limits>
-auto BorderFinder<limits>::find_brink(const Line& line, const Place& ground) const -> Brink {
-  const int toward = away(line, ground.along);
-  int last = ground.along;
+auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const -> Brink {
+  const int toward = away(line, first_of_veil);
+  const int before = dem_.next_valid(slot(line, first_of_veil), direction(line, -toward), settings_.link_reach);
+  const int edge = first_of_veil - toward * before;
+  if (before == 0 || !bears_ground(slot(line, edge))) return {};
+  int last = first_of_veil;
   while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
     const int next = last + toward * g;
     if (bears_ground(slot(line, next))) return {};
     if (!is_veil(slot(line, next))) break;
     last = next;
   }
-  const Plane& plane = mixture_.plane(ground.label);
-  const bool below = last != ground.along && above_m(line, last, plane) < 0.0f;
-  if (!below || lies_on(row(line, last), col(line, last), dem_.cell(slot(line, last)), plane)) return {};
-  return {line, ground, toward, last};
+  const LabelType label = field_.label(slot(line, edge));
+  const auto on_plane = [&](int along) {
+    return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
+  };
+  if (!on_plane(edge) || on_plane(last) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
+  return {line, {label, static_cast<std::int16_t>(edge)}, toward, last};
 }
 
 /// The veil falls on to the far side of its last cell.
