@@ -46,7 +46,8 @@ struct Curb {
   /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
   std::uint16_t id = 0;
   /// Far is no_label where no ground is seen beyond: at the end of a face, and at a brink, a step down of which the
-  /// height is what is seen of it, and the standard deviation as if up to as much again were hidden.
+  /// height is what is seen of it, the mean along the piece, and the standard deviation as if up to as much again were
+  /// hidden.
   std::uint16_t near_label = 0, far_label = 0;
 };
 
