@@ -68,28 +68,25 @@ class BorderFinder {
     Line line;
     Place first, second;
   };
-  /// The last cell of a face beyond which nothing is seen.
-  struct FaceEnd {
+  /// The last cell of a plane, of a face or before a veil, beyond which no ground is seen.
+  struct End {
     Line line;
     Place last;  ///< label is `none` if there is no such end
-    int toward;  ///< 1 if the face is left along the axis, -1 if against it
+    int toward;  ///< 1 if the plane is left along the axis, -1 if against it
   };
-
-  /// The last cell of the ground before a veil behind which none is seen.
   struct Brink {
-    Line line;
-    Place last;        ///< label is `none` if there is no brink
-    int toward;        ///< 1 if the ground is left along the axis, -1 if against it
+    End end;
     int last_of_veil;  ///< place along the line
   };
 
   bool find_ground();
   Border border_of(const Gap& gap) const;
-  FaceEnd find_face_end(const Gap& gap, int toward) const;
-  Border border_of(const FaceEnd& end) const;
+  End find_face_end(const Gap& gap, int toward) const;
+  Border border_of_face(const End& end) const;
   Brink find_brink(const Line& line, int first_of_veil) const;
   Border border_of(const Brink& brink) const;
   Border border_at(const Line& line, float along_m) const;
+  Border border_at(const End& end, float along_m) const;
   float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
@@ -192,11 +189,11 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
       return;
     add(border_of(gap));
     for (const int toward : {-1, 1}) {
-      if (const FaceEnd end = find_face_end(gap, toward); end.last.label != none) add(border_of(end));
+      if (const End end = find_face_end(gap, toward); end.last.label != none) add(border_of_face(end));
     }
   };
   const auto end_before = [&](const Line& line, int veil) {
-    if (const Brink brink = find_brink(line, veil); brink.last.label != none) add(border_of(brink));
+    if (const Brink brink = find_brink(line, veil); brink.end.last.label != none) add(border_of(brink));
   };
   std::array<Place, limits.cols> before_in_col{};
   Place before_in_row;
@@ -237,6 +234,17 @@ auto BorderFinder<limits>::border_at(const Line& line, float along_m) const -> B
   return border;
 }
 
+/// `high` is none, and on the side of what is not seen.
+template <Limits limits>
+auto BorderFinder<limits>::border_at(const End& end, float along_m) const -> Border {
+  Border border = border_at(end.line, along_m);
+  border.probability = belief(end.line, end.last.along).of(end.last.label);
+  border.low = end.last.label;
+  border.high = none;
+  border.sign = static_cast<std::int8_t>(end.toward);
+  return border;
+}
+
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first.label < gap.second.label;
@@ -255,7 +263,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 
 /// Of the face on the far side of a gap (toward 1), or on its near side (-1).
 template <Limits limits>
-auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> FaceEnd {
+auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> End {
   const Line& line = gap.line;
   const Place& first = toward > 0 ? gap.second : gap.first;
   const Plane& plane = mixture_.plane(first.label);
@@ -277,16 +285,12 @@ auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> Fa
 /// The points of the last cell reach as far beyond their centroid as they lie before it. Where the next one would have
 /// been is open to a cell.
 template <Limits limits>
-auto BorderFinder<limits>::border_of(const FaceEnd& end) const -> Border {
+auto BorderFinder<limits>::border_of_face(const End& end) const -> Border {
   const auto sign = static_cast<float>(end.toward);
   const float centroid = sign * offset(end.line, dem_.cell(slot(end.line, end.last.along)));
   const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
-  Border border = border_at(end.line, (static_cast<float>(end.last.along) + 0.5f + sign * edge) * pitch_m(end.line));
-  border.probability = belief(end.line, end.last.along).of(end.last.label);
+  Border border = border_at(end, (static_cast<float>(end.last.along) + 0.5f + sign * edge) * pitch_m(end.line));
   border.half_gap_m = pitch_m(end.line);
-  border.low = end.last.label;
-  border.high = none;
-  border.sign = static_cast<std::int8_t>(end.toward);
   return border;
 }
 
@@ -309,21 +313,18 @@ auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const
     return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
   };
   if (!on_plane(edge) || on_plane(last) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
-  return {line, {label, static_cast<std::int16_t>(edge)}, toward, last};
+  return {{line, {label, static_cast<std::int16_t>(edge)}, toward}, last};
 }
 
 /// The veil falls on to the far side of its last cell.
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
-  const int edge = brink.last.along + (brink.toward > 0 ? 1 : 0);
-  const auto cells = static_cast<float>(brink.toward * (brink.last_of_veil - brink.last.along));
-  Border border = border_at(brink.line, static_cast<float>(edge) * pitch_m(brink.line));
-  border.probability = belief(brink.line, brink.last.along).of(brink.last.label);
-  border.half_gap_m = 0.5f * pitch_m(brink.line);
-  border.drop_m = -above_m(brink.line, brink.last_of_veil, mixture_.plane(brink.last.label)) * cells / (cells - 0.5f);
-  border.low = brink.last.label;
-  border.high = none;
-  border.sign = static_cast<std::int8_t>(brink.toward);
+  const End& end = brink.end;
+  const int edge = end.last.along + (end.toward > 0 ? 1 : 0);
+  const auto cells = static_cast<float>(end.toward * (brink.last_of_veil - end.last.along));
+  Border border = border_at(end, static_cast<float>(edge) * pitch_m(end.line));
+  border.half_gap_m = 0.5f * pitch_m(end.line);
+  border.drop_m = -above_m(end.line, brink.last_of_veil, mixture_.plane(end.last.label)) * cells / (cells - 0.5f);
   return border;
 }
 

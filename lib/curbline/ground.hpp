@@ -139,15 +139,9 @@ class Ground {
     }
   };
 
-  /// Does a plane rise toward the laser, `laser_m` above the ground, at least half as steeply as the rays? What mixes
-  /// an edge and the ground behind does.
-  static bool rises_as_rays(const Plane& plane, const Viewpoint& view, float laser_m) {
-    return view.z_m - plane.height_m(view.x_m, view.y_m) < 0.5f * laser_m;
-  }
-  /// Of one that does: if it holds the laser, within five standard deviations, since an edge need not be straight, or
-  /// if it lies in the shadow of a step, it is no surface.
-  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view) {
-    const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
+  /// Of a plane that rises toward the laser as rays do, `above_m` below it there: if it holds the laser, within five
+  /// standard deviations, since an edge need not be straight, or if it lies in the shadow of a step, it is no surface.
+  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view, float above_m) {
     return in_shadow || above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
   /// Is its slope, between its centroid and the laser, more than that of any ramp?
@@ -256,8 +250,10 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return Kind::ground;
   if (tally.narrow_shadow()) return Kind::mixture;
-  if (!rises_as_rays(plane, view, laser_m)) return Kind::ground;
-  return veil(plane, tally.shadow(), view) ? Kind::mixture : no_ramp(plane, view) ? Kind::steep : Kind::ground;
+  // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
+  const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
+  if (!(above_m < 0.5f * laser_m)) return Kind::ground;
+  return veil(plane, tally.shadow(), view, above_m) ? Kind::mixture : no_ramp(plane, view) ? Kind::steep : Kind::ground;
 }
 
 template <Limits limits>
