@@ -99,6 +99,7 @@ class CurbTracer {
   struct Stages {
     const Dem<limits>& dem;
     const PlaneMixture<limits>& mixture;
+    const LabelField<limits>& field;
     const Viewpoint& view;
   };
 
@@ -124,7 +125,10 @@ class CurbTracer {
   static constexpr float most_change_m = 0.02f;
   static float height_change_m(const Stages& stages, const Border& from, const Border& to);
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
-  void give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const;
+  enum class Side : std::uint8_t { unseen, own, other };
+  static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
+  void go_on(const Stages& stages, const Border& border, const Piece& piece, float& x_m, float& y_m) const;
+  void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
 
   CurbSettings settings_{};
@@ -139,7 +143,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   work.curbs = 0;
   work.borders.clear();
   BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
-  const Stages stages{dem, mixture, view};
+  const Stages stages{dem, mixture, field, view};
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(stages, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
@@ -188,7 +192,7 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
     for (int split = end; split >= 0; split = farthest_from_chord(work.borders, first, end, tolerance_m)) end = split;
     while (end - first > 1 && height_change_m(stages, work.borders.at(first), work.borders.at(end)) > most_change_m)
       end = (first + end) / 2;
-    give_out(stages, first, end, work, counters);
+    give_out(stages, first, end, length, work, counters);
     first = end;
   } while (first < length - 1);
 }
@@ -267,8 +271,44 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   return piece;
 }
 
+/// What is seen of one side of a line, which should be of the plane `own`.
 template <Limits limits>
-void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Work& work, Counters& counters) const {
+auto CurbTracer<limits>::side(const Stages& stages, float x_m, float y_m, Label<limits> own) -> Side {
+  const Dem<limits>& dem = stages.dem;
+  const int slot = dem.slot_at(dem.origin_x_m() + x_m, dem.origin_y_m() + y_m);
+  if (slot < 0 || !dem.cell(slot).valid() || !stages.mixture.on_ground(slot)) return Side::unseen;
+  const Label<limits> label = stages.field.label(slot);
+  return label == own ? Side::own : label == no_label<limits> ? Side::unseen : Side::other;
+}
+
+/// Where one of its sides is not seen no border tells of a line. From the end (x_m, y_m) of a chain it goes on cell by
+/// cell, as long as one side is that of its plane and the other no other plane's, as far as to the middle of the widest
+/// gap that a chain bridges.
+template <Limits limits>
+void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, const Piece& piece, float& x_m,
+                               float& y_m) const {
+  const float dx_m = x_m - piece.x_m, dy_m = y_m - piece.y_m;
+  const float half_m = square_root(dx_m * dx_m + dy_m * dy_m);
+  if (!(half_m > 0.0f)) return;
+  const float cell_m = 0.5f * (stages.dem.cell_x_m() + stages.dem.cell_y_m());
+  const float step_x = dx_m * cell_m / half_m, step_y = dy_m * cell_m / half_m;
+  const float along = (border.axis == 0 ? piece.line.normal_x : piece.line.normal_y) * border.sign;
+  const float aside_m = piece.half_gap_m > cell_m ? piece.half_gap_m : cell_m;
+  const float high_x = piece.line.normal_x * (along < 0.0f ? -aside_m : aside_m);
+  const float high_y = piece.line.normal_y * (along < 0.0f ? -aside_m : aside_m);
+  for (int k = 0; k < settings_.link_reach / 2; ++k) {
+    const float middle_x = x_m + 0.5f * step_x, middle_y = y_m + 0.5f * step_y;
+    const Side high = side(stages, middle_x + high_x, middle_y + high_y, border.high);
+    const Side low = side(stages, middle_x - high_x, middle_y - high_y, border.low);
+    if (high == Side::other || low == Side::other || (high == Side::unseen && low == Side::unseen)) return;
+    x_m += step_x;
+    y_m += step_y;
+  }
+}
+
+template <Limits limits>
+void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int length, Work& work,
+                                  Counters& counters) const {
   if (work.curbs == limits.curbs) {
     ++counters.curbs_full;
     return;
@@ -276,6 +316,8 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, Wor
   const Dem<limits>& dem = stages.dem;
   const Border& border = work.borders.at(first);
   Piece piece = piece_of(stages, work.borders, first, last);
+  if (first == 0) go_on(stages, border, piece, piece.line.x0_m, piece.line.y0_m);
+  if (last == length - 1) go_on(stages, border, piece, piece.line.x1_m, piece.line.y1_m);
   Curb curb;
   curb.near_label = piece.low_is_near ? border.low : border.high;
   curb.far_label = piece.low_is_near ? border.high : border.low;

@@ -28,6 +28,7 @@
 namespace curbline {
 
 inline constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
+inline constexpr float least_ramp = 0.05f;      ///< 1 in 20: a way that rises by more is a ramp, ISO 21542
 
 template <Limits limits>
 class Ground {
@@ -139,10 +140,17 @@ class Ground {
     }
   };
 
-  /// Of a plane that rises toward the laser as rays do, `above_m` below it there: if it holds the laser, within five
-  /// standard deviations, since an edge need not be straight, or if it lies in the shadow of a step, it is no surface.
-  static bool veil(const Plane& plane, bool in_shadow, const Viewpoint& view, float above_m) {
-    return in_shadow || above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+  /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the more of it they hold the
+  /// higher: the strip leans, or all of it is higher than a kerb. A level one below that is a surface.
+  static bool stands_out(const Plane& plane, const Plane& ground) {
+    const float above_m = plane.z_m - ground.height_m(plane.x_m, plane.y_m);
+    const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
+    return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
+  }
+  /// Of a plane that lies `above_m` below the laser, or above it, where the laser stands: within five standard
+  /// deviations, since an edge need not be straight.
+  static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
+    return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
   /// Is its slope, between its centroid and the laser, more than that of any ramp?
   static bool no_ramp(const Plane& plane, const Viewpoint& view) {
@@ -246,14 +254,15 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   if (tally.face()) return Kind::mixture;
   if (obstacle) return Kind::cover;
   if (ground == nullptr || !plane.alive()) return Kind::ground;
-  if (tally.fringe() && plane.z_m > ground->height_m(plane.x_m, plane.y_m)) return Kind::cover;
+  if (tally.fringe() && stands_out(plane, *ground)) return Kind::cover;
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return Kind::ground;
-  if (tally.narrow_shadow()) return Kind::mixture;
+  const bool steep = no_ramp(plane, view);
+  if (tally.narrow_shadow() || (tally.shadow() && steep)) return Kind::mixture;
   // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   if (!(above_m < 0.5f * laser_m)) return Kind::ground;
-  return veil(plane, tally.shadow(), view, above_m) ? Kind::mixture : no_ramp(plane, view) ? Kind::steep : Kind::ground;
+  return holds_laser(plane, view, above_m) ? Kind::mixture : steep ? Kind::steep : Kind::ground;
 }
 
 template <Limits limits>

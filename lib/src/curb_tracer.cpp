@@ -3,11 +3,7 @@
 #include <cmath>
 
 namespace curbline {
-namespace {
-
-constexpr float least_ramp = 0.05f;  ///< ISO 21542: a way that rises by more than 1 in 20 is a ramp
-
-}  // namespace
+namespace {}  // namespace
 
 const char* to_string(CurbKind kind) {
   switch (kind) {

@@ -248,6 +248,49 @@ TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across 
   }
 }
 
+//  y          |
+//  |   near   |  not seen (or something else)
+//  1.6        |____________
+//  |   near   |  0.12 m higher
+TEST_CASE("curb tracer: a curb goes on for two cells where one side is not seen, not where it is another plane") {
+  struct Ground {
+    bool seen = true;
+    double height_m = 0.0, rough_m = 0.0;
+  };
+  const Ground unseen{.seen = false}, hedge{.height_m = 0.5, .rough_m = 0.4};
+  const auto end_m = [](const Ground& near, const Ground& far) {
+    Stages<> stages(small_settings());
+    Noise noise;
+    const auto map = [&](const test::Patch& patch, const Ground& ground) {
+      if (!ground.seen) return;
+      const auto height_m = [&](double, double y) {
+        return ground.height_m + (static_cast<int>(y * 100) % 10 < 5 ? -ground.rough_m : ground.rough_m);
+      };
+      for (const Point& p : test::sample(patch, 0.05, 0.003, noise, height_m)) stages.dem.add(p);
+    };
+    map({0, 1.4, 0, 1.6}, {});
+    map({1.4, 2.4, 0, 1.6}, {.height_m = 0.12});
+    map({0, 1.4, 1.6, 2.4}, near);
+    map({1.4, 2.4, 1.6, 2.4}, far);
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(0.0f, 1.2f);
+    float end_m = 0.0f;
+    for (const Curb& curb : stages.tracer.curbs()) {
+      if (curb.kind != CurbKind::step_up || std::abs(curb.x1_m - curb.x0_m) > 0.1f) continue;  // another side
+      CHECK(curb.x0_m == Approx(1.4).margin(0.02));
+      CHECK(std::min(curb.y0_m, curb.y1_m) == Approx(0.0).margin(0.02));  // not beyond the window
+      end_m = std::max(curb.y0_m, curb.y1_m);
+    }
+    return end_m;
+  };
+  CHECK(end_m({}, unseen) == Approx(1.8).margin(0.02));
+  CHECK(end_m({}, hedge) == Approx(1.8).margin(0.02));
+  CHECK(end_m(hedge, {.height_m = 0.12}) == Approx(1.8).margin(0.02));
+  CHECK(end_m(unseen, unseen) == Approx(1.6).margin(0.02));
+  CHECK(end_m({}, {.height_m = 0.0}) == Approx(1.6).margin(0.03));  // the pavement's corner
+  CHECK(end_m({}, {.height_m = -0.1}) == Approx(1.6).margin(0.02));
+}
+
 TEST_CASE("curb tracer: the stated deviation of a height is no smaller than repeated maps show") {
   std::vector<double> heights;
   double stated = 0.0;

@@ -56,18 +56,21 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
 }
 
 //           |
-//         __|          the foot of a wall and the ground before it, in one reading
-//  _______|
+//           /
+//         _/           the foot of a wall and the ground before it, in one reading
+//  ______/
 TEST_CASE(
     "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a kerb is none") {
   const auto wall = [](double x, double y) {
     return 0.5 + 0.6 * (x - 1.2) + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
   };
-  const auto before_wall = [&](double strip_m) {
-    return [=](double x, double y) { return x >= 1.2 ? wall(x, y) : x < 1.0 ? 0.0 : strip_m; };
+  const auto before_wall = [&](double strip_m, double lean) {
+    return [=](double x, double y) { return x >= 1.2 ? wall(x, y) : x < 1.0 ? 0.0 : strip_m + lean * (x - 1.1); };
   };
-  CHECK(borne(before_wall(0.04)) == 1);
-  CHECK(borne(before_wall(-0.04)) == 2);  // a gutter
+  CHECK(borne(before_wall(0.04, 0.2)) == 1);
+  CHECK(borne(before_wall(0.4, 0.0)) == 1);    // the box itself
+  CHECK(borne(before_wall(0.08, 0.0)) == 2);   // a pavement
+  CHECK(borne(before_wall(-0.04, 0.2)) == 2);  // a gutter
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
 }
 
@@ -94,6 +97,7 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - slope * (x - 1.55) : -0.2; };
   };
   CHECK(borne(down(0.4)) == 2);
+  CHECK(borne(down(0.2)) == 2);  // less than half as steep as the rays, as where the edge is bent
   CHECK(borne(down(0.0)) == 3);
   CHECK(borne([](double x, double) {
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;

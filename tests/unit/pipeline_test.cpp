@@ -238,7 +238,8 @@ TEST_CASE("pipeline: a line costs half an inference, and the curbs are those of 
   for (int line = 0; line < 200; ++line) {
     const auto before = halves->counters();
     stand(*halves, laser, {}, line, line + 1);
-    const bool planes = halves->counters().evidences != before.evidences, labels = halves->counters().messages != before.messages;
+    const bool planes = halves->counters().evidences != before.evidences,
+               labels = halves->counters().messages != before.messages;
     CHECK_FALSE((planes && labels));
     add_tilts(*whole, line);
     const auto ranges = same.ranges({}, line, [](double) { return 0.0; });
