@@ -123,11 +123,15 @@ class CurbTracer {
   /// By how much the height may change along a piece: from its middle to an end by no more than the repeatability of a
   /// range-finder.
   static constexpr float most_change_m = 0.02f;
-  static float height_change_m(const Stages& stages, const Border& from, const Border& to);
+  static float height_change_m(const Stages& stages, const Border& border, float dx_m, float dy_m);
+  static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m) {
+    const float change_m = height_change_m(stages, border, dx_m, dy_m);
+    return change_m >= -most_change_m && change_m <= most_change_m;
+  }
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
-  void go_on(const Stages& stages, const Border& border, const Piece& piece, float& x_m, float& y_m) const;
+  void go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const;
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
 
@@ -190,8 +194,11 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
   do {
     int end = length - 1;
     for (int split = end; split >= 0; split = farthest_from_chord(work.borders, first, end, tolerance_m)) end = split;
-    while (end - first > 1 && height_change_m(stages, work.borders.at(first), work.borders.at(end)) > most_change_m)
-      end = (first + end) / 2;
+    const auto even_to = [&](const Border& to) {
+      const Border& from = work.borders.at(first);
+      return even(stages, from, to.x_m - from.x_m, to.y_m - from.y_m);
+    };
+    while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
     give_out(stages, first, end, length, work, counters);
     first = end;
   } while (first < length - 1);
@@ -222,14 +229,12 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
   return found;
 }
 
-/// By how much the step between two planes changes from one border to another.
+/// How much higher the step of a border is (dx, dy) from it: its high-numbered plane above the other.
 template <Limits limits>
-float CurbTracer<limits>::height_change_m(const Stages& stages, const Border& from, const Border& to) {
-  const Plane& low = stages.mixture.plane(from.low);
-  const Plane& high = beyond(stages, from);
-  const float change_m =
-      (high.slope_x - low.slope_x) * (to.x_m - from.x_m) + (high.slope_y - low.slope_y) * (to.y_m - from.y_m);
-  return change_m < 0.0f ? -change_m : change_m;
+float CurbTracer<limits>::height_change_m(const Stages& stages, const Border& border, float dx_m, float dy_m) {
+  const Plane& low = stages.mixture.plane(border.low);
+  const Plane& high = beyond(stages, border);
+  return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
 }
 
 /// Fits a line to the borders and takes the mean of what they tell.
@@ -281,26 +286,30 @@ auto CurbTracer<limits>::side(const Stages& stages, float x_m, float y_m, Label<
   return label == own ? Side::own : label == no_label<limits> ? Side::unseen : Side::other;
 }
 
-/// Where one of its sides is not seen no border tells of a line. From the end (x_m, y_m) of a chain it goes on cell by
-/// cell, as long as one side is that of its plane and the other no other plane's, as far as to the middle of the widest
-/// gap that a chain bridges.
+/// Where one of its sides is not seen no border tells of a line. From the end of a chain it goes on cell by cell, as
+/// long as one side is that of its plane, the other no other plane's, and its height one, and as far as to the middle
+/// of the widest gap that a chain bridges.
 template <Limits limits>
-void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, const Piece& piece, float& x_m,
-                               float& y_m) const {
-  const float dx_m = x_m - piece.x_m, dy_m = y_m - piece.y_m;
-  const float half_m = square_root(dx_m * dx_m + dy_m * dy_m);
-  if (!(half_m > 0.0f)) return;
+void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const {
+  LineFit::Segment& line = piece.line;
+  const float from_x = at_start ? line.x1_m : line.x0_m, from_y = at_start ? line.y1_m : line.y0_m;
+  float& x_m = at_start ? line.x0_m : line.x1_m;
+  float& y_m = at_start ? line.y0_m : line.y1_m;
+  const float dx_m = x_m - from_x, dy_m = y_m - from_y;
+  const float length_m = square_root(dx_m * dx_m + dy_m * dy_m);
+  if (!(length_m > 0.0f)) return;
   const float cell_m = 0.5f * (stages.dem.cell_x_m() + stages.dem.cell_y_m());
-  const float step_x = dx_m * cell_m / half_m, step_y = dy_m * cell_m / half_m;
-  const float along = (border.axis == 0 ? piece.line.normal_x : piece.line.normal_y) * border.sign;
+  const float step_x = dx_m * cell_m / length_m, step_y = dy_m * cell_m / length_m;
+  const float along = (border.axis == 0 ? line.normal_x : line.normal_y) * border.sign;
   const float aside_m = piece.half_gap_m > cell_m ? piece.half_gap_m : cell_m;
-  const float high_x = piece.line.normal_x * (along < 0.0f ? -aside_m : aside_m);
-  const float high_y = piece.line.normal_y * (along < 0.0f ? -aside_m : aside_m);
+  const float high_x = line.normal_x * (along < 0.0f ? -aside_m : aside_m);
+  const float high_y = line.normal_y * (along < 0.0f ? -aside_m : aside_m);
   for (int k = 0; k < settings_.link_reach / 2; ++k) {
     const float middle_x = x_m + 0.5f * step_x, middle_y = y_m + 0.5f * step_y;
     const Side high = side(stages, middle_x + high_x, middle_y + high_y, border.high);
     const Side low = side(stages, middle_x - high_x, middle_y - high_y, border.low);
     if (high == Side::other || low == Side::other || (high == Side::unseen && low == Side::unseen)) return;
+    if (!even(stages, border, x_m + step_x - from_x, y_m + step_y - from_y)) return;
     x_m += step_x;
     y_m += step_y;
   }
@@ -316,12 +325,15 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   const Dem<limits>& dem = stages.dem;
   const Border& border = work.borders.at(first);
   Piece piece = piece_of(stages, work.borders, first, last);
-  if (first == 0) go_on(stages, border, piece, piece.line.x0_m, piece.line.y0_m);
-  if (last == length - 1) go_on(stages, border, piece, piece.line.x1_m, piece.line.y1_m);
+  if (first == 0) go_on(stages, border, piece, true);
+  if (last == length - 1) go_on(stages, border, piece, false);
   Curb curb;
   curb.near_label = piece.low_is_near ? border.low : border.high;
   curb.far_label = piece.low_is_near ? border.high : border.low;
   curb.probability = piece.probability;
+  const float dx_m = 0.5f * (piece.line.x0_m + piece.line.x1_m) - piece.x_m;
+  const float dy_m = 0.5f * (piece.line.y0_m + piece.line.y1_m) - piece.y_m;
+  piece.height_m += height_change_m(stages, border, dx_m, dy_m);
   curb.height_m = piece.low_is_near ? piece.height_m : -piece.height_m;
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
