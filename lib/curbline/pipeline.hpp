@@ -22,6 +22,7 @@
 #include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/pose_track.hpp"
+#include "curbline/rising_times.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
@@ -116,7 +117,7 @@ class Pipeline {
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;  ///< which half of the inference is due
-  std::int64_t last_line_ns_ = INT64_MIN;
+  RisingTimes line_times_{};
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
   Counters counters_{};
@@ -143,7 +144,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   settings_ = settings;
   counters_ = Counters{};
   planes_next_ = true;
-  last_line_ns_ = INT64_MIN;
+  line_times_ = RisingTimes{};
   p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
   tilt_track_.init(settings.tilt);
@@ -196,7 +197,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     ++counters_.lines_dropped;
     return status;
   }
-  last_line_ns_ = line.time_ns;
+  line_times_.take(line.time_ns);
   ++counters_.lines;
   if (!motion.still) {
     const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
@@ -243,12 +244,12 @@ void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
       {p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy), p.growth_m_s, dem_.growth_m_s(slot)});
 }
 
-/// Everything that can be wrong with a line, before anything is changed; the tilt snapshot and the motion for it.
+/// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.
 template <Limits limits>
 Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt) {
   if (!ready_) return Status::not_initialised;
   if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
-  if (line.time_ns <= last_line_ns_) return Status::line_out_of_order;
+  if (!line_times_.admits(line.time_ns)) return Status::line_out_of_order;
   const std::int64_t last_beam_ns = line.time_ns + line_projection_.duration_ns(line.ranges_m.size());
   if (!settings_.pose.still) {
     Pose first, last;

@@ -9,6 +9,7 @@
 
 #include "curbline/frames.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/rising_times.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -31,10 +32,11 @@ class PoseTrack {
   void init(const PoseSettings& settings) {
     settings_ = settings;
     size_ = next_ = 0;
+    times_ = RisingTimes{};
   }
 
   /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not
-  /// later than the one before. O(1).
+  /// later than the one before (rising_times.hpp). O(1).
   bool push(const Pose& pose);
 
   /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
@@ -51,6 +53,7 @@ class PoseTrack {
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
+  RisingTimes times_{};
 };
 
 namespace detail {
@@ -60,7 +63,9 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 
 template <Limits limits>
 bool PoseTrack<limits>::push(const Pose& pose) {
-  if (!detail::acceptable(pose) || (size_ > 0 && pose.time_ns <= newest().time_ns)) return false;
+  if (!detail::acceptable(pose) || !times_.admits(pose.time_ns)) return false;
+  if (size_ > 0 && pose.time_ns <= newest().time_ns) size_ = 0;  // those before are of another time
+  times_.take(pose.time_ns);
   poses_[static_cast<std::size_t>(next_)] = pose;
   next_ = (next_ + 1) % limits.poses;
   if (size_ < limits.poses) ++size_;

@@ -14,7 +14,7 @@ enum class Status : std::uint8_t {
   bad_tilt,           ///< mount, latency or noise not finite, or a bound not positive
   bad_pose,           ///< noise or bound out of range
   bad_inference,      ///< a prior, coupling or bound out of range
-  line_out_of_order,  ///< the line is not later than the one before it: dropped
+  line_out_of_order,  ///< the line is not later than the one before it (rising_times.hpp): dropped
   line_too_long,      ///< more beams than the laser has: dropped
   no_tilt,            ///< no tilt angle near the line's time: dropped
   no_pose,            ///< no pose near the line's time: dropped

@@ -10,6 +10,7 @@
 
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
+#include "curbline/rising_times.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -60,14 +61,15 @@ class TiltTrack {
     settings_ = settings;
     written_.store(0, std::memory_order_relaxed);
     dropped_.store(0, std::memory_order_relaxed);
-    last_ns_ = INT64_MIN;
+    times_ = RisingTimes{};
   }
 
   /// No servo winds further, and what follows can reduce it: a greater angle is a damaged frame.
   static constexpr float max_angle_rad = 1e6f;
 
-  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before. O(1),
-  /// wait-free: may be called from an interrupt while another context takes snapshots. One writer only.
+  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before
+  /// (rising_times.hpp). O(1), wait-free: may be called from an interrupt while another context takes snapshots. One
+  /// writer only.
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
@@ -85,16 +87,16 @@ class TiltTrack {
   std::array<Entry, limits.tilt_samples> entries_{};
   std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32
   std::atomic<std::uint32_t> dropped_{0};
-  std::int64_t last_ns_ = INT64_MIN;  ///< the writer's
+  RisingTimes times_{};  ///< the writer's
 };
 
 template <Limits limits>
 bool TiltTrack<limits>::push(const TiltReading& reading) {
-  if (!(reading.angle_rad >= -max_angle_rad && reading.angle_rad <= max_angle_rad) || reading.time_ns <= last_ns_) {
+  if (!(reading.angle_rad >= -max_angle_rad && reading.angle_rad <= max_angle_rad) || !times_.admits(reading.time_ns)) {
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return false;
   }
-  last_ns_ = reading.time_ns;
+  times_.take(reading.time_ns);
   const std::uint32_t n = written_.load(std::memory_order_relaxed);
   std::atomic_thread_fence(std::memory_order_release);  // no store below is seen before the count above
   Entry& entry = entries_[n % limits.tilt_samples];
@@ -124,7 +126,9 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) cons
   const std::uint32_t added = written_.load(std::memory_order_relaxed) - before + 1;
   const std::uint32_t room = capacity - count;
   const std::uint32_t lost = added > room ? added - room : 0;
-  const std::uint32_t kept = lost < count ? count - lost : 0;
+  const std::uint32_t whole = lost < count ? count - lost : 0;
+  std::uint32_t kept = whole > 0 ? 1 : 0;  // what came before the times went back is of another time
+  while (kept < whole && out.readings_[count - kept - 1].time_ns < out.readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) out.readings_[k] = out.readings_[count - kept + k];
   out.size_ = static_cast<int>(kept);
   out.cursor_ = 0;

@@ -16,10 +16,12 @@ class TurnClock {
   void restart();
 
   /// When the last byte of a line left the scanner. `turns` after the line before, or more if it is late by more than
-  /// eight such lines: then some were lost. Times go up.
+  /// eight such lines: then some were lost. Times go up, unless the host's clock is set back by a second or more.
   std::int64_t sent_ns(std::int64_t arrival_ns, std::int64_t turns);
 
  private:
+  static constexpr std::int64_t set_back_ns = 1'000'000'000;
+
   scanner::LowerEnvelope offset_{1'000'000'000};
   std::int64_t turns_ = 0, last_ns_ = INT64_MIN;
 };

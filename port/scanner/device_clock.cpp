@@ -28,7 +28,8 @@ std::int64_t StampCounter::nearest_ns(std::int64_t device_ns, std::int64_t near_
 
 void LowerEnvelope::add(std::int64_t value_ns, std::int64_t now_ns) {
   if (empty()) window_start_ns_ = now_ns;
-  if (now_ns - window_start_ns_ >= window_ns_) {
+  const bool set_back = window_start_ns_ - now_ns >= window_ns_;  // the host's clock; bunches may change places
+  if (set_back || now_ns - window_start_ns_ >= window_ns_) {
     before_ = now_;
     now_ = none;
     window_start_ns_ = now_ns;

@@ -1,5 +1,6 @@
 // A scanner's clock against the host's. Delays are drawn as they come on a network: a least one, and more at random.
 #include <catch2/catch.hpp>
+#include <climits>
 #include <random>
 
 #include "lms200/turn_clock.hpp"
@@ -42,16 +43,18 @@ TEST_CASE("clock: the time of a log is found from its counter for hours around")
 }
 
 /// Lines of 40 Hz with a delay of 20 ms and up to 30 more; the scanner's clock is `ppm` fast. Largest error after the
-/// first second.
-std::int64_t worst_error_ns(scanner::DeviceClock& clock, double ppm, int seconds, std::int64_t true_offset_ns) {
+/// first second. After `set_back_s` the host's clock is set back by an hour.
+std::int64_t worst_error_ns(scanner::DeviceClock& clock, double ppm, int seconds, std::int64_t true_offset_ns,
+                            int set_back_s = INT_MAX / 40) {
   std::mt19937 random(3);
   std::int64_t worst_ns = 0;
   for (int i = 0; i < 40 * seconds; ++i) {
-    const std::int64_t host_ns = epoch_ns + i * 25 * ms;
+    const std::int64_t host_ns = epoch_ns + i * 25 * ms - (i > 40 * set_back_s ? 3600 * s : 0);
     const auto device_ns =
         static_cast<std::int64_t>(static_cast<double>(i * 25 * ms) * (1 + ppm * 1e-6)) - true_offset_ns;
     clock.follow(device_ns, host_ns + 20 * ms + static_cast<std::int64_t>(random() % 30) * ms);
-    if (i > 40) worst_ns = std::max(worst_ns, std::abs(clock.to_host(device_ns) - host_ns));
+    const bool settled = i > 40 && (i < 40 * set_back_s || i > 40 * (set_back_s + 1));
+    if (settled) worst_ns = std::max(worst_ns, std::abs(clock.to_host(device_ns) - host_ns));
   }
   return worst_ns;
 }
@@ -60,6 +63,12 @@ TEST_CASE("clock: late lines do not move it, and a drift of 50 ppm is followed t
   scanner::DeviceClock clock(25 * ms);
   for (const std::int64_t delay_ns : {9 * ms, ms / 2, 4 * ms}) clock.anchor(-7 * s, epoch_ns - 7 * s + delay_ns);
   CHECK(worst_error_ns(clock, 50.0, 120, 0) < 3 * ms / 2);
+}
+
+TEST_CASE("clock: where the host's is set back, the drift is followed on") {
+  scanner::DeviceClock clock(25 * ms);
+  clock.anchor(-77 * s, epoch_ns);
+  CHECK(worst_error_ns(clock, -50.0, 400, 77 * s, 30) < 2 * ms);
 }
 
 TEST_CASE("clock: without an anchor the least delay of a line is taken as stated") {
@@ -81,6 +90,15 @@ TEST_CASE("turn clock: lines that wait in a driver and come in bunches keep thei
     if (i > 10) worst_ns = std::max(worst_ns, std::abs(time_ns - sent_ns));
   }
   CHECK(worst_ns < 3 * ms);
+}
+
+TEST_CASE("turn clock: where the host's clock is set back its times go with it") {
+  lms200::TurnClock clock;
+  for (int i = 0; i < 100; ++i) clock.sent_ns(epoch_ns + i * lms200::turn_ns, 1);
+  for (int i = 100; i < 200; ++i) {
+    const std::int64_t at_ns = epoch_ns + i * lms200::turn_ns - 3600 * s;
+    CHECK(std::abs(clock.sent_ns(at_ns, 1) - at_ns) < ms);
+  }
 }
 
 TEST_CASE("turn clock: a gap is made up for") {

@@ -143,6 +143,27 @@ TEST_CASE("pipeline: each bad line is answered with its reason, counted, and cha
   CHECK(bytes(pipeline->curbs()) == before);
 }
 
+TEST_CASE("pipeline: when the clock is set back it goes on within half a second, and finds the same curbs") {
+  const auto pipeline = started(), untouched = started();
+  NoddingLaser laser, same;
+  constexpr int before = 120, after = 220;
+  stand(*untouched, same, {}, 0, after);
+  stand(*pipeline, laser, {}, 0, before);
+  int dropped = 0;
+  for (int line = before; line < after; ++line) {
+    constexpr std::int64_t hour_ns = 3'600'000'000'000;
+    const double time_s = NoddingLaser::line_time_s(line);
+    for (const double tilt_s : {time_s + 0.01, time_s + 0.02, time_s + 0.03}) {
+      pipeline->add_tilt({NoddingLaser::ns(tilt_s) - hour_ns, static_cast<float>(NoddingLaser::tilt_rad(tilt_s))});
+    }
+    const auto ranges = laser.ranges(Street{}, line, [](double) { return 0.0; });
+    dropped += pipeline->take({NoddingLaser::ns(time_s) - hour_ns, ranges}) != Status::ok;
+  }
+  CHECK(dropped < 20);
+  REQUIRE(pipeline->curbs().size() == untouched->curbs().size());
+  CHECK(pipeline->curbs()[0].height_m == Approx(untouched->curbs()[0].height_m).margin(0.003));
+}
+
 TEST_CASE("pipeline: a robot that moves needs poses") {
   Settings settings = NoddingLaser::settings();
   settings.pose.still = false;

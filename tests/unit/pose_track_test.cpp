@@ -114,6 +114,20 @@ TEST_CASE("pose track: poses that are not later, not finite or not unit quaterni
   CHECK(track.push(driving(t0 + 100 * ms)));
 }
 
+TEST_CASE("pose track: after a pose of the future, or a clock that is set back, poses are taken again") {
+  Track track = track_of(5);
+  REQUIRE(track.push(driving(t0 + 3'600'000 * ms)));
+  int refused = 0;
+  std::int64_t at = t0 + 250 * ms;
+  for (; refused < 100 && !track.push(driving(at)); at += 10 * ms) ++refused;
+  CHECK(refused == RisingTimes::most_refused);
+  REQUIRE(track.push(driving(at + 10 * ms)));
+  Pose pose;
+  REQUIRE(track.at(at + 5 * ms, pose));
+  CHECK(pose.x_m == Approx(driving(at + 5 * ms).x_m).margin(1e-5));
+  CHECK(track.at(t0 + 100 * ms, pose) == false);  // of before
+}
+
 TEST_CASE("pose track: the newest poses are kept, the oldest give way") {
   const Track track = track_of(30);
   Pose pose;

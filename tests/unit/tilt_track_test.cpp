@@ -109,6 +109,30 @@ TEST_CASE("tilt track: repeated, older and not finite readings are dropped and c
   CHECK(snapshot(*track).at(t0 + 25 * ms).angle_rad == Approx(-0.1925));
 }
 
+TEST_CASE("tilt track: after a stamp of the future, or a clock that is set back, readings are taken again") {
+  for (const std::int64_t ahead : {500 * ms, 3'600'000 * ms}) {
+    const auto track = turning(3);
+    REQUIRE(track->push({t0 + 50 * ms + ahead, 0.0f}));
+    int refused = 0;
+    std::int64_t at = t0 + 75 * ms;
+    for (; refused < 100 && !track->push({at, 0.1f}); at += 10 * ms) ++refused;
+    CHECK(refused == RisingTimes::most_refused);
+    CHECK(snapshot(*track).at(at).angle_rad == 0.1f);
+    REQUIRE(track->push({at + 10 * ms, 0.2f}));
+    Snapshot angles = snapshot(*track);
+    CHECK(angles.at(t0 + 25 * ms).source == Source::none);  // of before
+    CHECK(angles.at(at + 5 * ms).angle_rad == Approx(0.15));
+    CHECK(angles.at(t0 + 50 * ms + ahead).source == Source::none);
+  }
+}
+
+TEST_CASE("tilt track: readings that come late do not make it start afresh, however many they are") {
+  const auto track = turning(4);
+  for (int k = 0; k < 100; ++k) CHECK_FALSE(track->push({t0 + 25 * ms * (k % 3), 0.5f}));
+  CHECK(snapshot(*track).at(t0 + 25 * ms).angle_rad == Approx(-0.1925));
+  CHECK(track->push({t0 + 100 * ms, 0.0f}));
+}
+
 TEST_CASE("tilt track: the newest readings are kept") {
   const auto track = turning(100);
   Snapshot angles = snapshot(*track);

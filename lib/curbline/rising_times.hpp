@@ -1,0 +1,32 @@
+// Times that must rise: of readings, poses and scan lines. What is not later than the newest is refused; but where 16
+// times on end rise among themselves, it is the newest that was wrong, a damaged stamp or a clock that has been set
+// back since, and they are right. No queue on the way holds as many in order. O(1); one context.
+#pragma once
+
+#include <cstdint>
+
+namespace curbline {
+
+class RisingTimes {
+ public:
+  static constexpr int most_refused = 15;  ///< in a row that rise
+
+  /// May a time follow the newest? Counts it if not.
+  bool admits(std::int64_t time_ns) {
+    if (time_ns > newest_ns_) return true;
+    refused_ = refused_ > 0 && time_ns > last_refused_ns_ ? refused_ + 1 : 1;
+    last_refused_ns_ = time_ns;
+    return refused_ > most_refused;
+  }
+  /// Makes it the newest.
+  void take(std::int64_t time_ns) {
+    newest_ns_ = time_ns;
+    refused_ = 0;
+  }
+
+ private:
+  std::int64_t newest_ns_ = INT64_MIN, last_refused_ns_ = 0;
+  int refused_ = 0;  ///< in a row that rise
+};
+
+}  // namespace curbline
