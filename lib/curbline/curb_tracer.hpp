@@ -287,8 +287,9 @@ auto CurbTracer<limits>::side(const Stages& stages, float x_m, float y_m, Label<
 }
 
 /// Where one of its sides is not seen no border tells of a line. From the end of a chain it goes on cell by cell, as
-/// long as one side is that of its plane, the other no other plane's, and its height one, and as far as to the middle
-/// of the widest gap that a chain bridges.
+/// long as one side is that of its plane, the other no other plane's, and its height one; no farther than to the middle
+/// of the widest gap that a chain bridges, nor than a quarter of its length, where the variance of where it lies has
+/// doubled.
 template <Limits limits>
 void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const {
   LineFit::Segment& line = piece.line;
@@ -304,7 +305,8 @@ void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece
   const float aside_m = piece.half_gap_m > cell_m ? piece.half_gap_m : cell_m;
   const float high_x = line.normal_x * (along < 0.0f ? -aside_m : aside_m);
   const float high_y = line.normal_y * (along < 0.0f ? -aside_m : aside_m);
-  for (int k = 0; k < settings_.link_reach / 2; ++k) {
+  const float most = 0.25f * length_m / cell_m;
+  for (int k = 1; 2 * k <= settings_.link_reach && static_cast<float>(k) <= most; ++k) {
     const float middle_x = x_m + 0.5f * step_x, middle_y = y_m + 0.5f * step_y;
     const Side high = side(stages, middle_x + high_x, middle_y + high_y, border.high);
     const Side low = side(stages, middle_x - high_x, middle_y - high_y, border.low);
