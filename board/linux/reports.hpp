@@ -8,7 +8,7 @@
 #include "can/tilt_decoder.hpp"
 #include "curb_server.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curb.hpp"
 #include "curbline/line_queue.hpp"
 #include "curbline/tilt_watch.hpp"
 #include "latency_histogram.hpp"

@@ -27,7 +27,7 @@
 
 #include "can/frame.hpp"
 #include "can/signal.hpp"
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curb.hpp"
 #include "curbline/tilt_watch.hpp"
 
 namespace curbline::can {

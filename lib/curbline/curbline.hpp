@@ -27,7 +27,8 @@
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell
-#include "curbline/curb_tracer.hpp"      // out: curbs
+#include "curbline/curb.hpp"             // out: a curb
+#include "curbline/curb_tracer.hpp"      // from borders to curbs
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/pipeline.hpp"         // all of it, on one screen

@@ -36,7 +36,4 @@ class LineFit {
   float n_ = 0.0f, x_ = 0.0f, y_ = 0.0f, xx_ = 0.0f, xy_ = 0.0f, yy_ = 0.0f;
 };
 
-/// Correctly rounded, from the hardware or the compiler's soft-float: the one library function that lib/ uses.
-float square_root(float x);
-
 }  // namespace curbline

@@ -1,5 +1,5 @@
 // The few functions that the algorithm needs of a maths library, in float and with the same bits on every target: no
-// libm, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
+// libm but the square root, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
 #pragma once
 
 #include <bit>
@@ -24,6 +24,9 @@ constexpr std::int32_t floor_to_int(float x) {
 constexpr bool is_finite(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u;
 }
+
+/// Correctly rounded, from the hardware or the compiler's soft-float.
+float square_root(float x);
 
 /// e^x, relative error below 4e-7 for x in [-80, 80]; beyond, the value at that end.
 float exp(float x);

@@ -2,7 +2,7 @@
 // ground is not passable.
 #pragma once
 
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curb.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/plane_mixture.hpp"

@@ -1,6 +1,12 @@
 #include "curbline/math.hpp"
 
+#include <cmath>
+
 namespace curbline {
+
+float square_root(float x) {
+  return std::sqrt(x);
+}
 
 float exp(float x) {
   if (x > 80.0f) x = 80.0f;

@@ -1,6 +1,6 @@
 #include "curbline/tilt_latency.hpp"
 
-#include "curbline/line_fit.hpp"
+#include "curbline/math.hpp"
 
 namespace curbline {
 namespace {

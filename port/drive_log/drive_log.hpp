@@ -15,7 +15,7 @@
 
 #include "can/signal.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curb.hpp"
 #include "curbline/pose_track.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"

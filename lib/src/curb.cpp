@@ -1,9 +1,9 @@
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curb.hpp"
 
-#include <cmath>
+#include "curbline/ground.hpp"
+#include "curbline/math.hpp"
 
 namespace curbline {
-namespace {}  // namespace
 
 const char* to_string(CurbKind kind) {
   switch (kind) {
@@ -35,11 +35,6 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
   return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
 }
 
-float before_middle(const CrossedCell& cell) {
-  const float far_share = cell.far_share < 0.0f ? 0.0f : cell.far_share > 1.0f ? 1.0f : cell.far_share;
-  return 0.5f - far_share + cell.centroid;
-}
-
 float overlap_m(const Curb& now, const Curb& before, float near_m) {
   const float dx = before.x1_m - before.x0_m, dy = before.y1_m - before.y0_m;
   const float length = square_root(dx * dx + dy * dy);
@@ -51,25 +46,6 @@ float overlap_m(const Curb& now, const Curb& before, float near_m) {
   const float a = along(now.x0_m, now.y0_m), b = along(now.x1_m, now.y1_m);
   const float from = a < b ? a : b, to = a < b ? b : a;
   return (to < length ? to : length) - (from > 0.0f ? from : 0.0f);
-}
-
-float square_root(float x) {
-  return std::sqrt(x);
-}
-
-LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {
-  // Eigenvector of the larger eigenvalue of the scatter, from whichever row keeps more digits.
-  const float half_difference = 0.5f * (xx_ - yy_);
-  const float radius = square_root(half_difference * half_difference + xy_ * xy_);
-  float ux = half_difference >= 0.0f ? half_difference + radius : xy_;
-  float uy = half_difference >= 0.0f ? xy_ : radius - half_difference;
-  const float length = square_root(ux * ux + uy * uy);
-  if (!(length > 0.0f)) return {x0_m, y0_m, x1_m, y1_m, 0.0f, 0.0f};
-  ux /= length;
-  uy /= length;
-  const float margin = margin_m * ((x1_m - x0_m) * ux + (y1_m - y0_m) * uy < 0.0f ? -1.0f : 1.0f);
-  const float t0 = (x0_m - x_) * ux + (y0_m - y_) * uy - margin, t1 = (x1_m - x_) * ux + (y1_m - y_) * uy + margin;
-  return {x_ + t0 * ux, y_ + t0 * uy, x_ + t1 * ux, y_ + t1 * uy, -uy, ux};
 }
 
 }  // namespace curbline

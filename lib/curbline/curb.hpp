@@ -1,0 +1,60 @@
+// What the pipeline gives out: a piece of curb, its kind, and how two of them are told to be one.
+#pragma once
+
+#include <cstdint>
+
+#include "curbline/line_fit.hpp"
+#include "curbline/plane.hpp"
+
+namespace curbline {
+
+enum class CurbKind : std::uint8_t {
+  step_up,    ///< the far side is higher
+  step_down,  ///< the far side is lower
+  crease,     ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall; and the end
+              ///< of a face beyond which no ground is seen
+  ramp_edge,  ///< a crease of which one side alone rises or falls away from it by more than 1 in 20: a ramp, by ISO
+              ///< 21542
+};
+const char* to_string(CurbKind kind);
+
+/// A straight piece of curb line, in the map frame. Near is the side of the robot.
+struct Curb {
+  float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
+  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them and of the piece, along
+                          ///< which it changes by 2 cm at most; above 0 is a step up; 0 of a crease or the edge of a
+                          ///< ramp
+  float height_sd_m = 0.0f;   ///< from both planes' posteriors, and how far the cells beside the border lie off them
+  float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
+  float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, less the shadow of a step
+                              ///< down: to a cell; 0 of the end of a face
+  CurbKind kind = CurbKind::crease;
+  /// The same as long as the curb is found, 1 to 65535; may be given anew when that many have been.
+  std::uint16_t id = 0;
+  /// Far is no_label where no ground is seen beyond: at the end of a face, and at a brink, a step down of which the
+  /// height is what is seen of it, the mean along the piece, and the standard deviation as if up to as much again were
+  /// hidden.
+  std::uint16_t near_label = 0, far_label = 0;
+};
+
+inline bool is_step(const Curb& curb) {
+  return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
+}
+
+/// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line.
+/// Else 0 or less.
+float overlap_m(const Curb& now, const Curb& before, float near_m);
+
+/// A border as it was drawn between two planes.
+struct DrawnBorder {
+  float height_m, height_sd_m;  ///< second plane less first there
+  float half_gap_m;             ///< between the cells of the one and the other
+  float reach_m;                ///< how far the planes' meeting may lie away
+};
+
+/// Planes of different slope make a crease where they meet. A border between them is one if they meet within reach of
+/// it and differ in height there by no more than their slopes make up across half the gap, and what is not known (95 %)
+/// of the planes and of the cells by which the border was drawn. CurbKind::step_up stands for either step.
+CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
+
+}  // namespace curbline

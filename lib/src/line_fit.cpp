@@ -1,0 +1,22 @@
+#include "curbline/line_fit.hpp"
+
+#include "curbline/math.hpp"
+
+namespace curbline {
+
+LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {
+  // Eigenvector of the larger eigenvalue of the scatter, from whichever row keeps more digits.
+  const float half_difference = 0.5f * (xx_ - yy_);
+  const float radius = square_root(half_difference * half_difference + xy_ * xy_);
+  float ux = half_difference >= 0.0f ? half_difference + radius : xy_;
+  float uy = half_difference >= 0.0f ? xy_ : radius - half_difference;
+  const float length = square_root(ux * ux + uy * uy);
+  if (!(length > 0.0f)) return {x0_m, y0_m, x1_m, y1_m, 0.0f, 0.0f};
+  ux /= length;
+  uy /= length;
+  const float margin = margin_m * ((x1_m - x0_m) * ux + (y1_m - y0_m) * uy < 0.0f ? -1.0f : 1.0f);
+  const float t0 = (x0_m - x_) * ux + (y0_m - y_) * uy - margin, t1 = (x1_m - x_) * ux + (y1_m - y_) * uy + margin;
+  return {x_ + t0 * ux, y_ + t0 * uy, x_ + t1 * ux, y_ + t1 * uy, -uy, ux};
+}
+
+}  // namespace curbline
