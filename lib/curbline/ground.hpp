@@ -4,11 +4,11 @@
 //     sides makes.
 //   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it is no wider than the shadow of a step down, and falls away as rays do or
-//     is so narrow that its slope is not known: what is seen beyond an edge is flatter than the ray that grazes it, and
-//     so wider.
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp or so
+//     narrow that its slope is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so
+//     wider.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
-//     long, and higher than the ground: readings that mix the obstacle and the ground around it.
+//     long, that rises above the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
 // tell nothing of it. A plane that falls away as rays do and is not known to be a veil is borne by its cells, but no
