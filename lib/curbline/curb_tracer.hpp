@@ -286,6 +286,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   curb.near_label = piece.low_is_near ? border.low : border.high;
   curb.far_label = piece.low_is_near ? border.high : border.low;
   curb.probability = piece.probability;
+  // The height is that of the line's middle, not of the borders' mean.
   const float dx_m = 0.5f * (piece.line.x0_m + piece.line.x1_m) - piece.x_m;
   const float dy_m = 0.5f * (piece.line.y0_m + piece.line.y1_m) - piece.y_m;
   piece.height_m += height_change_m(stages, border, dx_m, dy_m);
