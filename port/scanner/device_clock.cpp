@@ -28,9 +28,9 @@ std::int64_t StampCounter::nearest_ns(std::int64_t device_ns, std::int64_t near_
 
 void LowerEnvelope::add(std::int64_t value_ns, std::int64_t now_ns) {
   if (empty()) window_start_ns_ = now_ns;
-  const bool set_back = window_start_ns_ - now_ns >= window_ns_;  // the host's clock; bunches may change places
-  if (set_back || now_ns - window_start_ns_ >= window_ns_) {
-    before_ = now_;
+  const std::int64_t since_ns = now_ns - window_start_ns_;  // below 0: bunches change places, or the clock was set back
+  if (since_ns >= window_ns_ || since_ns <= -window_ns_) {
+    before_ = since_ns < 2 * window_ns_ ? now_ : value_ns;  // none in a whole window: what was is out of date
     now_ = none;
     window_start_ns_ = now_ns;
   }

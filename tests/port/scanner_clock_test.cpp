@@ -1,6 +1,5 @@
 // A scanner's clock against the host's. Delays are drawn as they come on a network: a least one, and more at random.
 #include <catch2/catch.hpp>
-#include <climits>
 #include <random>
 
 #include "lms200/turn_clock.hpp"
@@ -42,18 +41,23 @@ TEST_CASE("clock: the time of a log is found from its counter for hours around")
   CHECK(counter.nearest_ns(device_ns + 0x1000000 * ms, time_ns) == time_ns);
 }
 
+struct ClockSet {
+  int after_s = 1'000'000;
+  std::int64_t by_ns = 0;
+};
+
 /// Lines of 40 Hz with a delay of 20 ms and up to 30 more; the scanner's clock is `ppm` fast. Largest error after the
-/// first second. After `set_back_s` the host's clock is set back by an hour.
+/// first second, and the first after the host's clock is set to another time.
 std::int64_t worst_error_ns(scanner::DeviceClock& clock, double ppm, int seconds, std::int64_t true_offset_ns,
-                            int set_back_s = INT_MAX / 40) {
+                            ClockSet set = {}) {
   std::mt19937 random(3);
   std::int64_t worst_ns = 0;
   for (int i = 0; i < 40 * seconds; ++i) {
-    const std::int64_t host_ns = epoch_ns + i * 25 * ms - (i > 40 * set_back_s ? 3600 * s : 0);
+    const std::int64_t host_ns = epoch_ns + i * 25 * ms + (i > 40 * set.after_s ? set.by_ns : 0);
     const auto device_ns =
         static_cast<std::int64_t>(static_cast<double>(i * 25 * ms) * (1 + ppm * 1e-6)) - true_offset_ns;
     clock.follow(device_ns, host_ns + 20 * ms + static_cast<std::int64_t>(random() % 30) * ms);
-    const bool settled = i > 40 && (i < 40 * set_back_s || i > 40 * (set_back_s + 1));
+    const bool settled = i > 40 && (i < 40 * set.after_s || i > 40 * (set.after_s + 1));
     if (settled) worst_ns = std::max(worst_ns, std::abs(clock.to_host(device_ns) - host_ns));
   }
   return worst_ns;
@@ -65,10 +69,12 @@ TEST_CASE("clock: late lines do not move it, and a drift of 50 ppm is followed t
   CHECK(worst_error_ns(clock, 50.0, 120, 0) < 3 * ms / 2);
 }
 
-TEST_CASE("clock: where the host's is set back, the drift is followed on") {
-  scanner::DeviceClock clock(25 * ms);
-  clock.anchor(-77 * s, epoch_ns);
-  CHECK(worst_error_ns(clock, -50.0, 400, 77 * s, 30) < 2 * ms);
+TEST_CASE("clock: where the host's is set to another time it goes with it, and follows the drift on") {
+  for (const std::int64_t by_ns : {-3600 * s, 3600 * s}) {
+    scanner::DeviceClock clock(25 * ms);
+    clock.anchor(-77 * s, epoch_ns);
+    CHECK(worst_error_ns(clock, -50.0, 400, 77 * s, {30, by_ns}) < 2 * ms);
+  }
 }
 
 TEST_CASE("clock: without an anchor the least delay of a line is taken as stated") {
