@@ -59,8 +59,8 @@ class CurbTracer {
   /// Borders that lie on one line; means of what they tell.
   struct Piece {
     LineFit::Segment line{};
-    float x_m = 0.0f, y_m = 0.0f;               ///< its middle
-    float height_m = 0.0f, variance_m2 = 0.0f;  ///< of the high-numbered plane above the other
+    float x_m = 0.0f, y_m = 0.0f;             ///< mean of the borders
+    float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
     float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
     float gap_m = 0.0f, cell_m = 0.0f;  ///< across it: between the cells' centres; of one cell
     bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
@@ -76,11 +76,7 @@ class CurbTracer {
   /// By how much the height may change along a piece: from its middle to an end by no more than the repeatability of a
   /// range-finder.
   static constexpr float most_change_m = 0.02f;
-  static float height_change_m(const Stages& stages, const Border& border, float dx_m, float dy_m);
-  static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m) {
-    const float change_m = height_change_m(stages, border, dx_m, dy_m);
-    return change_m >= -most_change_m && change_m <= most_change_m;
-  }
+  static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m);
   static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
@@ -182,12 +178,13 @@ int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int 
   return found;
 }
 
-/// How much higher the step of a border is (dx, dy) from it: its high-numbered plane above the other.
+/// Is a border's step one height from one place to another, (dx, dy) from it?
 template <Limits limits>
-float CurbTracer<limits>::height_change_m(const Stages& stages, const Border& border, float dx_m, float dy_m) {
+bool CurbTracer<limits>::even(const Stages& stages, const Border& border, float dx_m, float dy_m) {
   const Plane& low = stages.mixture.plane(border.low);
   const Plane& high = beyond(stages, border);
-  return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
+  const float change_m = (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
+  return change_m >= -most_change_m && change_m <= most_change_m;
 }
 
 /// Fits a line to the borders and takes the mean of what they tell.
@@ -206,7 +203,7 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
     const Border& border = borders.at(k);
     const float x_m = border.x_m, y_m = border.y_m;
     fit.add(x_m, y_m);
-    piece.height_m += n * (high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - border.drop_m);
+    piece.drop_m += n * border.drop_m;
     piece.variance_m2 += n * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += n * border.probability;
     piece.half_gap_m += n * border.half_gap_m;
@@ -256,8 +253,8 @@ void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece
   const float step_x = dx_m * cell_m / length_m, step_y = dy_m * cell_m / length_m;
   const float along = (border.axis == 0 ? line.normal_x : line.normal_y) * border.sign;
   const float aside_m = piece.half_gap_m > cell_m ? piece.half_gap_m : cell_m;
-  const float high_x = line.normal_x * (along < 0.0f ? -aside_m : aside_m);
-  const float high_y = line.normal_y * (along < 0.0f ? -aside_m : aside_m);
+  const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
+  const float high_x = line.normal_x * to_high_m, high_y = line.normal_y * to_high_m;
   const float most = 0.25f * length_m / cell_m;
   for (int k = 1; 2 * k <= settings_.link_reach && static_cast<float>(k) <= most; ++k) {
     const float middle_x = x_m + 0.5f * step_x, middle_y = y_m + 0.5f * step_y;
@@ -286,15 +283,15 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   curb.near_label = piece.low_is_near ? border.low : border.high;
   curb.far_label = piece.low_is_near ? border.high : border.low;
   curb.probability = piece.probability;
-  // The height is that of the line's middle, not of the borders' mean.
-  const float dx_m = 0.5f * (piece.line.x0_m + piece.line.x1_m) - piece.x_m;
-  const float dy_m = 0.5f * (piece.line.y0_m + piece.line.y1_m) - piece.y_m;
-  piece.height_m += height_change_m(stages, border, dx_m, dy_m);
-  curb.height_m = piece.low_is_near ? piece.height_m : -piece.height_m;
+  const Plane& low = stages.mixture.plane(border.low);
+  const Plane& high = beyond(stages, border);
+  const float middle_x = 0.5f * (piece.line.x0_m + piece.line.x1_m);
+  const float middle_y = 0.5f * (piece.line.y0_m + piece.line.y1_m);
+  const float height_m = high.height_m(middle_x, middle_y) - low.height_m(middle_x, middle_y) - piece.drop_m;
+  curb.height_m = piece.low_is_near ? height_m : -height_m;
   const float reach_m =
       static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  curb.kind = kind_of(stages.mixture.plane(border.low), beyond(stages, border), piece.line,
-                      {piece.height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
+  curb.kind = kind_of(low, high, piece.line, {height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
   if (curb.kind != CurbKind::step_up) {
     curb.height_m = 0.0f;
   } else if (curb.height_m < 0.0f) {

@@ -20,9 +20,9 @@ class TurnClock {
   std::int64_t sent_ns(std::int64_t arrival_ns, std::int64_t turns);
 
  private:
-  static constexpr std::int64_t set_back_ns = 1'000'000'000;
+  static constexpr std::int64_t window_ns = 1'000'000'000;
 
-  scanner::LowerEnvelope offset_{1'000'000'000};
+  scanner::LowerEnvelope offset_{window_ns};
   std::int64_t turns_ = 0, last_ns_ = INT64_MIN;
 };
 
