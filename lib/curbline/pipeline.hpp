@@ -331,6 +331,7 @@ void Pipeline<limits>::follow_regions() {
 template <Limits limits>
 int Pipeline<limits>::follow_labels(FieldScope scope) {
   const int changed = label_field_.update(dem_, plane_mixture_, scope, workspace_.visits(), counters_);
+  plane_mixture_.forget_changes();
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
       const auto belief = label_field_.belief(dem_, i, j);

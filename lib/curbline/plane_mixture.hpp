@@ -52,6 +52,9 @@ class PlaneMixture {
   template <typename ForEachBelief>
   void maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief);
 
+  /// Labels have followed: what is fresh or relabelled counts from here.
+  void forget_changes();
+
   /// Forgets a cell that leaves the window.
   void forget(int slot) { region_label_[static_cast<std::size_t>(slot)] = none; }
 
@@ -64,11 +67,11 @@ class PlaneMixture {
   }
 
   const Plane& plane(int label) const { return planes_[static_cast<std::size_t>(label)]; }
-  /// True if the label was born, died, or became ground or none in the last update().
+  /// True if the label was born, died, or became ground or none since forget_changes().
   bool fresh(int label) const { return fresh_[static_cast<std::size_t>(label)]; }
   /// The plane of a cell's region; none if the region is too small for one.
   LabelType region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
-  /// True if that changed in the last update().
+  /// True if that changed since forget_changes().
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
   /// Is the plane ground, which cells may bear? ground.hpp
   bool ground(int label) const { return ground_.is(label); }
@@ -100,7 +103,6 @@ class PlaneMixture {
   static constexpr float least_clean_cells = 4.0f;
 
   void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
-  void forget_changes();
   void match(Ranking& ranking);
   template <typename RankOf>
   void fit(const Dem<limits>& dem, const Ranking& ranking, RankOf&& rank_of);
@@ -118,7 +120,6 @@ template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
                                   const Viewpoint& view, LabelOf&& label_of, Counters& counters) {
-  forget_changes();
   if (!dem.any_touched()) return;
   Ranking ranking;
   rank_regions(work, ranking, counters);

@@ -54,7 +54,9 @@ struct Stages {
     segmented = &work.segmentation();
     segmentation.update(dem, *segmented, counters);
   }
+  /// What it changes can be asked until the next one.
   void mix() {
+    mixture.forget_changes();
     mixture.update(
         dem, *segmented, view, [this](int slot) { return field.label(slot); }, counters);
   }

@@ -275,6 +275,27 @@ TEST_CASE("pipeline: a line costs half an inference, and the curbs are those of 
   CHECK(ours.height_m == Approx(theirs.height_m).margin(0.002));
 }
 
+TEST_CASE("pipeline: a whole inference after half of one misses nothing that the half has changed") {
+  for (const int lines : {15, 19, 21, 57}) {
+    const auto halves = started(), whole = started();
+    NoddingLaser laser, same;
+    const Street street{2.0, 0.12};
+    stand(*halves, laser, street, 0, lines);  // after an odd number, regions have changed and labels have not
+    halves->infer();
+    stand(*whole, same, street, 0, lines - 1);
+    add_tilts(*whole, lines - 1);
+    const auto ranges = same.ranges(street, lines - 1, [](double) { return 0.0; });
+    REQUIRE(whole->observe({NoddingLaser::ns(NoddingLaser::line_time_s(lines - 1)), ranges}) == Status::ok);
+    whole->infer();
+    int different = 0;
+    for (int i = 0; i < halves->dem().rows(); ++i) {
+      for (int j = 0; j < halves->dem().cols(); ++j) different += halves->label(i, j) != whole->label(i, j);
+    }
+    CHECK(different == 0);
+    CHECK(bytes(halves->curbs()) == bytes(whole->curbs()));
+  }
+}
+
 TEST_CASE("pipeline: observing alone changes no curb, inferring does") {
   const auto pipeline = started();
   NoddingLaser laser;
