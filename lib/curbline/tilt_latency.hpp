@@ -8,7 +8,9 @@
 //   - One that drives leaves its datum behind, so the ground before is always that of the last sweep, and all offsets
 //     are a constant and a little more: each sweep may differ from it by a part of what is not known of it, or upward
 //     and downward sweeps would agree on a tilted ground.
-// Cost: 20 operations a point, and the mending: a pass over the window for a line that tells anything.
+// A latency that has stepped by more than either allows (a servo that started anew, a clock that was set) disagrees
+// with all that is known: where ten lines on end do, and agree with each other, it is as unknown as at the beginning.
+// Cost: 30 operations a point, and the mending: a pass over the window for a line that tells anything.
 #pragma once
 
 #include <array>
@@ -49,6 +51,9 @@ class TiltLatency {
   /// The line is over: its points together are one observation. What it says of the map.
   Correction end_line(float tilt_rate_rad_s);
 
+  /// How often it has turned out to have stepped.
+  std::uint32_t steps() const { return steps_; }
+
   /// Sum of Correction::earlier_s of all lines.
   float mended_s() const { return mended_s_; }
 
@@ -71,11 +76,19 @@ class TiltLatency {
     float variance_s2;
     float mapped_share;  ///< ... this part of what the ground's lacks
   };
+  /// Sightings of a line.
+  struct Sums {
+    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
+    void add(const Sighting& seen);
+  };
 
   void turn_standing();
   void turn_driving();
   void take_up_other_direction();
-  Correction update(const Observation& seen);
+  Observation observation(const Sums& sums, float tilt_rate_rad_s) const;
+  bool update(const Observation& seen, Correction& correction);
+  void suspect(const Observation& seen);
+  bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
   bool drives_ = false, begun_ = false, turned_ = false;
   bool downward_ = false;           ///< the angle grows
@@ -89,8 +102,11 @@ class TiltLatency {
   std::array<std::array<float, states>, states> covariance_{};
   Known other_{};  ///< standing: of the last sweep of the other direction
 
-  float precision_ = 0.0f, weighted_ = 0.0f, mapped_ = 0.0f, growth_ = 0.0f, common_m2_ = 0.0f,
-        points_ = 0.0f;  ///< sums of a line
+  Sums seen_{};              ///< of the line in hand: what agrees with what is known ...
+  Sums possible_{};          ///< ... or would after a step
+  Observation suspected_{};  ///< of the last line, if it disagreed
+  int lines_suspected_ = 0;  ///< on end, that agree with each other
+  std::uint32_t steps_ = 0;
 };
 
 }  // namespace curbline

@@ -14,6 +14,9 @@ constexpr float gate = 9.0f;
 /// Of what is not known of the latency, the part by which the sweeps of a robot that drives may differ.
 constexpr float sweep_share = 0.2f;
 
+/// Of lines on end that disagree with what is known, each by three standard deviations at least.
+constexpr int lines_of_a_step = 10;
+
 float square(float x) {
   return x * x;
 }
@@ -88,49 +91,85 @@ void TiltLatency::turn_driving() {
   p[now][earlier] = p[earlier][now] = p[constant][earlier];
 }
 
+void TiltLatency::Sums::add(const Sighting& seen) {
+  const float weight = seen.growth_m_s / seen.variance_m2;
+  precision += weight * seen.growth_m_s;
+  mapped += weight * seen.map_growth_m_s;
+  weighted -= weight * seen.above_m;
+  growth += seen.growth_m_s;
+  common_m2 += seen.common_variance_m2;
+  points += 1.0f;
+}
+
+/// What even a step does not explain is another surface: the face of a curb, somebody walking.
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + g * g * covariance_[now][now] -
                             2.0f * g * m * covariance_[now][earlier] + m * m * covariance_[earlier][earlier];
-  if (square(seen.above_m) > gate * variance_m2) return;  // another surface: the face of a curb, somebody walking
-  const float weight = g / seen.variance_m2;
-  precision_ += weight * g;
-  mapped_ += weight * m;
-  weighted_ -= weight * seen.above_m;
-  growth_ += g;
-  common_m2_ += seen.common_variance_m2;
-  points_ += 1.0f;
+  const float by_step_m2 = prior_variance_s2_ * square(known(earlier) ? g : g - m);
+  const float above_m2 = square(seen.above_m);
+  if (above_m2 <= gate * variance_m2) seen_.add(seen);
+  if (above_m2 <= gate * (variance_m2 + by_step_m2)) possible_.add(seen);
 }
 
 TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
-  const float rate2 = square(tilt_rate_rad_s);
   Correction correction;
-  if (precision_ > 0.0f && rate2 > 0.0f) {
-    // What all points of the line share: the time and angle of the readings next to it, the pose, the ground's slope.
-    const float growth = growth_ / points_, height_m2 = height_variance_m2_ + common_m2_ / points_;
-    const float common_s2 = time_variance_s2_ + angle_variance_ / rate2 + height_m2 / (growth * growth);
-    correction = update({weighted_ / precision_, 1.0f / precision_ + common_s2, mapped_ / precision_});
+  const bool moves = square(tilt_rate_rad_s) > 0.0f;
+  const bool agrees = moves && seen_.precision > 0.0f && update(observation(seen_, tilt_rate_rad_s), correction);
+  if (agrees && 2.0f * seen_.points >= possible_.points) {
+    lines_suspected_ = 0;
+  } else if (moves && possible_.precision > 0.0f) {
+    suspect(observation(possible_, tilt_rate_rad_s));
   }
-  precision_ = mapped_ = weighted_ = growth_ = common_m2_ = points_ = 0.0f;
+  seen_ = possible_ = Sums{};
   return correction;
 }
 
-/// Kalman's update by one observation, of this sweep's offset less a multiple of that of the ground before.
-TiltLatency::Correction TiltLatency::update(const Observation& seen) {
+/// Of a line as a whole, with what all its points share: the time and angle of the readings next to it, the pose, the
+/// ground's slope.
+TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
+  const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
+  const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
+  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision};
+}
+
+/// Kalman's update by one observation, of this sweep's offset less a multiple of that of the ground before; false if
+/// they disagree.
+bool TiltLatency::update(const Observation& seen, Correction& correction) {
   std::array<float, states> cross{};  // covariance of each state and the observation
   for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  if (square(seen.missing_s) > gate * variance_s2) return {};
+  if (square(seen.missing_s) > gate * variance_s2) return false;
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = within(constant_s_ + cross[constant] * weight, largest_offset_s_);
   offset_s_ = within(offset_s_ + cross[now] * weight, largest_offset_s_);
   for (std::size_t a = 0; a < states; ++a) {
     for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
   }
-  const Correction correction{offset_s_ - before_s, cross[earlier] * weight};
+  correction = {offset_s_ - before_s, cross[earlier] * weight};
   mended_s_ += correction.earlier_s;
   other_.offset_s += correction.earlier_s;
-  return correction;
+  return true;
+}
+
+/// A line that disagrees with what is known. A step is common to all that is not known exactly: a ground that is the
+/// datum stays where it is.
+void TiltLatency::suspect(const Observation& seen) {
+  if (known(now)) return;  // it is not estimated
+  const float apart_s2 = square(seen.missing_s - suspected_.missing_s);
+  const bool like_last = lines_suspected_ > 0 && apart_s2 <= gate * (seen.variance_s2 + suspected_.variance_s2);
+  lines_suspected_ = like_last ? lines_suspected_ + 1 : 1;
+  suspected_ = seen;
+  if (lines_suspected_ < lines_of_a_step) return;
+  lines_suspected_ = 0;
+  ++steps_;
+  std::array<bool, states> open{};
+  for (const State state : {constant, now, earlier}) open[state] = !known(state);
+  for (std::size_t a = 0; a < states; ++a) {
+    for (std::size_t b = 0; b < states; ++b) {
+      if (open[a] && open[b]) covariance_[a][b] += prior_variance_s2_;
+    }
+  }
 }
 
 float TiltLatency::sd_s() const {

@@ -141,6 +141,32 @@ TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
   CHECK(std::sqrt(apart_s2) < 0.001f);  // by which the ground seen by both is torn
 }
 
+TEST_CASE("tilt latency: a step, however well the latency before was known, is followed") {
+  const bool drives = GENERATE(false, true);
+  const float step_s = GENERATE(-0.020f, 0.015f, 0.030f, 0.045f);
+  Sweeps robot(drives);
+  for (int k = 0; k < 40; ++k) robot.sweep(0.002f);
+  REQUIRE(robot.latency.steps() == 0);
+  for (int k = 0; k < 6; ++k) robot.sweep(0.002f + step_s);
+  CHECK(robot.latency.offset_s() == Approx(0.002f + step_s).margin(0.003));
+  for (int k = 0; k < 6; ++k) robot.sweep(0.002f);
+  CHECK(robot.latency.offset_s() == Approx(0.002f).margin(0.003));
+}
+
+TEST_CASE("tilt latency: what lies off the ground, each line by another height, is no step") {
+  Sweeps robot(true);
+  for (int k = 0; k < 20; ++k) robot.sweep(0.002f);
+  const float before_s = robot.latency.offset_s(), sd_s = robot.latency.sd_s();
+  for (int line = 0; line < 200; ++line) {
+    const float above_m = line % 2 == 0 ? 0.04f : -0.04f;
+    for (int point = 0; point < 20; ++point) robot.latency.compare({above_m, 1e-4f, 0.0f, 1.0f, -1.0f});
+    robot.latency.end_line(rate_rad_s);
+  }
+  CHECK(robot.latency.steps() == 0);
+  CHECK(robot.latency.offset_s() == before_s);
+  CHECK(robot.latency.sd_s() == sd_s);
+}
+
 TEST_CASE("tilt latency: ground of which the slope is not known says little") {
   const float slope_sd = GENERATE(0.0f, 0.02f);
   TiltLatency latency = started();
