@@ -50,6 +50,8 @@ class PoseTrack {
     return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)];
   }
 
+  bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
+
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
@@ -58,6 +60,8 @@ class PoseTrack {
 
 namespace detail {
 bool acceptable(const Pose& pose);
+/// Within 1000 km of it: further out float would not tell one cell from the next.
+bool near_origin(const Pose& pose);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 }  // namespace detail
 
@@ -78,19 +82,29 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
   const auto bound = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
   int age = 0;
   while (age < size_ && back(age).time_ns > time_ns) ++age;
-  if (age == 0 || age == size_) {  // later than all, or earlier: the nearest pose stands, for a while
-    const Pose& nearest = age == 0 ? back(0) : back(size_ - 1);
-    const std::int64_t beyond = time_ns - nearest.time_ns;
-    if (beyond > bound || -beyond > bound) return false;
-    // Two poses tell the velocity as well.
-    out = size_ > 1 ? (age == 0 ? detail::interpolate(back(1), back(0), time_ns)
-                                : detail::interpolate(back(size_ - 1), back(size_ - 2), time_ns))
-                    : nearest;
-    return true;
-  }
+  if (age == 0) return beyond(time_ns, 0, 1, bound, out);
+  if (age == size_) return beyond(time_ns, size_ - 1, -1, bound, out);
   if (time_ns - back(age).time_ns > bound && back(age - 1).time_ns - time_ns > bound) return false;
   out = detail::interpolate(back(age), back(age - 1), time_ns);
   return true;
+}
+
+/// Later than all poses, or earlier: goes on from the one at that end as the robot went, as one that is far enough from
+/// it tells, by half as long a time at least: what two poses a moment apart differ by is their error. Without one the
+/// nearest stands. `inward` is the way to the other end.
+template <Limits limits>
+bool PoseTrack<limits>::beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const {
+  const auto apart = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };
+  const Pose& nearest = back(end);
+  const std::int64_t beyond_ns = apart(time_ns, nearest.time_ns);
+  if (beyond_ns > bound) return false;
+  out = nearest;
+  for (int age = end + inward; age >= 0 && age < size_; age += inward) {
+    if (2 * apart(back(age).time_ns, nearest.time_ns) < beyond_ns) continue;
+    out = detail::interpolate(back(inward > 0 ? age : end), back(inward > 0 ? end : age), time_ns);
+    break;
+  }
+  return detail::near_origin(out);
 }
 
 }  // namespace curbline

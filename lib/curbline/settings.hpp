@@ -13,8 +13,8 @@ namespace curbline {
 struct WindowSettings {
   int rows = 40;             ///< cells along x, a multiple of 4, at most Limits::rows
   int cols = 40;             ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;     ///< (0, 10]
-  float cell_y_m = 0.1f;     ///< (0, 10]
+  float cell_x_m = 0.1f;     ///< [0.001, 10]
+  float cell_y_m = 0.1f;     ///< [0.001, 10]
   float origin_x_m = 0.0f;   ///< lowest corner; of the map frame if fixed, else relative to the robot's position
   float origin_y_m = -2.0f;  ///< the same along y
   bool fixed = false;        ///< true: the window never moves

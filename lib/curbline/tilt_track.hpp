@@ -41,6 +41,9 @@ class TiltSnapshot {
   template <Limits>
   friend class TiltTrack;
   TiltAngle find(std::int64_t time_ns);
+  TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
+  static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
+  const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
@@ -54,9 +57,11 @@ class TiltSnapshot {
 /// Ring of the newest readings. One writer, one reader, neither ever waits.
 template <Limits limits>
 class TiltTrack {
-  static_assert((limits.tilt_samples & (limits.tilt_samples - 1)) == 0, "tilt_samples must be a power of two");
+  static_assert(limits.tilt_samples > 1 && (limits.tilt_samples & (limits.tilt_samples - 1)) == 0,
+                "tilt_samples must be a power of two, 2 at least: the count of readings wraps");
 
  public:
+  /// Forgets all readings. Must not run beside push() of another thread.
   void init(const TiltSettings& settings) {
     settings_ = settings;
     written_.store(0, std::memory_order_relaxed);
@@ -64,7 +69,8 @@ class TiltTrack {
     times_ = RisingTimes{};
   }
 
-  /// No servo winds further, and what follows can reduce it: a greater angle is a damaged frame.
+  /// No servo winds further, and what follows can reduce it, carried beyond the readings too: a greater angle is a
+  /// damaged frame.
   static constexpr float max_angle_rad = 1e6f;
 
   /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before
@@ -149,32 +155,50 @@ TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   segment_from_ns_ = segment_to_ns_ = 0;
-  while (cursor_ < size_ && readings_[static_cast<std::size_t>(cursor_)].time_ns <= time_ns) ++cursor_;
+  while (cursor_ < size_ && reading(cursor_).time_ns <= time_ns) ++cursor_;
   if (size_ == 0) return {};
-  // The pair that brackets the time, or the one at the end that it lies beyond.
-  const bool before_first = cursor_ == 0, after_last = cursor_ == size_;
-  const int right = before_first ? 1 : after_last ? size_ - 1 : cursor_;
-  const TiltReading& a = readings_[static_cast<std::size_t>(right > 0 ? right - 1 : 0)];
-  const TiltReading& b = readings_[static_cast<std::size_t>(right < size_ ? right : size_ - 1)];
-  const TiltReading& nearest = after_last ? b : a;
-  const std::int64_t beyond_ns = time_ns - nearest.time_ns;
-  const bool outside = (before_first || after_last) && beyond_ns != 0;
-  if (outside && (beyond_ns > max_extrapolation_ns_ || -beyond_ns > max_extrapolation_ns_)) return {};
+  if (cursor_ == 0) return beyond(time_ns, 0, 1);
+  if (cursor_ == size_) return beyond(time_ns, size_ - 1, -1);
+  const TiltReading &a = reading(cursor_ - 1), &b = reading(cursor_);
   const std::int64_t gap_ns = b.time_ns - a.time_ns;
-  if (gap_ns <= 0 || gap_ns > max_gap_ns_) {
-    // One reading alone, or two too far apart to say anything of the time between: good at its own moment only.
-    return beyond_ns == 0 ? TiltAngle{TiltAngle::Source::interpolated, nearest.angle_rad, 0.0f} : TiltAngle{};
-  }
+  if (gap_ns > max_gap_ns_) return alone(time_ns, a);
   const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(gap_ns);
-  if (!outside && !after_last && gap_ns <= INT32_MAX) {
+  if (gap_ns <= INT32_MAX) {
     segment_from_ns_ = a.time_ns;
     segment_to_ns_ = b.time_ns;
     segment_angle_rad_ = a.angle_rad;
     segment_rate_rad_s_ = rate_rad_s;
   }
   const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
-  return {outside ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
-          a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+  return {TiltAngle::Source::interpolated, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+}
+
+/// The angle at an end of the readings or beyond it, at their rate there: over half as long a time as it lies beyond,
+/// at least, since a frame that has waited on the bus is stamped just before the next, and what a stamp is off by would
+/// be carried on that many times. `inward` is the way to the other end.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward) const {
+  const TiltReading& nearest = reading(end);
+  const std::int64_t beyond_ns = inward > 0 ? nearest.time_ns - time_ns : time_ns - nearest.time_ns;
+  if (beyond_ns > max_extrapolation_ns_) return {};
+  for (int k = end + inward; k >= 0 && k < size_; k += inward) {
+    const TiltReading &a = reading(inward > 0 ? end : k), &b = reading(inward > 0 ? k : end);
+    const std::int64_t base_ns = b.time_ns - a.time_ns;
+    if (base_ns > max_gap_ns_) break;
+    if (2 * base_ns < beyond_ns) continue;
+    const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(base_ns);
+    const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
+    return {beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
+            a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+  }
+  return alone(time_ns, nearest);
+}
+
+/// Of one reading, or beside a gap too wide to say anything of the time between: good at its own moment only.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::alone(std::int64_t time_ns, const TiltReading& reading) {
+  if (time_ns != reading.time_ns) return {};
+  return {TiltAngle::Source::interpolated, reading.angle_rad, 0.0f};
 }
 
 }  // namespace curbline

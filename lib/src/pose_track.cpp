@@ -20,11 +20,16 @@ bool acceptable(const Pose& pose) {
   for (const float value : {pose.x_m, pose.y_m, pose.z_m, pose.qx, pose.qy, pose.qz, pose.qw}) {
     if (!is_finite(value)) return false;
   }
-  for (const float metres : {pose.x_m, pose.y_m, pose.z_m}) {
-    if (metres > 1e6f || metres < -1e6f) return false;  // float would not tell one cell from the next
-  }
+  if (!near_origin(pose)) return false;
   const float square = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
   return square > 0.98f && square < 1.02f;
+}
+
+bool near_origin(const Pose& pose) {
+  for (const float metres : {pose.x_m, pose.y_m, pose.z_m}) {
+    if (metres > 1e6f || metres < -1e6f) return false;
+  }
+  return true;
 }
 
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {

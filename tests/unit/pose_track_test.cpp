@@ -75,6 +75,40 @@ TEST_CASE("pose track: beyond its ends the robot goes on as it went, up to the b
   CHECK_FALSE(track.at(t0 - 100 * ms - 1000, pose));
 }
 
+TEST_CASE("pose track: two poses a moment apart do not make the robot jump") {
+  for (const std::int64_t moment_ns : {std::int64_t{1}, std::int64_t{10'000}, ms}) {
+    Track track = track_of(5);
+    Pose second = driving(t0 + 200 * ms + moment_ns);
+    second.x_m += 0.001f;  // of another source, off by a millimetre
+    REQUIRE(track.push(second));
+    Pose pose;
+    REQUIRE(track.at(t0 + 240 * ms, pose));
+    CHECK(pose.x_m == Approx(driving(t0 + 240 * ms).x_m).margin(0.002));
+  }
+}
+
+TEST_CASE("pose track: poses a moment apart alone tell no velocity: the nearest stands") {
+  Track track = track_of(1);
+  Pose second = driving(t0 + 1);
+  second.x_m = 5.0f;
+  REQUIRE(track.push(second));
+  Pose pose;
+  REQUIRE(track.at(t0 + 50 * ms, pose));
+  CHECK(pose.x_m == 5.0f);
+}
+
+TEST_CASE("pose track: it goes on no further than the map does") {
+  Track track = track_of(0);
+  for (int k = 0; k < 2; ++k) {
+    Pose pose = driving(t0 + 50 * ms * k);
+    pose.x_m = k == 0 ? -9e5f : 9e5f;
+    REQUIRE(track.push(pose));
+  }
+  Pose pose;
+  CHECK(track.at(t0 + 50 * ms, pose));
+  CHECK_FALSE(track.at(t0 + 60 * ms, pose));
+}
+
 TEST_CASE("pose track: between two poses that are far apart there is none, as its header says") {
   Track track = track_of(1);
   REQUIRE(track.push(driving(t0 + 10000 * ms)));

@@ -61,6 +61,29 @@ TEST_CASE("tilt track: beyond its ends the angle goes on at the same rate, up to
   CHECK(at(t0 - 50 * ms - 1000).source == Source::none);
 }
 
+TEST_CASE("tilt track: two stamps that lie close together do not tell the rate far beyond them") {
+  const auto track = turning(10);  // 0.0075 rad in 25 ms
+  // A frame that waited on the bus for the next: of 2.25 mrad before, stamped 0.2 ms before it.
+  track->push({t0 + 250 * ms - ms / 5, -0.2f + 0.075f - 0.00225f});
+  track->push({t0 + 250 * ms, -0.2f + 0.075f});
+  Snapshot angles = snapshot(*track);
+  const TiltAngle beyond = angles.at(t0 + 270 * ms);
+  CHECK(beyond.source == Source::extrapolated);
+  CHECK(beyond.angle_rad == Approx(-0.2 + 0.081).margin(1e-4));
+  CHECK(beyond.rate_rad_s == Approx(0.3).epsilon(0.01));
+}
+
+TEST_CASE("tilt track: readings a moment apart alone tell no rate") {
+  const auto track = std::make_unique<Track>();
+  track->init(TiltSettings{});
+  track->push({t0, 0.5f});
+  track->push({t0 + 1, 100.0f});
+  Snapshot angles = snapshot(*track);
+  CHECK(angles.at(t0 + 1).source == Source::interpolated);
+  CHECK(angles.at(t0 + 2).source == Source::extrapolated);
+  CHECK(angles.at(t0 + 25 * ms).source == Source::none);
+}
+
 TEST_CASE("tilt track: a reading that comes late by the latency is put back to its time") {
   TiltSettings settings;
   settings.latency_s = GENERATE(0.0075f, -0.010f);
@@ -124,6 +147,14 @@ TEST_CASE("tilt track: after a stamp of the future, or a clock that is set back,
     CHECK(angles.at(at + 5 * ms).angle_rad == Approx(0.15));
     CHECK(angles.at(t0 + 50 * ms + ahead).source == Source::none);
   }
+}
+
+TEST_CASE("tilt track: stamps so far away that their difference is no time are dropped") {
+  const auto track = turning(3);
+  for (const std::int64_t stamp : {INT64_MAX, INT64_MIN, RisingTimes::furthest_ns + 1, -RisingTimes::furthest_ns - 1}) {
+    for (int k = 0; k < 20; ++k) CHECK_FALSE(track->push({stamp, 0.1f}));
+  }
+  CHECK(track->push({t0 + 75 * ms, 0.1f}));
 }
 
 TEST_CASE("tilt track: readings that come late do not make it start afresh, however many they are") {

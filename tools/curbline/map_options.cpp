@@ -92,8 +92,8 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
     window.cell_y_m = static_cast<float>(options.cell.back());
   }
   for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
-    if (!(cell_m > 0.0f && cell_m <= 10.0f))
-      throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in (0, 10]");
+    if (!(cell_m >= 0.001f && cell_m <= 10.0f))
+      throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in [0.001, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
