@@ -36,11 +36,12 @@ class Dem {
   using SlotType = Slot<limits>;
   static constexpr int capacity = limits.rows * limits.cols;
 
-  /// Empties the map and places the window around (x, y). Settings are valid.
-  void init(const WindowSettings& settings, const PlanePrior& prior, float x_m, float y_m);
+  /// Empties the map and places the window. Settings are valid.
+  void init(const WindowSettings& settings, const PlanePrior& prior);
 
-  /// Makes the window follow (x, y), in steps of a block; a fixed window stays. Cells that leave are cleared; calls
-  /// left(slot) for each valid one first. Cost: the cells that leave.
+  /// Makes the window follow (x, y), in steps of a block and half a cell late, so that a pose that trembles does not
+  /// move it to and fro; a fixed window stays. Cells that leave are cleared; calls left(slot) for each valid one first.
+  /// Cost: O(1), and a pass over the window if it moves.
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
@@ -160,7 +161,7 @@ class Dem {
     const int r = index % size;
     return r < 0 ? r + size : r;
   }
-  void place(float x_m, float y_m, std::int32_t& row, std::int32_t& col) const;
+  static std::int32_t nearest_block(float blocks, std::int32_t before);
   void set_distance(int slot, int direction, int distance) {
     auto& distances = distances_[static_cast<std::size_t>(slot)];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
@@ -184,7 +185,7 @@ class Dem {
 };
 
 template <Limits limits>
-void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior, float x_m, float y_m) {
+void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) {
   settings_ = settings;
   prior_ = prior;
   cells_.fill(Cell{});
@@ -196,24 +197,23 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior, 
   row_shift_ = col_shift_ = 0;
   anchor_x_m_ = settings.origin_x_m;
   anchor_y_m_ = settings.origin_y_m;
-  if (settings.fixed) return;
-  place(x_m, y_m, first_row_, first_col_);
-  row_shift_ = wrap(first_row_, settings_.rows);
-  col_shift_ = wrap(first_col_, settings_.cols);
 }
 
+/// First cell of the block whose border is nearest; that before as long as it is, but for half a cell.
 template <Limits limits>
-void Dem<limits>::place(float x_m, float y_m, std::int32_t& row, std::int32_t& col) const {
-  row = floor_to_int(x_m / (settings_.cell_x_m * block_side) + 0.5f) * block_side;
-  col = floor_to_int(y_m / (settings_.cell_y_m * block_side) + 0.5f) * block_side;
+std::int32_t Dem<limits>::nearest_block(float blocks, std::int32_t before) {
+  constexpr float late = 0.5f + 0.5f / block_side;
+  const float moved = blocks - static_cast<float>(before / block_side);
+  if (moved > -late && moved < late) return before;
+  return floor_to_int(blocks + 0.5f) * block_side;
 }
 
 template <Limits limits>
 template <typename Left>
 void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
   if (settings_.fixed) return;
-  std::int32_t row = 0, col = 0;
-  place(x_m, y_m, row, col);
+  const std::int32_t row = nearest_block(x_m / (settings_.cell_x_m * block_side), first_row_);
+  const std::int32_t col = nearest_block(y_m / (settings_.cell_y_m * block_side), first_col_);
   if (row == first_row_ && col == first_col_) return;
   for (int i = 0; i < settings_.rows; ++i) {
     for (int j = 0; j < settings_.cols; ++j) {

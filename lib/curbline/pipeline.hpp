@@ -101,7 +101,7 @@ class Pipeline {
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
   void compare_with_map(const ProjectedLine<limits>& line);
   void compare_with_cell(const Point& p, int slot);
-  void move_window(float x_m, float y_m);
+  void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
   int follow_labels(FieldScope scope);
@@ -151,7 +151,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   tilt_latency_.init(settings.tilt, settings.pose);
   pose_track_.init(settings.pose);
   line_projection_.init(settings);
-  dem_.init(window, settings.planes.prior, 0.0f, 0.0f);
+  dem_.init(window, settings.planes.prior);
   segmentation_.init(settings.segmentation, settings.planes.prior);
   plane_mixture_.init(settings.planes);
   label_field_.init(settings.labels);
@@ -200,10 +200,10 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   line_times_.take(line.time_ns);
   ++counters_.lines;
   if (!motion.still) {
-    const Eigen::Vector3f& robot = motion.T_map_base_last.translation;
-    ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : robot.z());
-    p_map_tilt_ = motion.T_map_base_last * p_base_tilt();
-    move_window(robot.x(), robot.y());
+    const Transform& T_map_base = motion.T_map_base_last;
+    ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : T_map_base.translation.z());
+    p_map_tilt_ = T_map_base * p_base_tilt();
+    move_window(T_map_base);
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
   if (!settings_.tilt.fixed) compare_with_map(work.projected);
@@ -284,11 +284,20 @@ void Pipeline<limits>::take_point(const Point& point) {
   }
 }
 
-/// Moves the window with the robot; what leaves it leaves every stage.
+/// Moves the window with the robot, its middle with the robot's heading; what leaves it leaves every stage.
 template <Limits limits>
-void Pipeline<limits>::move_window(float x_m, float y_m) {
+void Pipeline<limits>::move_window(const Transform& T_map_base) {
+  const WindowSettings& window = settings_.window;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
-  dem_.follow(x_m, y_m, [this](int slot) {
+  const float middle_x = window.origin_x_m + 0.5f * static_cast<float>(window.rows) * window.cell_x_m;
+  const float middle_y = window.origin_y_m + 0.5f * static_cast<float>(window.cols) * window.cell_y_m;
+  const float ahead_x = T_map_base.rotation(0, 0), ahead_y = T_map_base.rotation(1, 0);
+  const float level = square_root(ahead_x * ahead_x + ahead_y * ahead_y);
+  const float cosine = level > 0.0f ? ahead_x / level : 1.0f, sine = level > 0.0f ? ahead_y / level : 0.0f;
+  // By how much the middle lies elsewhere than that of a robot which heads along the map's x axis.
+  const float aside_x = (cosine - 1.0f) * middle_x - sine * middle_y;
+  const float aside_y = sine * middle_x + (cosine - 1.0f) * middle_y;
+  dem_.follow(T_map_base.translation.x() + aside_x, T_map_base.translation.y() + aside_y, [this](int slot) {
     segmentation_.forget(slot);
     plane_mixture_.forget(slot);
     label_field_.forget(slot);

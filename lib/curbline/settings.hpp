@@ -8,14 +8,14 @@
 
 namespace curbline {
 
-/// The rolling window. Cells are dx by dy; the window is rows x cols of them and follows the robot in steps of
-/// four cells unless it is fixed.
+/// The rolling window. Cells are dx by dy; the window is rows x cols of them, along the map's axes. Unless it is fixed
+/// its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells.
 struct WindowSettings {
   int rows = 40;             ///< cells along x, a multiple of 4, at most Limits::rows
   int cols = 40;             ///< cells along y, a multiple of 4, at most Limits::cols
   float cell_x_m = 0.1f;     ///< [0.001, 10]
   float cell_y_m = 0.1f;     ///< [0.001, 10]
-  float origin_x_m = 0.0f;   ///< lowest corner; of the map frame if fixed, else relative to the robot's position
+  float origin_x_m = 0.0f;   ///< lowest corner; of the map frame if fixed, else of the base frame, heading along x
   float origin_y_m = -2.0f;  ///< the same along y
   bool fixed = false;        ///< true: the window never moves
   float max_height_m =

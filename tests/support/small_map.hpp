@@ -44,7 +44,7 @@ void fill(Dem<limits>& dem, Height&& height_m, double spread_m = 0.002) {
 template <Limits limits = small_limits>
 struct Stages {
   explicit Stages(const Settings& s) {
-    dem.init(s.window, s.planes.prior, 0.0f, 0.0f);
+    dem.init(s.window, s.planes.prior);
     segmentation.init(s.segmentation, s.planes.prior);
     mixture.init(s.planes);
     field.init(s.labels);

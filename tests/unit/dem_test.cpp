@@ -25,7 +25,7 @@ WindowSettings moving() {
 
 Map make_map(const WindowSettings& window) {
   Map dem;
-  dem.init(window, PlanePrior{}, 0.0f, 0.0f);
+  dem.init(window, PlanePrior{});
   return dem;
 }
 
@@ -137,6 +137,19 @@ TEST_CASE("dem: a small motion does not move the window") {
   CHECK(dem.origin_y_m() == Approx(-0.8f));
 }
 
+TEST_CASE("dem: a pose that trembles by less than half a cell does not move the window to and fro") {
+  Map dem = make_map(moving());
+  dem.follow(0.24f, 0.0f, [](int) {});  // the border of two blocks lies at 0.2 m
+  CHECK(dem.origin_x_m() == 0.0f);
+  dem.follow(0.26f, 0.0f, [](int) {});
+  CHECK(dem.origin_x_m() == Approx(0.4f));
+  fill_names(dem);
+  for (const float x_m : {0.17f, 0.23f, 0.16f, 0.4f}) {
+    dem.follow(x_m, 0.0f, [](int) { FAIL("no cell may leave"); });
+    CHECK(dem.origin_x_m() == Approx(0.4f));
+  }
+}
+
 TEST_CASE("dem: a fixed window stays") {
   WindowSettings window = moving();
   window.fixed = true;
@@ -196,7 +209,7 @@ TEST_CASE("dem: on ground without texture, points without noise do not poison th
   Map dem;
   PlanePrior prior;
   prior.texture_m2 = 0.0f;
-  dem.init(moving(), prior, 0.0f, 0.0f);
+  dem.init(moving(), prior);
   for (int k = 0; k < 2; ++k) dem.add(at(0.05, 0.05, 0.3, 0.0f));
   const Cell& cell = dem.cell(dem.slot(0, 8));
   CHECK((!cell.valid() || cell.height_m == 0.3f));

@@ -35,7 +35,7 @@ struct Tiny {
     training.segment();
     training.mix();
     for (int l = 0; l < 3; ++l) REQUIRE(plane(l).alive());
-    dem.init(settings.window, settings.planes.prior, 0.0f, 0.0f);
+    dem.init(settings.window, settings.planes.prior);
     field.init(settings.labels);
     for (const Site& site : sites) {
       dem.add({static_cast<float>(0.1 * site.i + 0.05), static_cast<float>(0.1 * site.j + 0.05),

@@ -151,7 +151,7 @@ void belief_messages(benchmark::State& state) {
   PlaneMixture<board_limits> mixture;
   Dem<board_limits> dem;
   Counters counters;
-  dem.init(street().settings.window, street().settings.planes.prior, 0, 0);
+  dem.init(street().settings.window, street().settings.planes.prior);
   for (const Point& p : street().points) dem.add(p);
   segmentation.init(street().settings.segmentation, street().settings.planes.prior);
   Workspace<board_limits> workspace;
