@@ -14,7 +14,7 @@ struct CellPrior {
 /// Sufficient statistics. A point of weight w is a height with variance (noise variance of the cell) / w, so that a
 /// noisier reading moves the mean less. Offsets are from the cell's centre: exact in float wherever the map is.
 struct Cell {
-  float points = 0.0f;      ///< how many
+  float points = 0.0f;      ///< how many; those that have faded count in part
   float weight = 0.0f;      ///< kappa: sum of their weights
   float height_m = 0.0f;    ///< posterior mean
   float scatter_m2 = 0.0f;  ///< weighted sum of squares about the mean
@@ -33,6 +33,13 @@ struct Cell {
     scatter_m2 += point_weight * innovation * (point_height_m - height_m);
     dx_m += gain * (point_dx_m - dx_m);
     dy_m += gain * (point_dy_m - dy_m);
+  }
+
+  /// What was seen so far counts for a share of what it did.
+  void fade(float share) {
+    points *= share;
+    weight *= share;
+    scatter_m2 *= share;
   }
 
   /// Mode of the variance's posterior, for a point of weight 1.

@@ -26,6 +26,10 @@ inline constexpr std::array<int, directions> step_i{1, -1, 0, 0}, step_j{0, 0, 1
 /// Cells further apart than this know nothing of each other: what four bits hold.
 inline constexpr int max_link_reach = 15;
 
+/// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone is
+/// forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is seen.
+inline constexpr float memory = 0.25f;
+
 /// Index types, as small as the limits allow.
 template <Limits limits>
 using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
@@ -46,7 +50,8 @@ class Dem {
   void follow(float x_m, float y_m, Left&& left);
 
   /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite, or no variance
-  /// at all. Its weight is the expected noise over its variance plus the ground's texture. O(1).
+  /// at all. Its weight is the expected noise over its variance plus the ground's texture. The first of a sweep makes
+  /// what a cell of more than one surface has of earlier ones fade. O(1).
   bool add(const Point& point);
 
   int rows() const { return settings_.rows; }
@@ -85,6 +90,9 @@ class Dem {
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
   /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
   float spread_m2(const Cell& cell) const { return cell.scatter_m2 - prior_.noise_m2 * cell.points; }
+  /// Do they spread by two standard deviations of that noise? Then it holds more than one surface, or a steep one, or
+  /// one after another.
+  bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
   /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
   /// its plane make? Then it holds more than the plane.
   bool mixed(const Cell& cell, const Plane& plane) const {
@@ -290,6 +298,7 @@ bool Dem<limits>::add(const Point& point) {
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const auto s = static_cast<std::size_t>(slot(i, j));
   if (!cells_[s].valid()) meet_neighbours(i, j);
+  if (mapped_before(static_cast<int>(s)) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   const float weight = prior_.noise_m2 / variance_m2;
   cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m,
                 (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m, weight);

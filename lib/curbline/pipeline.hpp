@@ -232,14 +232,13 @@ void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
   const Label<limits> label = label_field_.label(slot);
   if (label == no_label<limits>) return;
   const Cell& cell = dem_.cell(slot);
-  const PlanePrior& prior = settings_.planes.prior;
-  if (cell.scatter_m2 > 4.0f * prior.noise_m2 * cell.points) return;  // more than one surface, or a steep one
+  if (dem_.several_surfaces(cell)) return;
   const Plane& plane = plane_mixture_.plane(label);
   const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
   const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
   const float dx = x - dem_.centroid_x_m(i, cell), dy = y - dem_.centroid_y_m(j, cell);
   const float rise = plane.slope_x * dx + plane.slope_y * dy;
-  const float variance_m2 = p.variance_m2 + prior.texture_m2 + dem_.height_variance_m2(cell);
+  const float variance_m2 = p.variance_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
   tilt_latency_.compare(
       {p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy), p.growth_m_s, dem_.growth_m_s(slot)});
 }

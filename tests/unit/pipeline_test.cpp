@@ -88,6 +88,51 @@ TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatev
   CHECK(ends == 1);
 }
 
+/// A front of 0.6 m, a metre wide, before the step of a street.
+float with_front(float range_m, int beam, int line) {
+  const double bearing = -0.5 * pi + pi / 360.0 * beam;
+  const double tilt = NoddingLaser::tilt_rad(NoddingLaser::line_time_s(line) + LaserSettings{}.beam_interval_s * beam);
+  const double to_front_m = 1.4 / (std::cos(bearing) * std::cos(tilt));
+  const double y_m = to_front_m * std::sin(bearing), z_m = 1.0 - to_front_m * std::cos(bearing) * std::sin(tilt);
+  const bool hit = std::abs(y_m) < 0.5 && z_m > 0.0 && z_m < 0.6 && to_front_m > 0.0;
+  return hit ? std::min(range_m, static_cast<float>(to_front_m)) : range_m;
+}
+
+/// Cells between the robot and the step, straight ahead, on which it may drive.
+int passable_ahead(const FullPipeline& pipeline) {
+  int out = 0;
+  for (int i = 10; i < 18; ++i) {
+    for (int j = 16; j < 24; ++j) out += pipeline.passable(i, j, 0.03f, 0.2f);
+  }
+  return out;
+}
+
+TEST_CASE("pipeline: who has stood before a robot that stands, and gone, is forgotten; what is put down is seen") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  const Street street{2.0, 0.12};
+  const int sweep = 200, before = 6 * sweep;
+  const int stays = GENERATE(1, 4) * sweep;
+  stand(*pipeline, laser, street, 0, before);
+  const int free = passable_ahead(*pipeline);
+  REQUIRE(free == 64);
+  const auto told = [&] { return longest(pipeline->curbs()); };
+  for (int line = before; line < before + stays; ++line) {
+    add_tilts(*pipeline, line);
+    auto ranges = laser.ranges(street, line, [](double) { return 0.0; });
+    for (int b = 0; b < NoddingLaser::beams; ++b) {
+      auto& range_m = ranges[static_cast<std::size_t>(b)];
+      range_m = with_front(range_m, b, line);
+    }
+    REQUIRE(pipeline->take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
+  }
+  CHECK(passable_ahead(*pipeline) < free - 6);  // the front's own cells are not
+  stand(*pipeline, laser, street, before + stays, before + stays + 8 * sweep);
+  CHECK(passable_ahead(*pipeline) == free);
+  CHECK(told().height_m == Approx(0.12).margin(0.01));
+  CHECK(std::abs(told().y1_m - told().y0_m) > 3.0f);
+}
+
 TEST_CASE("pipeline: settings beyond the limits, or bad, are refused with the status that names them") {
   const auto pipeline = std::make_unique<FullPipeline>();
   const auto init = [&](auto&& change) {
