@@ -51,8 +51,10 @@ class Borders {
 
   int walk(const Dem<limits>& dem, Index start, int reach);
   Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
+  /// At the window's far ends in the last cell.
   int cell_of(const Dem<limits>& dem, const Border& border) const {
-    return dem.slot(static_cast<int>(border.x_m / dem.cell_x_m()), static_cast<int>(border.y_m / dem.cell_y_m()));
+    const int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
+    return dem.slot(i < dem.rows() ? i : dem.rows() - 1, j < dem.cols() ? j : dem.cols() - 1);
   }
 
   std::array<Border, limits.borders> border_;

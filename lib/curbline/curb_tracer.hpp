@@ -282,7 +282,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   Curb curb;
   curb.near_label = piece.low_is_near ? border.low : border.high;
   curb.far_label = piece.low_is_near ? border.high : border.low;
-  curb.probability = piece.probability;
+  curb.probability = piece.probability < 1.0f ? piece.probability : 1.0f;  // a mean, rounded
   const Plane& low = stages.mixture.plane(border.low);
   const Plane& high = beyond(stages, border);
   const float middle_x = 0.5f * (piece.line.x0_m + piece.line.x1_m);

@@ -59,6 +59,17 @@ TEST_CASE("curb tracer: a step is one piece with its place, height and direction
   CHECK(curb.far_label == stages->label_at(23, 0));
 }
 
+TEST_CASE("curb tracer: a probability is at most 1, however many cells agree on it") {
+  for (int cols = 4; cols <= 24; cols += 4) {
+    Settings settings = small_settings();
+    settings.window.cols = cols;
+    for (double step_m = 0.05; step_m < 0.25; step_m += 0.01) {
+      const auto stages = traced([&](double x, double) { return x < 1.2 ? 0.0 : step_m; }, 0.0f, 0.0f, settings);
+      for (const Curb& curb : stages->tracer.curbs()) CHECK(curb.probability <= 1.0f);
+    }
+  }
+}
+
 TEST_CASE("curb tracer: seen from above the same step goes down") {
   const auto stages = traced(up, 2.3f, 1.2f);
   REQUIRE(stages->tracer.curbs().size() == 1);
