@@ -22,6 +22,7 @@ curbline::LineQueue<limits, 3> waiting;  // lines whose last beams have no tilt 
 can::TiltDecoder decoder;
 curbline::TiltWatch watch;
 std::int64_t newest_tilt_ns = curbline::TiltWatch::no_reading;
+curbline::Pose pose;  // the newest; of a robot that stands, the map's origin
 std::uint8_t lines_told = 0;
 
 void start() {
@@ -43,23 +44,22 @@ void take_frames() {
   }
 }
 
-/// To the motors: the curb whose nearest point is least far ahead of the base.
-void tell() {
-  std::optional<can::CurbAhead> ahead;
-  for (const curbline::Curb& c : pipeline.curbs()) {
-    const bool first_end = c.x0_m < c.x1_m;
-    const float x_m = first_end ? c.x0_m : c.x1_m, y_m = first_end ? c.y0_m : c.y1_m;
-    if (x_m > 0.0f && (!ahead || x_m < ahead->distance_m))
-      ahead = {x_m, y_m, c.height_m, c.height_sd_m, c.kind, c.probability};
+void take_poses() {
+  while (const auto given = port.pose()) {
+    if (pipeline.add_pose(*given)) pose = *given;
   }
-  port.send(can::curb_ahead_frame(ahead));
+}
+
+/// To the motors: the curb that the robot meets first.
+void tell() {
+  port.send(can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m)));
   port.send(can::curb_status_frame({++lines_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
 }
 
 void take_lines() {
   const std::int64_t now_ns = port.now_ns();
   if (const auto line = port.scan_line()) waiting.push(*line, now_ns);
-  while (const auto line = waiting.pop(newest_tilt_ns, now_ns)) {
+  while (const auto line = waiting.pop(newest_tilt_ns, now_ns, pipeline.tilt_latency().latest_offset_s())) {
     watch.update(newest_tilt_ns, now_ns);
     if (pipeline.take(*line) == curbline::Status::ok) tell();
   }
@@ -75,7 +75,7 @@ int main() {
   start();
   for (;;) {
     take_frames();
-    while (const auto pose = port.pose()) pipeline.add_pose(*pose);
+    take_poses();
     take_lines();
     port.rest();
   }

@@ -15,6 +15,9 @@ inline curbline::Settings robot_settings() {
   return settings;
 }
 
+/// What it needs of the way to either side: half its width, and what it strays.
+inline constexpr float half_width_m = 0.4f;
+
 /// Where the angle lies in the servo's frames. Others: lib/can/servo_presets.hpp, or a Signal of your own.
 inline curbline::can::Signal tilt_signal() {
   return curbline::can::cia402_position(1);

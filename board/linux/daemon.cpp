@@ -192,10 +192,9 @@ void Daemon::take_log() {
 /// Those whose tilt is there, as the pipeline has its time; those that have waited too long.
 void Daemon::take_lines() {
   for (;;) {
-    const auto offset_ns = static_cast<std::int64_t>(pipeline_->tilt_latency().latest_offset_s() * 1e9f);
-    const std::int64_t newest_ns = newest_tilt_ns_ == INT64_MIN ? INT64_MIN : newest_tilt_ns_ - offset_ns;
     bool covered = false;
-    const auto line = inbox_.pop(newest_ns, scanner::host_now().steady_ns, covered);
+    const float offset_s = pipeline_->tilt_latency().latest_offset_s();
+    const auto line = inbox_.pop(newest_tilt_ns_, scanner::host_now().steady_ns, offset_s, covered);
     if (!line) return;
     take_line(*line);
     if (covered && by_frame_) latency_.add(scanner::host_now().host_ns - newest_frame_ns_);
@@ -225,7 +224,7 @@ void Daemon::give_curbs(std::int64_t line_ns) {
 
 /// The base frame is the map's: the robot stands.
 void Daemon::send_curbs() {
-  bus_.send(can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), half_way_m)));
+  bus_.send(can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m)));
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
   bus_.send(can::curb_status_frame({sent_counter_++, tilt_watch_.state(), curbs}));
 }

@@ -30,7 +30,7 @@ class LineInbox {
 
   /// From the pipeline's: see LineQueue::pop(). `covered`: its tilt is there. The ranges are valid until the next
   /// pop().
-  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, bool& covered);
+  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s, bool& covered);
 
   bool empty() const;
   LineQueueCounters counters() const;

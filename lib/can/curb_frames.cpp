@@ -77,10 +77,15 @@ bool can_be_sent(const CurbAhead& curb) {
 
 }  // namespace
 
-std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, float half_width_m) {
+std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m) {
+  const SinCos ahead = heading(make_transform(pose));
+  const auto in_base = [&](float x_m, float y_m) {
+    const float dx = x_m - pose.x_m, dy = y_m - pose.y_m;
+    return At{ahead.cos * dx + ahead.sin * dy, ahead.cos * dy - ahead.sin * dx};
+  };
   std::optional<CurbAhead> nearest;
   for (const Curb& curb : curbs) {
-    At a{curb.x0_m, curb.y0_m}, b{curb.x1_m, curb.y1_m};
+    At a = in_base(curb.x0_m, curb.y0_m), b = in_base(curb.x1_m, curb.y1_m);
     const bool on_the_way = keep_side(a, b, a.x_m, b.x_m) &&
                             keep_side(a, b, half_width_m - a.y_m, half_width_m - b.y_m) &&
                             keep_side(a, b, half_width_m + a.y_m, half_width_m + b.y_m);

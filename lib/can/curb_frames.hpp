@@ -28,6 +28,7 @@
 #include "can/frame.hpp"
 #include "can/signal.hpp"
 #include "curbline/curb.hpp"
+#include "curbline/pose_track.hpp"
 #include "curbline/tilt_watch.hpp"
 
 namespace curbline::can {
@@ -47,9 +48,10 @@ struct CurbStatus {
   std::uint32_t curbs = 0;
 };
 
-/// The curb that a robot meets first when it drives straight on, curbs being in its base frame: of those that reach
-/// into x >= 0 within half_width_m to either side, the one whose nearest point there has the lowest x. O(curbs).
-std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, float half_width_m);
+/// The curb that a robot at a pose meets first when it drives straight on, curbs being in the map frame: in its base
+/// frame, of those that reach into x >= 0 within half_width_m to either side, the one whose nearest point there has the
+/// lowest x. O(curbs).
+std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m);
 
 /// The frame for a curb, or, with nothing, for a way without one.
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);

@@ -39,6 +39,12 @@ inline Transform make_transform(const MountSettings& mount) {
   return T;
 }
 
+/// Which way the x axis of a frame points, level; along x if it points up or down.
+inline SinCos heading(const Transform& T) {
+  const float x = T.rotation(0, 0), y = T.rotation(1, 0), level = square_root(x * x + y * y);
+  return level > 0.0f ? SinCos{y / level, x / level} : SinCos{0.0f, 1.0f};
+}
+
 /// R_y(tilt) p: tilt > 0 turns x down. s = sin_cos(tilt).
 inline Eigen::Vector3f tilted(const SinCos& s, const Eigen::Vector3f& p) {
   return {s.cos * p.x() + s.sin * p.z(), p.y(), s.cos * p.z() - s.sin * p.x()};

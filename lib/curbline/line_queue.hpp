@@ -1,7 +1,7 @@
 // Scan lines that wait for their tilt. A line is there when its last beam is, its angles only with the next servo
 // frame, up to a frame's period later: taken at once, its end would be extrapolated. Before the pipeline:
 //
-//   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now) after every line and every tilt reading
+//   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now, offset) after every line and tilt reading
 //
 // First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 24) bytes and a little. No clock:
 // times come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each
@@ -46,22 +46,23 @@ class LineQueue {
   bool push(const ScanLine& line, std::int64_t now_ns);
 
   /// The oldest line, if a tilt reading covers its last beam, if it has waited long enough, or if the queue is full.
-  /// newest_tilt_ns: stamp of the newest reading, INT64_MIN for none. The ranges are valid until the next push().
-  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns);
+  /// newest_tilt_ns: stamp of the newest reading, INT64_MIN for none; it is later than its angle by the settings'
+  /// latency and offset_s, the pipeline's tilt_latency().latest_offset_s(). The ranges are valid until the next push().
+  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s);
 
   int size() const { return size_; }
   const LineQueueCounters& counters() const { return counters_; }
 
  private:
   struct Entry {
-    std::int64_t time_ns, tilt_needed_ns, arrival_ns;
+    std::int64_t time_ns, last_beam_ns, arrival_ns;
     std::size_t beams;
   };
 
   ScanLine take_oldest();
 
-  float beam_interval_s_ = 0.0f;
-  std::int64_t latency_ns_ = 0, max_wait_ns_ = 0;
+  float beam_interval_s_ = 0.0f, latency_s_ = 0.0f;
+  std::int64_t max_wait_ns_ = 0;
   bool fixed_ = false;
   int oldest_ = 0, size_ = 0;
   std::array<Entry, capacity> entries_{};
@@ -72,7 +73,7 @@ class LineQueue {
 template <Limits limits, int capacity>
 void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
   beam_interval_s_ = laser.beam_interval_s;
-  latency_ns_ = static_cast<std::int64_t>(tilt.latency_s * 1e9f);
+  latency_s_ = tilt.latency_s;
   max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
   fixed_ = tilt.fixed;
   oldest_ = size_ = 0;
@@ -94,16 +95,18 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
   const auto slot = static_cast<std::size_t>((oldest_ + size_++) % capacity);
   const float duration_s = beams > 1 ? beam_interval_s_ * static_cast<float>(beams - 1) : 0.0f;
   const std::int64_t last_beam_ns = line.time_ns + static_cast<std::int64_t>(duration_s * 1e9f);
-  entries_[slot] = {line.time_ns, last_beam_ns + latency_ns_, now_ns, beams};
+  entries_[slot] = {line.time_ns, last_beam_ns, now_ns, beams};
   std::copy(line.ranges_m.begin(), line.ranges_m.end(), ranges_m_[slot].begin());
   return true;
 }
 
 template <Limits limits, int capacity>
-std::optional<ScanLine> LineQueue<limits, capacity>::pop(std::int64_t newest_tilt_ns, std::int64_t now_ns) {
+std::optional<ScanLine> LineQueue<limits, capacity>::pop(std::int64_t newest_tilt_ns, std::int64_t now_ns,
+                                                         float offset_s) {
   if (size_ == 0) return std::nullopt;
   const Entry& entry = entries_[static_cast<std::size_t>(oldest_)];
-  if (fixed_ || newest_tilt_ns >= entry.tilt_needed_ns) {
+  const auto late_ns = static_cast<std::int64_t>((latency_s_ + offset_s) * 1e9f);
+  if (fixed_ || newest_tilt_ns >= entry.last_beam_ns + late_ns) {
     ++counters_.covered;
   } else if (now_ns - entry.arrival_ns > max_wait_ns_) {
     ++counters_.overdue;

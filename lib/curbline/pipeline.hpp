@@ -40,7 +40,8 @@ class Pipeline {
   static_assert(limits.planes >= 2 && limits.planes <= 255 && limits.borders < 65535);
 
   /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then
-  /// takes nothing. May be called again at any time to start afresh.
+  /// takes nothing and knows of no curb, label or ground to drive on. May be called again to start afresh, at any time
+  /// but beside add_tilt() of another thread.
   Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
@@ -73,21 +74,22 @@ class Pipeline {
   /// reached: what a finished map wants. Returns the passes made.
   int settle(int passes = 10);
 
-  /// Curbs in the window, in the map frame. Valid until the next infer().
-  std::span<const Curb> curbs() const { return curb_tracer_.curbs(); }
+  /// Curbs in the window, in the map frame. Valid until the next take(), infer() or settle().
+  std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
-  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j), or over a curb of
-  /// curbs()? A curb may be older than the planes by a line. passability.hpp
+  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or over
+  /// a curb of curbs()? A curb may be older than the planes by a line. passability.hpp
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
-    return curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
+    return ready_ && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
   bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
     const auto side = [this](int label) { return label == no_label<limits> ? Plane{} : plane(label); };
-    return curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
+    return ready_ && curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
-  /// Plane of a valid cell (i along x, j along y, from the window's lowest corner); no_label<limits> for the others.
-  Label<limits> label(int i, int j) const { return label_field_.label(dem_.slot(i, j)); }
+  /// Plane of a valid cell (i along x, j along y, from the window's lowest corner, 0 <= i < dem().rows(), 0 <= j <
+  /// dem().cols()); no_label<limits> for the others.
+  Label<limits> label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label<limits>; }
   /// Probability of that label.
   float label_probability(int i, int j) const;
   /// A plane, in the window's frame (origin at its lowest corner, z of the map frame).
@@ -162,6 +164,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
 
 template <Limits limits>
 bool Pipeline<limits>::add_pose(const Pose& pose) {
+  if (!ready_) return false;
   if (pose_track_.push(pose)) return true;
   ++counters_.poses_dropped;
   return false;
@@ -290,12 +293,10 @@ void Pipeline<limits>::move_window(const Transform& T_map_base) {
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
   const float middle_x = window.origin_x_m + 0.5f * static_cast<float>(window.rows) * window.cell_x_m;
   const float middle_y = window.origin_y_m + 0.5f * static_cast<float>(window.cols) * window.cell_y_m;
-  const float ahead_x = T_map_base.rotation(0, 0), ahead_y = T_map_base.rotation(1, 0);
-  const float level = square_root(ahead_x * ahead_x + ahead_y * ahead_y);
-  const float cosine = level > 0.0f ? ahead_x / level : 1.0f, sine = level > 0.0f ? ahead_y / level : 0.0f;
+  const SinCos ahead = heading(T_map_base);
   // By how much the middle lies elsewhere than that of a robot which heads along the map's x axis.
-  const float aside_x = (cosine - 1.0f) * middle_x - sine * middle_y;
-  const float aside_y = sine * middle_x + (cosine - 1.0f) * middle_y;
+  const float aside_x = (ahead.cos - 1.0f) * middle_x - ahead.sin * middle_y;
+  const float aside_y = ahead.sin * middle_x + (ahead.cos - 1.0f) * middle_y;
   dem_.follow(T_map_base.translation.x() + aside_x, T_map_base.translation.y() + aside_y, [this](int slot) {
     segmentation_.forget(slot);
     plane_mixture_.forget(slot);

@@ -16,7 +16,22 @@ import run_drives  # noqa: E402
 CURB = struct.Struct("<7f3H")
 COUNTERS = 17 * 4
 AHEAD, STATUS = 0x6A0, 0x6A1  # of lib/can/curb_frames.hpp
+HALF_WIDTH = 0.5  # of template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # in a record of a frame
+
+
+def ahead_at(x0, y0, x1, y1):
+    """x of the point of a segment on the way of a robot at the origin that is nearest to it, or None."""
+    low, high = 0.0, 1.0
+    for at_first, at_last in [(x0, x1), (HALF_WIDTH - y0, HALF_WIDTH - y1), (HALF_WIDTH + y0, HALF_WIDTH + y1)]:
+        if at_first < 0 and at_last < 0:
+            return None
+        crossing = at_first / (at_first - at_last) if (at_first < 0) != (at_last < 0) else None
+        if at_first < 0:
+            low = max(low, crossing)
+        if at_last < 0:
+            high = min(high, crossing)
+    return min(x0 + low * (x1 - x0), x0 + high * (x1 - x0)) if low <= high else None
 
 
 def told_by_results(path):
@@ -27,9 +42,10 @@ def told_by_results(path):
         count, = struct.unpack_from("<I", record, count_at)
         ahead = None
         for k in range(count):
-            x0, _, x1, _, height, *_ = CURB.unpack_from(record, count_at + 4 + CURB.size * k)
-            if min(x0, x1) > 0 and (ahead is None or min(x0, x1) < ahead[0]):
-                ahead = (min(x0, x1), height)
+            x0, y0, x1, y1, height, *_ = CURB.unpack_from(record, count_at + 4 + CURB.size * k)
+            at = ahead_at(x0, y0, x1, y1)
+            if at is not None and (ahead is None or at < ahead[0]):
+                ahead = (at, height)
         if status == 0:
             yield count, None if ahead is None else ahead[1] * 1000
 

@@ -134,17 +134,27 @@ TEST_CASE("curb ahead: the nearest of those that reach into the way, at the poin
   };
   const Curb across = curb(3.0f, -2.0f, 3.0f, 2.0f, 0.12f), beside = curb(0.5f, 0.6f, 6.0f, 0.6f, 0.1f);
   const Curb slanting = curb(5.0f, 0.0f, 3.0f, 1.0f, 0.08f), behind = curb(-1.0f, -2.0f, -1.0f, 2.0f, 0.2f);
-  CHECK_FALSE(nearest_ahead({}, 0.5f));
-  CHECK_FALSE(nearest_ahead(std::array{beside, behind}, 0.5f));
-  const auto all = nearest_ahead(std::array{beside, slanting, behind, across}, 0.5f);
+  CHECK_FALSE(nearest_ahead({}, Pose{}, 0.5f));
+  CHECK_FALSE(nearest_ahead(std::array{beside, behind}, Pose{}, 0.5f));
+  const auto all = nearest_ahead(std::array{beside, slanting, behind, across}, Pose{}, 0.5f);
   REQUIRE(all);
   CHECK(all->distance_m == 3.0f);
   CHECK(all->height_m == 0.12f);
-  const auto at_edge = nearest_ahead(std::array{slanting}, 0.5f);
+  const auto at_edge = nearest_ahead(std::array{slanting}, Pose{}, 0.5f);
   REQUIRE(at_edge);
   CHECK(at_edge->distance_m == Approx(4.0f));
   CHECK(at_edge->lateral_m == Approx(0.5f));
-  const auto from_behind = nearest_ahead(std::array{curb(-1.0f, 0.1f, 4.0f, 0.1f, 0.1f)}, 0.5f);
+  const auto from_behind = nearest_ahead(std::array{curb(-1.0f, 0.1f, 4.0f, 0.1f, 0.1f)}, Pose{}, 0.5f);
   REQUIRE(from_behind);
   CHECK(from_behind->distance_m == Approx(0.0f).margin(1e-6));
+}
+
+TEST_CASE("curb ahead: of a robot that drives it is told in the base frame, curbs being in the map frame") {
+  Curb across{};  // 2 m before a robot at (10, 5) that heads along y
+  across.x0_m = 8.0f, across.y0_m = 7.0f, across.x1_m = 12.0f, across.y1_m = 7.2f;
+  const Pose pose{.x_m = 10.0f, .y_m = 5.0f, .qz = std::sqrt(0.5f), .qw = std::sqrt(0.5f)};
+  const auto ahead = nearest_ahead(std::array{across}, pose, 0.5f);
+  REQUIRE(ahead);
+  CHECK(ahead->distance_m == Approx(2.075f));
+  CHECK(ahead->lateral_m == Approx(0.5f));
 }

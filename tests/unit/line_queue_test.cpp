@@ -42,17 +42,17 @@ bool adds_up(const Queue& q) {
 
 TEST_CASE("line queue: a line is given out when a reading is at or after its last beam") {
   Queue q = queue();
-  CHECK_FALSE(q.pop(t0, t0));
+  CHECK_FALSE(q.pop(t0, t0, 0.0f));
   const Line line(0);
   REQUIRE(q.push(line.line(), line.end_ns()));
-  CHECK_FALSE(q.pop(none, line.end_ns()));
-  CHECK_FALSE(q.pop(line.end_ns() - 1000, line.end_ns()));
-  const auto out = q.pop(line.end_ns() + 1000, line.end_ns());
+  CHECK_FALSE(q.pop(none, line.end_ns(), 0.0f));
+  CHECK_FALSE(q.pop(line.end_ns() - 1000, line.end_ns(), 0.0f));
+  const auto out = q.pop(line.end_ns() + 1000, line.end_ns(), 0.0f);
   REQUIRE(out);
   CHECK(out->time_ns == t0);
   CHECK(out->ranges_m.size() == 11);
   CHECK(q.counters().covered == 1);
-  CHECK_FALSE(q.pop(line.end_ns() + 1000, line.end_ns()));
+  CHECK_FALSE(q.pop(line.end_ns() + 1000, line.end_ns(), 0.0f));
 }
 
 TEST_CASE("line queue: the reading that a line needs is later by the servo's latency") {
@@ -61,8 +61,18 @@ TEST_CASE("line queue: the reading that a line needs is later by the servo's lat
   Queue q = queue(late);
   const Line line(0);
   q.push(line.line(), line.end_ns());
-  CHECK_FALSE(q.pop(line.end_ns() + 19 * ms, line.end_ns()));
-  CHECK(q.pop(line.end_ns() + 21 * ms, line.end_ns()));
+  CHECK_FALSE(q.pop(line.end_ns() + 19 * ms, line.end_ns(), 0.0f));
+  CHECK(q.pop(line.end_ns() + 21 * ms, line.end_ns(), 0.0f));
+}
+
+TEST_CASE("line queue: it is later by what the pipeline has found of that latency, too") {
+  const Line line(1);
+  Queue q = queue();
+  REQUIRE(q.push(line.line(), t0));
+  CHECK_FALSE(q.pop(line.end_ns() + 11 * ms, line.end_ns(), 0.012f));
+  CHECK(q.pop(line.end_ns() + 13 * ms, line.end_ns(), 0.012f));
+  REQUIRE(q.push(line.line(), t0));
+  CHECK(q.pop(line.end_ns() - 11 * ms, line.end_ns(), -0.012f));  // or earlier
 }
 
 TEST_CASE("line queue: a laser at a fixed tilt never waits") {
@@ -70,7 +80,7 @@ TEST_CASE("line queue: a laser at a fixed tilt never waits") {
   fixed.fixed = true;
   Queue q = queue(fixed);
   q.push(Line(0).line(), t0);
-  CHECK(q.pop(none, t0));
+  CHECK(q.pop(none, t0, 0.0f));
   CHECK(q.counters().covered == 1);
 }
 
@@ -78,8 +88,8 @@ TEST_CASE("line queue: what has waited too long is given out without its tilt, a
   Queue q = queue();
   const Line line(0);
   q.push(line.line(), 7 * ms);  // arrival is of another clock than the line
-  CHECK_FALSE(q.pop(none, 56 * ms));
-  CHECK(q.pop(none, 58 * ms));
+  CHECK_FALSE(q.pop(none, 56 * ms, 0.0f));
+  CHECK(q.pop(none, 58 * ms, 0.0f));
   CHECK(q.counters().overdue == 1);
   CHECK(q.counters().covered == 0);
 }
@@ -92,16 +102,16 @@ TEST_CASE("line queue: the copy is the queue's own, and lines of any length keep
     gone.ranges_m.assign(3, -1.0f);
   }
   q.push(Line(2, 0).line(), t0);
-  const auto first = q.pop(t0 + 1000 * ms, t0);
+  const auto first = q.pop(t0 + 1000 * ms, t0, 0.0f);
   REQUIRE(first);
   CHECK(std::vector<float>(first->ranges_m.begin(), first->ranges_m.end()) == std::vector<float>(3, 1.0f));
-  CHECK(q.pop(t0 + 1000 * ms, t0)->ranges_m.empty());
+  CHECK(q.pop(t0 + 1000 * ms, t0, 0.0f)->ranges_m.empty());
 }
 
 TEST_CASE("line queue: a short line ends with its own last beam") {
   Queue q = queue();
   q.push(Line(0, 3).line(), t0);
-  CHECK(q.pop(t0 + 2 * ms + 1000, t0));
+  CHECK(q.pop(t0 + 2 * ms + 1000, t0, 0.0f));
 }
 
 TEST_CASE("line queue: who takes after each line loses none, even without tilt") {
@@ -109,7 +119,7 @@ TEST_CASE("line queue: who takes after each line loses none, even without tilt")
   int next = 0;
   for (int k = 0; k < 10; ++k) {
     REQUIRE(q.push(Line(k).line(), t0));
-    while (const auto out = q.pop(none, t0)) CHECK(out->time_ns == Line(next++).line().time_ns);
+    while (const auto out = q.pop(none, t0, 0.0f)) CHECK(out->time_ns == Line(next++).line().time_ns);
   }
   CHECK(next == 7);
   CHECK(q.size() == 3);
@@ -121,7 +131,7 @@ TEST_CASE("line queue: a full queue drops its oldest line for a new one, and cou
   Queue q = queue();
   for (int k = 0; k < 6; ++k) CHECK(q.push(Line(k).line(), t0));
   CHECK(q.counters().dropped == 2);
-  for (int k = 2; k < 6; ++k) CHECK(q.pop(t0 + 1000 * ms, t0)->ranges_m[0] == static_cast<float>(k));
+  for (int k = 2; k < 6; ++k) CHECK(q.pop(t0 + 1000 * ms, t0, 0.0f)->ranges_m[0] == static_cast<float>(k));
   CHECK(q.size() == 0);
 }
 
@@ -143,7 +153,7 @@ TEST_CASE("line queue: under any traffic lines stay in order, whole, and every o
     q.push(line.line(), now);
     if (k % 1000 < 500 && random() % 3 != 0) tilt = t0 + 25 * ms * k + static_cast<std::int64_t>(random() % 60) * ms;
     for (unsigned n = random() % 3; n > 0; --n) {
-      const auto out = q.pop(tilt, now);
+      const auto out = q.pop(tilt, now, 0.0f);
       if (!out) break;
       REQUIRE(out->time_ns > last);
       last = out->time_ns;

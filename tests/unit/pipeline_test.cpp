@@ -170,6 +170,23 @@ TEST_CASE("pipeline: before init, and after a refused one, it takes nothing and 
   takes_nothing();
 }
 
+TEST_CASE("pipeline: after a refused init nothing is left of what it told before") {
+  Settings settings = NoddingLaser::settings();
+  const auto pipeline = started(settings);
+  NoddingLaser laser;
+  stand(*pipeline, laser, {2.0, 0.12}, 0, 200);
+  REQUIRE_FALSE(pipeline->curbs().empty());
+  const Curb curb = longest(pipeline->curbs());
+  REQUIRE(pipeline->passable(10, 20, 0.03f, 0.2f));
+  settings.laser.beams = 0;
+  REQUIRE(pipeline->init(settings) == Status::bad_laser);
+  CHECK(pipeline->curbs().empty());
+  CHECK(pipeline->label(10, 20) == no_label<Limits{}>);
+  CHECK_FALSE(pipeline->passable(10, 20, 0.03f, 0.2f));
+  CHECK_FALSE(pipeline->passable(curb, 1.0f, 1.0f));
+  CHECK_FALSE(pipeline->add_pose({NoddingLaser::epoch_ns}));
+}
+
 TEST_CASE("pipeline: each bad line is answered with its reason, counted, and changes nothing else") {
   const auto pipeline = started();
   NoddingLaser laser;
