@@ -1,5 +1,6 @@
 // Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is its whole
-// memory: nothing is allocated later.
+// memory: nothing is allocated later. The stack that a call wants beside it grows by 2 bytes for each pair of planes:
+// 4 KiB are enough for 16 (tools/budget), 255 want 130 KiB more.
 #pragma once
 
 namespace curbline {
@@ -14,7 +15,7 @@ struct Limits {
   int tilt_samples = 64;  ///< tilt angles kept, a power of two: 2 s of a servo that reports at 32 Hz
   int poses = 32;         ///< poses kept
   int regions = 384;      ///< leaves and standing regions that one merging pass holds
-  int links = 1024;       ///< links between them, at most 32767
+  int links = 1024;       ///< links between them
   int borders = 512;      ///< border points between planes, at most 65534
   int curbs = 128;        ///< pieces of curb line that are given out
 };

@@ -1,7 +1,8 @@
 // Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best
 // gain first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes.
 // Lazy: a merge leaves the gains of its neighbours as they were, to be computed anew when they come up or when nothing
-// else gains. That takes a fifth of the evidences. This is working memory of one call: nothing in it outlives merge().
+// else gains. That takes a quarter of the evidences. This is working memory of one call: nothing in it outlives
+// merge().
 #pragma once
 
 #include <array>

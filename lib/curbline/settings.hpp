@@ -52,8 +52,8 @@ struct TiltSettings {
   float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error
   float max_extrapolation_s = 0.05f;  ///< beams further from the nearest reading are dropped
   float max_gap_s = 0.2f;             ///< readings further apart are not interpolated across
-  float roll_sd_rad = 0.0f;           ///< of the mount about x
-  float pitch_sd_rad = 0.0f;          ///< of the mount about y
+  float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin
+  float pitch_sd_rad = 0.0f;          ///< the same about y
 };
 
 /// The robot's pose, T_map_base. A robot that stands gives none.

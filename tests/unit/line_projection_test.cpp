@@ -201,11 +201,13 @@ double simulated_variance(const Settings& s, std::size_t beam, double range, dou
     const double b = bearing_of(s, beam) + static_cast<double>(s.laser.bearing_sd_rad) * noise.normal();
     const double t = tilt + static_cast<double>(s.tilt.angle_sd_rad) * noise.normal() +
                      rate * static_cast<double>(s.tilt.time_sd_s) * noise.normal();
-    const double roll = static_cast<double>(s.tilt.roll_sd_rad) * noise.normal() +
-                        static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
-    const double pitch = static_cast<double>(s.tilt.pitch_sd_rad) * noise.normal() +
-                         static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
-    const Eigen::Vector3d p = transform(0, 0, 0, roll, pitch, 0) * in_base(s, r, b, t);
+    const double roll = static_cast<double>(s.tilt.roll_sd_rad) * noise.normal();
+    const double pitch = static_cast<double>(s.tilt.pitch_sd_rad) * noise.normal();
+    const double pose_roll = static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
+    const double pose_pitch = static_cast<double>(s.pose.attitude_sd_rad) * noise.normal();
+    const Eigen::Vector3d mount(s.tilt.T_base_tilt.x_m, s.tilt.T_base_tilt.y_m, s.tilt.T_base_tilt.z_m);
+    const Eigen::Vector3d about_mount = transform(0, 0, 0, roll, pitch, 0) * (in_base(s, r, b, t) - mount) + mount;
+    const Eigen::Vector3d p = transform(0, 0, 0, pose_roll, pose_pitch, 0) * about_mount;
     const double z = p.z() + static_cast<double>(s.pose.height_sd_m) * noise.normal();
     sum += z;
     sum2 += z * z;
@@ -216,7 +218,7 @@ double simulated_variance(const Settings& s, std::size_t beam, double range, dou
 /// Errors of one kind at a time, then all at once.
 Settings with_errors(int kind) {
   Settings s = base_settings();
-  s.tilt.T_base_tilt = {0.0f, 0.0f, 0.9f, 0.05f, 0.1f, 0.2f};
+  s.tilt.T_base_tilt = {0.3f, -0.2f, 0.9f, 0.05f, 0.1f, 0.2f};
   s.tilt.T_tilt_laser = {0.05f, 0.0f, 0.04f, 0.1f, 0.05f, 0.0f};
   const auto when = [&](int k, float sd) { return kind == k || kind == 8 ? sd : 0.0f; };
   s.laser.range_sd_m = when(0, 0.02f);
