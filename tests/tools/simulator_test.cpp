@@ -386,6 +386,15 @@ TEST_CASE("simulate: a fixed tilt writes no CAN log, nor leaves an earlier one")
   CHECK_FALSE(fs::exists(out.path / "can.log"));
 }
 
+TEST_CASE("simulate: what was found in an earlier recording does not stay beside a new one") {
+  const TemporaryPath out("stale");
+  fs::create_directories(out.path);
+  for (const char* file : {"labels.csv", "curbs.csv"}) std::ofstream(out.path / file) << "of another scene\n";
+  simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
+  CHECK_FALSE(fs::exists(out.path / "labels.csv"));
+  CHECK_FALSE(fs::exists(out.path / "curbs.csv"));
+}
+
 TEST_CASE("simulate: without a duration a standing robot nods once and a driving one goes the whole way") {
   Robot robot = plain_robot();
   CHECK(Simulation(scene_of(flat), robot, 1).duration_s() == Approx(2));
