@@ -402,6 +402,17 @@ TEST_CASE("simulate: without a duration a standing robot nods once and a driving
   CHECK(Simulation(find_scene("city"), robot, 1).duration_s() > 100);
 }
 
+TEST_CASE("simulate: of a path that takes most of a day no more is laid out than the duration asks for") {
+  const Scene scene =
+      scene_of("[[region]]\nz = 0\nrectangle = [-1, -1, 2, 1]\n[robot]\npath = [[0, 0], [80, 0]]\nspeed = 0.001\n");
+  Robot robot = plain_robot();
+  robot.scan_rate_hz = 1;
+  const Simulation simulation(scene, robot, 1, 2);  // the way leaves the ground after half an hour
+  CHECK(simulation.true_T_map_base(2 + simulated_margin_s).translation().x() == Approx(0.00225));
+  CHECK(simulation.true_T_map_base(3).translation().x() == Approx(0.003));  // the last beam of a line
+  CHECK_THROWS_AS(Simulation(scene, robot, 1), BadInput);
+}
+
 TEST_CASE("simulate: what cannot be written leaves nothing") {
   const TemporaryPath out("bad");
   CHECK_THROWS_AS(simulate(find_scene("street"), robots + "no_such_robot.toml", out.path.string()), BadInput);

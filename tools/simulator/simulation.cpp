@@ -25,6 +25,11 @@ Eigen::Isometry3d transform(const MountSettings& mount) {
          rotation(mount.roll_rad, mount.pitch_rad, mount.yaw_rad);
 }
 
+/// The last pose and the last beam come behind the end.
+double motion_until_s(const Robot& robot, std::optional<double> duration_s) {
+  return duration_s.value_or(never_s) + simulated_margin_s + 1 / robot.scan_rate_hz;
+}
+
 double default_duration_s(const Robot& robot, const RobotMotion& motion) {
   if (motion.duration_s() > 0) {
     return motion.duration_s();
@@ -55,7 +60,7 @@ double sweep_angle_rad(const Sweep& sweep, double time_s) {
 Simulation::Simulation(const Scene& scene, const Robot& robot, std::uint64_t seed, std::optional<double> duration_s)
     : robot_(robot),
       scene_(in_map_frame(scene)),
-      motion_(scene_),
+      motion_(scene_, motion_until_s(robot, duration_s)),
       world_(scene_),
       laser_(robot.laser, robot.simulated, 3 * seed),
       tilt_random_(3 * seed + 1),
