@@ -154,7 +154,7 @@ TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands
 
 TEST_CASE("robot: a wrong type is refused with what was expected") {
   CHECK(error_in("[laser]\nbeams = 1081.0\n") ==
-        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 100000");
+        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 2881");
   CHECK(error_in("[laser]\nrange_sd_m = \"1 cm\"\n") ==
         "r.toml:2: laser.range_sd_m is '1 cm'; expected a number from 1e-05 to 1");
   CHECK(error_in("[tilt]\nfixed = 1\n") == "r.toml:2: tilt.fixed is 1; expected true or false");
@@ -166,7 +166,8 @@ TEST_CASE("robot: a wrong type is refused with what was expected") {
 }
 
 TEST_CASE("robot: values out of range are refused with the range") {
-  CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 100000");
+  CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 2881");
+  CHECK(error_in("[laser]\nbeams = 2882\n").starts_with("r.toml:2: laser.beams is 2882; expected"));
   CHECK(error_in("[laser]\nrange_sd_m = nan\n").starts_with("r.toml:2: laser.range_sd_m is nan; expected"));
   CHECK(error_in("[window]\nrows = 42\n") == "r.toml:2: window.rows is 42; expected a multiple of 4");
   CHECK(error_in("[window]\ncell_x_m = -0.1\n").starts_with("r.toml:2: window.cell_x_m is -0.1; expected"));
