@@ -256,6 +256,23 @@ TEST_CASE("simulation: the servo nods between its ends without a jump of angle o
   }
 }
 
+TEST_CASE("simulation: a sweep that the servo's signal cannot hold is refused with its key") {
+  Robot robot = plain_robot();
+  robot.file = "r.toml";
+  robot.tilt_signal = can::mini_cheetah_reply(0, 0.5);
+  robot.sweep = {-0.2, 1.0, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.to_rad is 1; expected an angle that tilt.signal holds, 0.5 at most");
+  robot.sweep = {-0.6, 0.5, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.from_rad is -0.6; expected an angle that tilt.signal holds, -0.5 at least");
+  robot.sweep.from_rad = -0.5;
+  CHECK_NOTHROW(Simulation(scene_of(flat), robot, 1));
+  robot.sweep.to_rad = 1.0;
+  robot.tilt.fixed = true;
+  CHECK_NOTHROW(Simulation(scene_of(flat), robot, 1));
+}
+
 TEST_CASE("simulation: samples come in the order in which a robot gets them") {
   Simulation simulation(scene_of(flat + drive), plain_robot(), 1, 0.5);
   double last_s = -1;
