@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
@@ -150,6 +151,28 @@ TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands
   CHECK(error_in("[tilt.signal]\np_max_rad = 12.5\n").starts_with("r.toml:2: unknown key tilt.signal.p_max_rad"));
   CHECK(error_in("[tuning.labels]\nj = 1\n").starts_with("r.toml:2: unknown key tuning.labels.j"));
   CHECK(error_in("[lazer]\n").starts_with("r.toml:1: unknown key lazer"));
+}
+
+TEST_CASE("robot: the manual lists the keys that are read, and no others") {
+  const std::string manual = read_file(robots + "README.md");
+  for (const std::string table : {"laser", "tilt", "tilt.mount", "pose", "window", "sweep", "simulated",
+                                  "tuning.segmentation", "tuning.planes", "tuning.labels", "tuning.curbs"}) {
+    const std::size_t from = manual.find("\n| `[" + table + "]` |");
+    REQUIRE(from != std::string::npos);
+    const std::string row = manual.substr(from + 1, manual.find('\n', from + 1) - from - 1);
+    const std::string error = error_in("[" + table + "]\nnone = 0\n");
+    const std::string listed = error.substr(error.find("expected one of") + 15) + ",";
+    const std::regex word("([a-z][a-z0-9_]*),"), quoted("`([a-z][a-z0-9_]*)`");
+    for (std::sregex_iterator key(listed.begin(), listed.end(), word); key != std::sregex_iterator(); ++key) {
+      INFO(table << " " << key->str(1));
+      CHECK((row.find("`" + key->str(1) + "`") != std::string::npos ||
+             manual.find("`[" + table + "." + key->str(1) + "]`") != std::string::npos));
+    }
+    for (std::sregex_iterator key(row.begin(), row.end(), quoted); key != std::sregex_iterator(); ++key) {
+      INFO(table << " " << key->str(1));
+      CHECK(listed.find(" " + key->str(1) + ",") != std::string::npos);
+    }
+  }
 }
 
 TEST_CASE("robot: a wrong type is refused with what was expected") {
