@@ -159,6 +159,14 @@ TEST_CASE("scores: half a curb has half the recall, and a piece in the open half
   CHECK(curbs.at[0].precision == Approx(0.5));
 }
 
+TEST_CASE("scores: where nothing was found there is no precision, and no F1") {
+  const StepRates rates = scores_of({}).at[1];
+  CHECK(rates.recall == 0);
+  CHECK(std::isnan(rates.precision));
+  CHECK(std::isnan(rates.f1));
+  CHECK(scores_of({piece(1, -2, 2, 0.1)}).at[1].f1 == 0);
+}
+
 TEST_CASE("scores: creases are no steps, found or true") {
   CHECK(scores_of({piece(2, -2, 2, 0.1, "crease")}).at[1].recall == 0);
   Truth ramp = truth;

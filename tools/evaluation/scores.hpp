@@ -38,7 +38,8 @@ struct PlaneScores {
   Errors height_m, slope_rad;  ///< of a plane at the middle of its cells, and of its normal
 };
 
-/// Of steps within a tolerance. Samples every 5 cm.
+/// Of steps within a tolerance. Samples every 5 cm. NaN where there is none; without precision or recall there is no
+/// F1.
 struct StepRates {
   double tolerance_m = 0;
   double precision = 0, recall = 0, f1 = 0;
