@@ -1,8 +1,43 @@
 """What the scripts that score many scenes share."""
-import os, subprocess, sys
+import argparse, os, shutil, subprocess, sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CURBLINE = os.environ.get("CURBLINE", os.path.join(ROOT, "build", "bin", "curbline"))
+LASERS = ["utm30lx", "lms151", "lms200"]
+METHODS = ["segment", "em", "crf-em", "curbline", "canny", "gradient"]
+
+
+class Words(argparse.ArgumentParser):
+    """The command line of a script. Where it is wrong, one line says so; exit status 2."""
+
+    def __init__(self, doc, out):
+        super().__init__(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+        self.add_argument("--out", default=os.path.join(ROOT, out))
+
+    def begin(self, out):
+        """What must be there before the work begins: the program, and a directory to write to."""
+        if shutil.which(CURBLINE) is None:
+            self.error(f"{CURBLINE}: no program; expected tools/build to have made it, or CURBLINE to name another")
+        try:
+            os.makedirs(out, exist_ok=True)
+        except OSError as error:
+            self.error(f"--out {out}: {error.strerror}; expected a directory to write to")
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def number(kind, lowest, highest):
+    """What an argument must be, for argparse."""
+    def read(word):
+        try:
+            value = kind(word)
+        except ValueError:
+            value = None
+        if value is None or not lowest <= value <= highest:
+            raise argparse.ArgumentTypeError(f"{word}; expected a number from {lowest} to {highest}")
+        return value
+    return read
 
 
 def run(*words):

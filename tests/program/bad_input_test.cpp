@@ -158,11 +158,12 @@ TEST_CASE("program: a line of 100 MB is refused and not kept") {
   }
 }
 
-TEST_CASE("program: a robot that is larger than the host's limits is refused with its file") {
+TEST_CASE("program: a robot that is larger than the host's limits is refused with its file, line and key") {
   const Recording logs = standing();
   const std::string many =
       logs.directory().write("r.toml", "[laser]\nbeams = 5000\nbeam_interval_s = 0.0\nbearing_step_rad = 0.001\n");
-  check_refused(replay_with(logs, "robot", many), many + ": ", "5000 beams; expected at most 2881");
+  check_refused(replay_with(logs, "robot", many),
+                many + ":2: ", "laser.beams is 5000; expected a whole number from 1 to 2881");
 }
 
 TEST_CASE("program: a scene file is refused with its line and key") {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "evaluation/scores.hpp"
+#include "formats/bad_input.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -90,6 +91,37 @@ TEST_CASE("scores: cells of half the usual size are as many parts as the planes"
   CHECK(score_planes({{fine}, {}, {}}, truth).v == Approx(1));
 }
 
+TEST_CASE("scores: a shadow across a road that is labelled as one plane leaves it one, and V 1") {
+  std::vector<LabelledCell> cells = cells_of(truth);
+  std::erase_if(cells, [](const LabelledCell& c) { return c.x_m < 2 && c.y_m > 0 && c.y_m < 0.3; });
+  CHECK(score_planes({{cells}, {}, {}}, truth).v == Approx(1));
+}
+
+TEST_CASE("scores: ground goes on below what stands on it, but what stands there is not scored") {
+  Truth with_wall = truth;
+  with_wall.obstacles = {{"wall", rectangle({0, 0}, {2, 0.3})}};
+  std::vector<LabelledCell> cells = cells_of(truth);
+  for (LabelledCell& cell : cells) {
+    if (with_wall.obstacle_at(cell.x_m, cell.y_m)) cell.cell.label = 7;
+  }
+  CHECK(score_planes({{cells}, {}, {}}, with_wall).v == Approx(1));
+}
+
+TEST_CASE("scores: two pavements of one height on either side of a road are two") {
+  Truth road = step_of(0.1);
+  road.regions = {{"pavement", rectangle({0, -2}, {4, 2}), 1}, {"road", rectangle({1, -2}, {3, 2}), 0}};
+  std::vector<LabelledCell> cells = cells_of(road);
+  CHECK(score_planes({{cells}, {}, {}}, road).v < 0.9);
+  for (LabelledCell& cell : cells) cell.cell.label += cell.x_m > 3;
+  CHECK(score_planes({{cells}, {}, {}}, road).v == Approx(1));
+}
+
+TEST_CASE("scores: labels so far apart that no window holds them are refused") {
+  std::vector<LabelledCell> cells = cells_of(truth);
+  cells.back().x_m = 1e300;
+  CHECK_THROWS_AS(score_planes({{cells}, {}, {}}, truth), BadInput);
+}
+
 TEST_CASE("scores: a window with one true plane says nothing of V, and does not count") {
   const PlaneScores planes = score_planes({{cells_of(truth, 1.9), cells_of(truth)}, {}, {}}, truth);
   CHECK(planes.v == Approx(1));
@@ -125,6 +157,14 @@ TEST_CASE("scores: half a curb has half the recall, and a piece in the open half
   const CurbScores curbs = scores_of({piece(2, -2, 0, 0.1), piece(1, -2, 0, 0.1)});
   CHECK(curbs.at[0].recall == Approx(0.5).margin(0.02));
   CHECK(curbs.at[0].precision == Approx(0.5));
+}
+
+TEST_CASE("scores: where nothing was found there is no precision, and no F1") {
+  const StepRates rates = scores_of({}).at[1];
+  CHECK(rates.recall == 0);
+  CHECK(std::isnan(rates.precision));
+  CHECK(std::isnan(rates.f1));
+  CHECK(scores_of({piece(1, -2, 2, 0.1)}).at[1].f1 == 0);
 }
 
 TEST_CASE("scores: creases are no steps, found or true") {

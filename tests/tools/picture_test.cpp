@@ -112,11 +112,16 @@ using Words = std::vector<std::string>;
 
 TEST_CASE("picture: another ending than .png or .svg is refused, and the two are named") {
   const TemporaryDirectory dir;
-  for (const char* name : {"a.jpg", "a", "png", "a.PNG", "a.png.txt"}) {
+  for (const char* name : {"a.jpg", "a", "png", "a.png.txt"}) {
     CHECK(error_of([&] { draw_picture(street(), dir.path(name)); }) ==
           std::string(name) + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
   }
   CHECK(fs::is_empty(dir.path("")));
+}
+
+TEST_CASE("picture: endings may be in capitals") {
+  CHECK(drawn(street(), "a.PNG").starts_with("\x89PNG"));
+  CHECK(drawn(street(), "a.Svg").starts_with("<?xml"));
 }
 
 TEST_CASE("picture: a PNG of any window stays within 1600 x 1000 pixels") {
@@ -201,17 +206,17 @@ TEST_CASE("picture: x ahead points up and y left points left") {
     CHECK(panel->at(4, 2).x == Approx(box.x));
     CHECK(panel->at(4, 2).y == Approx(box.y));
   }
-  CHECK(same(seen.at(seen.page.planes.at(3.95, 1.95)), label_colour(3)));
+  CHECK(same(seen.at(seen.page.planes.at(3.95, 1.95)), plane_colour(0)));
 }
 
-TEST_CASE("picture: cells have the colours of their labels, and a cell without one is not one without data") {
+TEST_CASE("picture: cells have the colours of their planes, and a cell without one is not one without data") {
   Map map = street();
   map.cells[map.grid.at(20, 10)].label = -1;
   map.cells[map.grid.at(20, 5)].points = 0;
   const Seen seen(map);
   const auto at = [&](int i, int j) { return seen.at(seen.page.planes.at(map.grid.x_m(i), map.grid.y_m(j))); };
-  CHECK(same(at(5, 15), label_colour(0)));
-  CHECK(same(at(5, 38), label_colour(1)));
+  CHECK(same(at(5, 15), plane_colour(0)));
+  CHECK(same(at(5, 38), plane_colour(1)));
   CHECK(same(at(20, 10), no_label));
   CHECK(same(at(20, 5), no_data));
 }
@@ -223,10 +228,54 @@ TEST_CASE("picture: a few high cells do not take the colours from the ground") {
   CHECK(height_range(map).high_m == 0.12);
 }
 
-TEST_CASE("picture: the colours of the first 14 labels differ") {
-  for (int a = 0; a < 14; ++a) {
-    for (int b = 0; b < a; ++b) CHECK_FALSE(same(label_colour(a), label_colour(b)));
+TEST_CASE("picture: the colours of the 14 largest planes differ, whatever their labels") {
+  for (std::size_t a = 0; a < 14; ++a) {
+    for (std::size_t b = 0; b < a; ++b) CHECK_FALSE(same(plane_colour(a), plane_colour(b)));
   }
+  Map map = street();
+  for (MapCell& cell : map.cells) cell.label = cell.label == 0 ? 28 : 0;
+  const Seen seen(map);
+  CHECK(same(seen.at(seen.page.planes.at(1, 0.5)), plane_colour(0)));
+  CHECK(same(seen.at(seen.page.planes.at(1, 1.85)), plane_colour(1)));
+}
+
+TEST_CASE("picture: a wall on a plane, however large, does not take the colours from the ground") {
+  Map map = street();
+  map.planes = {{0, 0, 0, 0.01, 0}, {0.12, 0, 0, 0.01, 1}};
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 10; ++j) map.cells[map.grid.at(i, j)].height_m = 1.0 + 0.3 * i;
+  }
+  CHECK(height_range(map).low_m == 0);
+  CHECK(height_range(map).high_m == 0.12);
+}
+
+TEST_CASE("picture: the legend lists curbs that are drawn, and no others") {
+  const auto rows = [](const Map& map, const PictureExtras& extras = {}) { return legend_height(map, extras) / 20; };
+  Map map = street();
+  const double before = rows(map);
+  map.curbs.push_back({-3, 1, -1, 1, 0, 0, 1, "crease"});
+  CHECK(rows(map) == before);
+  CHECK(rows(map, {.truth = {map.curbs.back()}}) == before);
+  map.curbs.back().x1_m = 1;
+  CHECK(rows(map) == before + 1);
+  CHECK(rows(map, {.truth = {map.curbs.back()}}) == before + 2);
+}
+
+TEST_CASE("picture: a crease is dotted, the edge of a ramp is not") {
+  const auto longest_dash = [](const char* kind) {
+    Map map = street();
+    map.curbs = {{2, -1.5, 2, 1.5, 0, 0, 1, kind}};
+    const Seen seen(map);
+    const Pixel from = seen.page.planes.at(2, 1.4), to = seen.page.planes.at(2, -1.4);
+    int longest = 0, dash = 0;
+    for (double x = from.x; x < to.x; ++x) {
+      dash = seen.at({x, from.y}).g < 0.3 ? dash + 1 : 0;
+      longest = std::max(longest, dash);
+    }
+    return longest;
+  };
+  CHECK(longest_dash("crease") > 0);
+  CHECK(longest_dash("ramp_edge") > 3 * longest_dash("crease"));
 }
 
 TEST_CASE("picture: an SVG can be searched for a curb's height and bears its title") {

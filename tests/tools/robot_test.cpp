@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
@@ -152,9 +153,31 @@ TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands
   CHECK(error_in("[lazer]\n").starts_with("r.toml:1: unknown key lazer"));
 }
 
+TEST_CASE("robot: the manual lists the keys that are read, and no others") {
+  const std::string manual = read_file(robots + "README.md");
+  for (const std::string table : {"laser", "tilt", "tilt.mount", "pose", "window", "sweep", "simulated",
+                                  "tuning.segmentation", "tuning.planes", "tuning.labels", "tuning.curbs"}) {
+    const std::size_t from = manual.find("\n| `[" + table + "]` |");
+    REQUIRE(from != std::string::npos);
+    const std::string row = manual.substr(from + 1, manual.find('\n', from + 1) - from - 1);
+    const std::string error = error_in("[" + table + "]\nnone = 0\n");
+    const std::string listed = error.substr(error.find("expected one of") + 15) + ",";
+    const std::regex word("([a-z][a-z0-9_]*),"), quoted("`([a-z][a-z0-9_]*)`");
+    for (std::sregex_iterator key(listed.begin(), listed.end(), word); key != std::sregex_iterator(); ++key) {
+      INFO(table << " " << key->str(1));
+      CHECK((row.find("`" + key->str(1) + "`") != std::string::npos ||
+             manual.find("`[" + table + "." + key->str(1) + "]`") != std::string::npos));
+    }
+    for (std::sregex_iterator key(row.begin(), row.end(), quoted); key != std::sregex_iterator(); ++key) {
+      INFO(table << " " << key->str(1));
+      CHECK(listed.find(" " + key->str(1) + ",") != std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("robot: a wrong type is refused with what was expected") {
   CHECK(error_in("[laser]\nbeams = 1081.0\n") ==
-        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 100000");
+        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 2881");
   CHECK(error_in("[laser]\nrange_sd_m = \"1 cm\"\n") ==
         "r.toml:2: laser.range_sd_m is '1 cm'; expected a number from 1e-05 to 1");
   CHECK(error_in("[tilt]\nfixed = 1\n") == "r.toml:2: tilt.fixed is 1; expected true or false");
@@ -166,7 +189,8 @@ TEST_CASE("robot: a wrong type is refused with what was expected") {
 }
 
 TEST_CASE("robot: values out of range are refused with the range") {
-  CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 100000");
+  CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 2881");
+  CHECK(error_in("[laser]\nbeams = 2882\n").starts_with("r.toml:2: laser.beams is 2882; expected"));
   CHECK(error_in("[laser]\nrange_sd_m = nan\n").starts_with("r.toml:2: laser.range_sd_m is nan; expected"));
   CHECK(error_in("[window]\nrows = 42\n") == "r.toml:2: window.rows is 42; expected a multiple of 4");
   CHECK(error_in("[window]\ncell_x_m = -0.1\n").starts_with("r.toml:2: window.cell_x_m is -0.1; expected"));

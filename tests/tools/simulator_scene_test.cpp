@@ -94,6 +94,9 @@ TEST_CASE("scene: bad files are refused with line and key") {
           ":11:", "count");
   refused(bump + "[robot]\npath = [[0, 0], [0, 0]]\n", ":8:", "path");
   refused(bump + "[robot]\nat = [0, 0]\nspeed = 1\n", ":9:", "speed");
+  refused(bump + "[robot]\npath = [[0, 0], [1e5, 0]]\nspeed = 0.001\n", ":8:", "robot.path takes 100000000 s");
+  refused(bump + "[robot]\npath = [[0, 0], [0, 1], [1, 1]]\nturn_rate_deg_s = 1e-3\n",
+          ":8:", "robot.path takes 90002 s");
   refused("[ground\n", ":1:", "");
   refused("[robot]\n", ":1:", "no ground");
 }

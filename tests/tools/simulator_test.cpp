@@ -256,6 +256,23 @@ TEST_CASE("simulation: the servo nods between its ends without a jump of angle o
   }
 }
 
+TEST_CASE("simulation: a sweep that the servo's signal cannot hold is refused with its key") {
+  Robot robot = plain_robot();
+  robot.file = "r.toml";
+  robot.tilt_signal = can::mini_cheetah_reply(0, 0.5);
+  robot.sweep = {-0.2, 1.0, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.to_rad is 1; expected an angle that tilt.signal holds, 0.5 at most");
+  robot.sweep = {-0.6, 0.5, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.from_rad is -0.6; expected an angle that tilt.signal holds, -0.5 at least");
+  robot.sweep.from_rad = -0.5;
+  CHECK_NOTHROW(Simulation(scene_of(flat), robot, 1));
+  robot.sweep.to_rad = 1.0;
+  robot.tilt.fixed = true;
+  CHECK_NOTHROW(Simulation(scene_of(flat), robot, 1));
+}
+
 TEST_CASE("simulation: samples come in the order in which a robot gets them") {
   Simulation simulation(scene_of(flat + drive), plain_robot(), 1, 0.5);
   double last_s = -1;
@@ -386,11 +403,31 @@ TEST_CASE("simulate: a fixed tilt writes no CAN log, nor leaves an earlier one")
   CHECK_FALSE(fs::exists(out.path / "can.log"));
 }
 
+TEST_CASE("simulate: what was found in an earlier recording does not stay beside a new one") {
+  const TemporaryPath out("stale");
+  fs::create_directories(out.path);
+  for (const char* file : {"labels.csv", "curbs.csv"}) std::ofstream(out.path / file) << "of another scene\n";
+  simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
+  CHECK_FALSE(fs::exists(out.path / "labels.csv"));
+  CHECK_FALSE(fs::exists(out.path / "curbs.csv"));
+}
+
 TEST_CASE("simulate: without a duration a standing robot nods once and a driving one goes the whole way") {
   Robot robot = plain_robot();
   CHECK(Simulation(scene_of(flat), robot, 1).duration_s() == Approx(2));
   CHECK(Simulation(scene_of(flat + drive), robot, 1).duration_s() == Approx(10));
   CHECK(Simulation(find_scene("city"), robot, 1).duration_s() > 100);
+}
+
+TEST_CASE("simulate: of a path that takes most of a day no more is laid out than the duration asks for") {
+  const Scene scene =
+      scene_of("[[region]]\nz = 0\nrectangle = [-1, -1, 2, 1]\n[robot]\npath = [[0, 0], [80, 0]]\nspeed = 0.001\n");
+  Robot robot = plain_robot();
+  robot.scan_rate_hz = 1;
+  const Simulation simulation(scene, robot, 1, 2);  // the way leaves the ground after half an hour
+  CHECK(simulation.true_T_map_base(2 + simulated_margin_s).translation().x() == Approx(0.00225));
+  CHECK(simulation.true_T_map_base(3).translation().x() == Approx(0.003));  // the last beam of a line
+  CHECK_THROWS_AS(Simulation(scene, robot, 1), BadInput);
 }
 
 TEST_CASE("simulate: what cannot be written leaves nothing") {

@@ -169,7 +169,7 @@ CurbScores score_curbs(const Found& found, const Truth& truth, const Seen& seen)
   for (std::size_t k = 0; k < tolerances_m.size(); ++k) {
     const double precision = share_within(of_found, tolerances_m[k], any, all);
     const double recall = share_within(of_truth, tolerances_m[k], any, all);
-    const double f1 = precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0;
+    const double f1 = precision + recall == 0 ? 0 : 2 * precision * recall / (precision + recall);
     out.at[k] = {tolerances_m[k], precision, recall, f1};
   }
   out.band = {BandRates{low_m, high_m}, BandRates{high_m, 1.0}};

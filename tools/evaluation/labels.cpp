@@ -15,13 +15,6 @@ double entropy(const std::map<Key, double>& count, double total) {
   return h;
 }
 
-const MapPlane* plane_of(const Map& map, int label) {
-  for (const MapPlane& plane : map.planes) {
-    if (plane.label == label) return &plane;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 double v_measure(std::span<const int> truth, std::span<const int> label) {
@@ -72,7 +65,7 @@ double prediction_rmse(const Map& trained, const Map& other) {
       const MapCell& seen = other.cells[grid.at(i, j)];
       const MapPlane* plane = cell.points > 0 && seen.points > 0 ? plane_of(trained, cell.label) : nullptr;
       if (plane == nullptr) continue;
-      const double error = seen.height_m - (plane->z0_m + plane->sx * seen.x_m + plane->sy * seen.y_m);
+      const double error = seen.height_m - plane->height_m(seen.x_m, seen.y_m);
       squares += error * error;
       ++cells;
     }

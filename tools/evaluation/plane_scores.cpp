@@ -10,70 +10,98 @@
 
 #include "evaluation/labels.hpp"
 #include "evaluation/scores.hpp"
+#include "formats/bad_input.hpp"
 
 namespace curbline::tools {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t least_cells = 8;  ///< of a plane whose slope is worth comparing
+constexpr std::size_t least_cells = 8;   ///< of a plane whose slope is worth comparing
+constexpr double most_places = 1 << 24;  ///< seen or not, 64 windows of the largest
 
 using Cells = std::vector<const LabelledCell*>;
 
-/// The distance between neighbours along one axis: the file of labels does not say it.
-double pitch_m(const std::vector<LabelledCell>& cells, double LabelledCell::*axis) {
+/// The places of cells along one axis: the file of labels does not say how far apart they are.
+struct Axis {
+  double low_m = 0, pitch_m = 1;
+  double count = 1;
+};
+
+Axis axis_of(const std::vector<LabelledCell>& cells, double LabelledCell::*axis) {
   std::vector<double> at;
   for (const LabelledCell& cell : cells) at.push_back(cell.*axis);
   std::sort(at.begin(), at.end());
-  double pitch = std::numeric_limits<double>::infinity();
+  double closest_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < at.size(); ++i) {
-    if (at[i] - at[i - 1] > 1e-4) pitch = std::min(pitch, at[i] - at[i - 1]);
+    if (at[i] - at[i - 1] > 1e-4) closest_m = std::min(closest_m, at[i] - at[i - 1]);
   }
-  return std::isfinite(pitch) ? pitch : 1;
+  const double whole_m = at.back() - at.front(), steps = std::round(whole_m / closest_m);
+  return {at.front(), steps > 0 ? whole_m / steps : 1, steps + 1};
 }
 
-struct Part {
-  int plane, label, number;
-};
-using Parts = std::map<std::pair<long, long>, Part>;
+/// From the lowest to the highest cell.
+Grid grid_of(const std::vector<LabelledCell>& cells) {
+  const Axis x = axis_of(cells, &LabelledCell::x_m), y = axis_of(cells, &LabelledCell::y_m);
+  if (x.count * y.count > most_places) {
+    throw BadInput("labels.csv: rows that lie too far apart for their distance; expected those of one window");
+  }
+  return {x.low_m - x.pitch_m / 2,   y.low_m - y.pitch_m / 2,  x.pitch_m, y.pitch_m,
+          static_cast<int>(x.count), static_cast<int>(y.count)};
+}
 
-void flood(Parts& parts, const Parts::iterator start, int number) {
-  std::vector<Parts::iterator> open{start};
-  start->second.number = number;
+std::size_t place_of(const LabelledCell& cell, const Grid& grid) {
+  return grid.at(static_cast<int>((cell.x_m - grid.x0_m) / grid.dx_m),
+                 static_cast<int>((cell.y_m - grid.y0_m) / grid.dy_m));
+}
+
+/// Numbers all that is connected with cell (i, j) and lies on its plane.
+void flood(const Grid& grid, const std::vector<int>& planes, int i, int j, int number, std::vector<int>& parts) {
+  std::vector<std::pair<int, int>> open{{i, j}};
+  const int plane = planes[grid.at(i, j)];
   while (!open.empty()) {
-    const auto from = open.back();
+    const auto [row, col] = open.back();
     open.pop_back();
-    const auto [i, j] = from->first;
-    for (const auto& next : {std::pair{i + 1, j}, std::pair{i - 1, j}, std::pair{i, j + 1}, std::pair{i, j - 1}}) {
-      const auto found = parts.find(next);
-      if (found == parts.end() || found->second.number >= 0 || found->second.plane != from->second.plane) continue;
-      found->second.number = number;
-      open.push_back(found);
+    if (row < 0 || row >= grid.rows || col < 0 || col >= grid.cols) continue;
+    const std::size_t at = grid.at(row, col);
+    if (planes[at] != plane || parts[at] >= 0) continue;
+    parts[at] = number;
+    open.insert(open.end(), {{row + 1, col}, {row - 1, col}, {row, col + 1}, {row, col - 1}});
+  }
+}
+
+/// The connected parts of the true planes, numbered from 0; -1 in the void.
+std::vector<int> parts_of(const Grid& grid, const Truth& truth) {
+  std::vector<int> planes, parts(grid.cells(), -1);
+  for (int i = 0; i < grid.rows; ++i) {
+    for (int j = 0; j < grid.cols; ++j) planes.push_back(truth.plane_at(grid.x_m(i), grid.y_m(j)));
+  }
+  int numbers = 0;
+  for (int i = 0; i < grid.rows; ++i) {
+    for (int j = 0; j < grid.cols; ++j) {
+      if (planes[grid.at(i, j)] >= 0 && parts[grid.at(i, j)] < 0) flood(grid, planes, i, j, numbers++, parts);
     }
   }
+  return parts;
 }
 
 /// Against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height on either
-/// side of a road are two.
+/// side of a road are two. What hides the ground, a shadow or what stands on it, does not part it.
 double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
-  const double dx = pitch_m(cells, &LabelledCell::x_m), dy = pitch_m(cells, &LabelledCell::y_m);
-  Parts parts;
-  for (const LabelledCell& cell : cells) {
-    const int plane = truth.plane_at(cell.x_m, cell.y_m);
-    if (plane < 0 || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
-    parts[{std::lround(cell.x_m / dx - 0.5), std::lround(cell.y_m / dy - 0.5)}] = {plane, cell.cell.label, -1};
-  }
-  int numbers = 0;
-  for (auto part = parts.begin(); part != parts.end(); ++part) {
-    if (part->second.number < 0) flood(parts, part, numbers++);
-  }
+  if (cells.empty()) return nan;
+  const Grid grid = grid_of(cells);
+  const std::vector<int> parts = parts_of(grid, truth);
   std::vector<int> of_truth, label;
-  std::vector<std::size_t> cells_of(static_cast<std::size_t>(numbers));
-  for (const auto& [at, part] : parts) {
-    of_truth.push_back(part.number);
-    ++cells_of[static_cast<std::size_t>(part.number)];
-    label.push_back(part.label);
+  std::map<int, std::size_t> cells_of;
+  for (const LabelledCell& cell : cells) {
+    const int part = parts[place_of(cell, grid)];
+    if (part < 0 || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
+    of_truth.push_back(part);
+    label.push_back(cell.cell.label);
+    ++cells_of[part];
   }
-  const auto large = [&](std::size_t n) { return static_cast<double>(n) >= 0.05 * static_cast<double>(parts.size()); };
+  const auto large = [&](const auto& part) {
+    return static_cast<double>(part.second) >= 0.05 * static_cast<double>(label.size());
+  };
   const bool labelled = std::any_of(label.begin(), label.end(), [](int l) { return l >= 0; });
   const bool parted = std::count_if(cells_of.begin(), cells_of.end(), large) >= 2;
   return labelled && parted ? v_measure(of_truth, label) : nan;

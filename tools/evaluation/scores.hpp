@@ -30,14 +30,16 @@ Errors errors_of(std::vector<double> values);
 /// Labels and planes. A plane is what least squares makes of its label's cells; the true one that of most of them.
 struct PlaneScores {
   /// V-measure against connected parts of the true planes, mean over the windows in which two parts or more have 5 % of
-  /// the cells or more. NaN if there is none, or no cell bears a label (of a method that finds curbs alone).
+  /// the cells or more. NaN if there is none, or no cell bears a label (of a method that finds curbs alone). Parts are
+  /// connected over all ground between the lowest and the highest cell, seen or not; cells off obstacles count.
   double v = 0;
   double cell_rmse_m = 0;      ///< of cells about the true ground
   double plane_rmse_m = 0;     ///< of planes about the true ground, at the cells of their labels
   Errors height_m, slope_rad;  ///< of a plane at the middle of its cells, and of its normal
 };
 
-/// Of steps within a tolerance. Samples every 5 cm.
+/// Of steps within a tolerance. Samples every 5 cm. NaN where there is none; without precision or recall there is no
+/// F1.
 struct StepRates {
   double tolerance_m = 0;
   double precision = 0, recall = 0, f1 = 0;

@@ -12,4 +12,11 @@ MapCurb part_of(const MapCurb& curb, const Share& share) {
   return part;
 }
 
+const MapPlane* plane_of(const Map& map, int label) {
+  for (const MapPlane& plane : map.planes) {
+    if (plane.label == label) return &plane;
+  }
+  return nullptr;
+}
+
 }  // namespace curbline::tools

@@ -16,19 +16,21 @@ struct Grid {
   int rows = 0;  ///< along x
   int cols = 0;  ///< along y
   std::size_t cells() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols); }
-  std::size_t at(int i, int j) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j); }
+  std::size_t at(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j);
+  }
   double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< of a cell's centre
   double y_m(int j) const { return y0_m + (j + 0.5) * dy_m; }
   Bounds bounds() const { return {x0_m, y0_m, x0_m + rows * dx_m, y0_m + cols * dy_m}; }
 };
 
 struct MapCell {
-  double x_m = 0, y_m = 0; ///< centroid of its points, or its centre
-  double height_m = 0;     ///< mean height
-  double variance_m2 = 0;  ///< of the cell's posterior
-  int points = 0;          ///< 0: the cell is invalid and every other field means nothing
-  int label = -1;          ///< of the plane; -1: none
-  double probability = 0;  ///< of that label
+  double x_m = 0, y_m = 0;  ///< centroid of its points, or its centre
+  double height_m = 0;      ///< mean height
+  double variance_m2 = 0;   ///< of the cell's posterior
+  int points = 0;           ///< 0: the cell is invalid and every other field means nothing
+  int label = -1;           ///< of the plane; -1: none
+  double probability = 0;   ///< of that label
 };
 
 /// z = z0 + sx x + sy y, in the grid's frame.
@@ -36,6 +38,7 @@ struct MapPlane {
   double z0_m = 0, sx = 0, sy = 0;
   double sd_m = 0;  ///< of cells about the plane
   int label = -1;
+  double height_m(double x_m, double y_m) const { return z0_m + sx * x_m + sy * y_m; }
 };
 
 /// A straight piece of curb line. height_m: far side less near side, as seen from the robot: above 0 is a step up.
@@ -56,6 +59,9 @@ struct Map {
   std::vector<MapPlane> planes;
   std::vector<MapCurb> curbs;
 };
+
+/// nullptr: the map has none of that label. O(planes).
+const MapPlane* plane_of(const Map& map, int label);
 
 struct Point3 {
   double x = 0, y = 0, z = 0;

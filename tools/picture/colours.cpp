@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 
 namespace curbline::tools::picture {
 namespace {
@@ -26,7 +25,7 @@ Colour height_colour(double share) {
   return mix(anchors[n], anchors[n + 1], at - static_cast<double>(n));
 }
 
-Colour label_colour(int label) {
+Colour plane_colour(std::size_t rank) {
   static constexpr std::array<Colour, 14> colours{{{0.34, 0.71, 0.91},
                                                    {0.90, 0.62, 0.00},
                                                    {0.00, 0.62, 0.45},
@@ -41,9 +40,8 @@ Colour label_colour(int label) {
                                                    {0.70, 0.90, 0.88},
                                                    {0.50, 0.12, 0.30},
                                                    {0.12, 0.32, 0.18}}};
-  const auto n = static_cast<std::size_t>(label);
-  const bool again = n / colours.size() % 2 == 1;
-  return mix(colours[n % colours.size()], {1, 1, 1}, again ? 0.45 : 0.0);
+  const bool again = rank / colours.size() % 2 == 1;
+  return mix(colours[rank % colours.size()], {1, 1, 1}, again ? 0.45 : 0.0);
 }
 
 }  // namespace curbline::tools::picture

@@ -8,7 +8,7 @@ void draw_curb(cairo_t* cr, const std::string& kind, Pixel from, Pixel to) {
   set_line(cr, white, crease ? 3.5 : 5.5);
   stroke(cr, from, to);
   if (edge) {
-    set_line(cr, {0, 0, 0}, 2, {2, 7});
+    set_line(cr, {0, 0, 0}, 2, {12, 3, 2, 3});
   } else if (crease) {
     set_line(cr, {0, 0, 0}, 2, {2, 3});
   } else if (kind == "step_down") {

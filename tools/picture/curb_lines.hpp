@@ -1,5 +1,5 @@
-// How a curb is drawn, told apart without colours: a step up solid, a step down dashed, a crease and the edge of a ramp dotted, the
-// latter wider apart.
+// How a curb is drawn, told apart without colours: a step up solid, a step down dashed, a crease dotted, the edge of a
+// ramp by dashes and dots.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ struct CurbKind {
   const char* kind;
   const char* words;
 };
-inline constexpr CurbKind curb_kinds[] = {{"step_up", "step up"}, {"step_down", "step down"}, {"crease", "crease"},
-    {"ramp_edge", "ramp edge"}};
+inline constexpr CurbKind curb_kinds[] = {
+    {"step_up", "step up"}, {"step_down", "step down"}, {"crease", "crease"}, {"ramp_edge", "ramp edge"}};
 
 void draw_curb(cairo_t* cr, const std::string& kind, Pixel from, Pixel to);
 /// A curb as it truly lies.

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double gap = 8;
 
+/// Cells of a wall bear the label of the ground around it.
+bool on_its_plane(const Map& map, const MapCell& cell) {
+  const MapPlane* const plane = plane_of(map, cell.label);
+  return plane != nullptr && std::abs(cell.height_m - plane->height_m(cell.x_m, cell.y_m)) <= 3 * plane->sd_m;
+}
+
 std::vector<Tick> bar_ticks(const HeightRange& range, double height) {
   return ticks(range.low_m, range.high_m, height / (range.high_m - range.low_m),
                [](const std::string&) { return 2.0 * text_height; });
@@ -19,10 +25,13 @@ std::vector<Tick> bar_ticks(const HeightRange& range, double height) {
 }  // namespace
 
 HeightRange height_range(const Map& map) {
-  std::vector<double> heights_m;
+  std::vector<double> of_all, of_planes;
   for (const MapCell& cell : map.cells) {
-    if (cell.points > 0 && std::isfinite(cell.height_m)) heights_m.push_back(cell.height_m);
+    if (cell.points == 0 || !std::isfinite(cell.height_m)) continue;
+    of_all.push_back(cell.height_m);
+    if (on_its_plane(map, cell)) of_planes.push_back(cell.height_m);
   }
+  std::vector<double>& heights_m = of_planes.empty() ? of_all : of_planes;
   if (heights_m.empty()) return {};
   std::sort(heights_m.begin(), heights_m.end());
   const auto last = static_cast<double>(heights_m.size() - 1);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "picture/curb_lines.hpp"
@@ -39,16 +38,20 @@ Line sample(const std::string& words, Draw draw) {
 }
 
 void append_curbs(std::vector<Line>& lines, const Map& map, const PictureExtras& extras) {
+  const auto is_drawn = [window = map.grid.bounds()](const MapCurb& curb) {
+    return crosses(window, {curb.x0_m, curb.y0_m}, {curb.x1_m, curb.y1_m});
+  };
   lines.push_back({"Curbs", {}, true});
   for (const CurbKind& kind : curb_kinds) {
-    const auto is_kind = [&](const MapCurb& curb) { return curb.kind == kind.kind; };
+    const auto is_kind = [&](const MapCurb& curb) { return curb.kind == kind.kind && is_drawn(curb); };
     if (std::none_of(map.curbs.begin(), map.curbs.end(), is_kind)) continue;
     lines.push_back(
         sample(kind.words, [name = kind.kind](cairo_t* cr, Pixel a, Pixel b) { draw_curb(cr, name, a, b); }));
   }
-  if (map.curbs.empty()) lines.push_back({"none"});
-  if (!extras.truth.empty()) lines.push_back(sample("truth", draw_truth));
-  if (!map.curbs.empty()) lines.push_back({"+ far side higher, - lower"});
+  const bool any = std::any_of(map.curbs.begin(), map.curbs.end(), is_drawn);
+  if (!any) lines.push_back({"none"});
+  if (std::any_of(extras.truth.begin(), extras.truth.end(), is_drawn)) lines.push_back(sample("truth", draw_truth));
+  if (any) lines.push_back({"+ far side higher, - lower"});
 }
 
 void append_robot(std::vector<Line>& lines, bool shown) {
@@ -62,53 +65,52 @@ std::string count(int cells) {
   return std::to_string(cells) + (cells == 1 ? " cell" : " cells");
 }
 
-struct CellCounts {
-  std::vector<std::pair<int, int>> planes;  ///< label and cells, most cells first
-  int without_label = 0, without_data = 0;
-};
-
-CellCounts count_cells(const Map& map) {
-  CellCounts counts;
-  std::map<int, int> of_label;
-  for (const MapCell& cell : map.cells) {
-    ++(cell.points == 0 ? counts.without_data : cell.label < 0 ? counts.without_label : of_label[cell.label]);
-  }
-  counts.planes.assign(of_label.begin(), of_label.end());
-  std::stable_sort(counts.planes.begin(), counts.planes.end(), [](auto& a, auto& b) { return a.second > b.second; });
-  return counts;
-}
-
 /// The planes in `room` lines.
-void append_planes(std::vector<Line>& lines, const std::vector<std::pair<int, int>>& planes, std::size_t room) {
+void append_planes(std::vector<Line>& lines, const std::vector<PlaneCells>& planes, std::size_t room) {
   const std::size_t listed = planes.size() <= room ? planes.size() : room - 1;
   for (std::size_t n = 0; n < listed; ++n) {
-    const auto& [label, cells] = planes[n];
-    lines.push_back(swatch(label_colour(label), std::to_string(label) + ": " + count(cells)));
+    lines.push_back(swatch(plane_colour(n), std::to_string(planes[n].label) + ": " + count(planes[n].cells)));
   }
   if (listed == planes.size()) return;
   int cells = 0;
-  for (std::size_t n = listed; n < planes.size(); ++n) cells += planes[n].second;
+  for (std::size_t n = listed; n < planes.size(); ++n) cells += planes[n].cells;
   lines.push_back({std::to_string(planes.size() - listed) + " more: " + count(cells)});
 }
 
 /// At most `room` lines; a legend without its planes takes less than ten.
 std::vector<Line> list(const Map& map, const PictureExtras& extras, bool robot_shown, std::size_t room) {
-  const CellCounts counts = count_cells(map);
+  const std::vector<PlaneCells> planes = planes_by_size(map);
+  const auto count_if = [&](auto is) {
+    return static_cast<int>(std::count_if(map.cells.begin(), map.cells.end(), is));
+  };
+  const int without_data = count_if([](const MapCell& cell) { return cell.points == 0; });
+  const int without_label = count_if([](const MapCell& cell) { return cell.points > 0 && cell.label < 0; });
   std::vector<Line> lines, last;
   append_curbs(lines, map, extras);
   if (extras.robot) append_robot(lines, robot_shown);
   lines.push_back({});
   lines.push_back({"Planes", {}, true});
-  if (counts.planes.empty()) lines.push_back({"none"});
-  if (counts.without_label > 0) last.push_back(swatch(no_label, "no plane: " + count(counts.without_label)));
-  if (counts.without_data > 0) last.push_back(swatch(no_data, "no data: " + count(counts.without_data)));
+  if (planes.empty()) lines.push_back({"none"});
+  if (without_label > 0) last.push_back(swatch(no_label, "no plane: " + count(without_label)));
+  if (without_data > 0) last.push_back(swatch(no_data, "no data: " + count(without_data)));
   const std::size_t taken = lines.size() + last.size();
-  append_planes(lines, counts.planes, std::max<std::size_t>(room, taken + 1) - taken);
+  append_planes(lines, planes, std::max<std::size_t>(room, taken + 1) - taken);
   lines.insert(lines.end(), last.begin(), last.end());
   return lines;
 }
 
 }  // namespace
+
+std::vector<PlaneCells> planes_by_size(const Map& map) {
+  std::map<int, int> of_label;
+  for (const MapCell& cell : map.cells) {
+    if (cell.points > 0 && cell.label >= 0) ++of_label[cell.label];
+  }
+  std::vector<PlaneCells> planes;
+  for (const auto& [label, cells] : of_label) planes.push_back({label, cells});
+  std::stable_sort(planes.begin(), planes.end(), [](auto& a, auto& b) { return a.cells > b.cells; });
+  return planes;
+}
 
 double legend_height(const Map& map, const PictureExtras& extras) {
   return line_height * static_cast<double>(list(map, extras, true, map.cells.size() + 100).size());

@@ -1,6 +1,8 @@
 // What the picture's colours and lines mean: the bar of heights and the list at the right.
 #pragma once
 
+#include <vector>
+
 #include "picture/panel.hpp"
 
 namespace curbline::tools::picture {
@@ -11,7 +13,8 @@ struct HeightRange {
   double share(double height_m) const { return (height_m - low_m) / (high_m - low_m); }
 };
 
-/// From the 2nd to the 98th percentile, at least 2 cm: a few cells of a wall do not take the colours from the ground.
+/// From the 2nd to the 98th percentile, at least 2 cm, of cells within three standard deviations of their plane, or of
+/// all where there are none: walls do not take the colours from the ground.
 HeightRange height_range(const Map& map);
 
 inline constexpr double colour_bar_width = 16;
@@ -19,6 +22,13 @@ inline constexpr double colour_bar_width = 16;
 void draw_colour_bar(cairo_t* cr, const HeightRange& range, const Box& box);
 /// Of the numbers.
 double colour_bar_room(cairo_t* cr, const HeightRange& range);
+
+/// A plane that cells bear.
+struct PlaneCells {
+  int label = 0, cells = 0;
+};
+/// The largest first: the order of their colours.
+std::vector<PlaneCells> planes_by_size(const Map& map);
 
 inline constexpr double legend_width = 190;
 /// All of it; what does not fit into the box it is drawn in is summed up in its last line.

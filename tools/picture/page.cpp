@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "picture/curb_lines.hpp"
 #include "picture/texts.hpp"
@@ -54,8 +55,10 @@ void draw_heights(cairo_t* cr, const Page& page, const Map& map) {
 }
 
 void draw_planes(cairo_t* cr, const Page& page, const Map& map) {
-  draw_cells(cr, page.planes, map,
-             [](const MapCell& cell) { return cell.label < 0 ? no_label : label_colour(cell.label); });
+  std::map<int, Colour> colour_of{{-1, no_label}};
+  for (const PlaneCells& plane : planes_by_size(map))
+    colour_of.emplace(plane.label, plane_colour(colour_of.size() - 1));
+  draw_cells(cr, page.planes, map, [&](const MapCell& cell) { return colour_of.at(cell.label); });
 }
 
 /// Lines, marker and axes, which both panels have. Returns the room that the marker takes.

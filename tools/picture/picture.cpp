@@ -2,6 +2,7 @@
 
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <strings.h>
 
 #include <cstddef>
 #include <map>
@@ -86,8 +87,11 @@ std::string svg(const Map& map, const PictureExtras& extras, const std::string& 
 }  // namespace
 
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras) {
-  const bool as_png = path.ends_with(".png");
-  if (!as_png && !path.ends_with(".svg")) {
+  const auto ends_with = [&](const char* ending) {
+    return path.size() >= 4 && ::strcasecmp(path.c_str() + path.size() - 4, ending) == 0;
+  };
+  const bool as_png = ends_with(".png");
+  if (!as_png && !ends_with(".svg")) {
     throw BadInput(path + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
   }
   AtomicFile file(path);

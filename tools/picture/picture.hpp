@@ -23,10 +23,10 @@ struct PictureExtras {
   std::optional<RobotMarker> robot{};
 };
 
-/// PNG or SVG by the ending of `path`, as large as the window wants and at most 1600 x 1000 pixels. The SVG's <desc>
-/// bears the texts of the curbs, so that they can be searched for. The same map gives the same bytes on one machine;
-/// another one may have other fonts. Written whole or not at all. Throws BadInput for another ending, or if it cannot
-/// be written.
+/// PNG or SVG by the ending of `path`, in small letters or capitals, as large as the window wants and at most 1600 x
+/// 1000 pixels. The SVG's <desc> bears the texts of the curbs, so that they can be searched for. The same map gives the
+/// same bytes on one machine; another one may have other fonts. Written whole or not at all. Throws BadInput for
+/// another ending, or if it cannot be written.
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras = {});
 
 }  // namespace curbline::tools

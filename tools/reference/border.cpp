@@ -5,18 +5,8 @@
 namespace curbline::tools::reference {
 namespace {
 
-const MapPlane* plane_of(const Map& map, int label) {
-  for (const MapPlane& plane : map.planes) {
-    if (plane.label == label) return &plane;
-  }
-  return nullptr;
-}
-
-double height(const MapPlane& plane, double x, double y) {
-  return plane.z0_m + plane.sx * x + plane.sy * y;
-}
 double step(const MapPlane& low, const MapPlane& high, double x, double y) {
-  return height(high, x, y) - height(low, x, y);
+  return high.height_m(x, y) - low.height_m(x, y);
 }
 
 /// Labels on the low and the high side of a border along `axis`, -1 where there is none.

@@ -7,6 +7,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+constexpr int most_beams = 2881;  ///< that the host programs have room for
 
 struct LaserModel {
   const char* name;
@@ -73,7 +74,7 @@ void read_laser(TomlTable table, Robot& robot) {
   }
   LaserSettings& laser = robot.laser;
   table.read("scan_rate_hz", robot.scan_rate_hz, {0.1, 1000.0});
-  table.read_whole("beams", laser.beams, 1, 100'000);
+  table.read_whole("beams", laser.beams, 1, most_beams);
   table.read("first_bearing_rad", laser.first_bearing_rad, {-6.28, 6.28});
   table.read("bearing_step_rad", laser.bearing_step_rad, {-1.0, 1.0});
   table.read("beam_interval_s", laser.beam_interval_s, {0.0, 1.0});

@@ -13,6 +13,7 @@ namespace {
 constexpr double rad = std::numbers::pi / 180;
 constexpr Range any{-1e5, 1e5};  // metres, metres a second or degrees: beyond, it is a slip of the pen
 constexpr Range positive{1e-6, 1e5};
+constexpr double most_path_s = 86'400;  // as of a simulation
 
 struct Repeat {
   int count_x = 1, count_y = 1;
@@ -171,6 +172,15 @@ void read_wall(TomlTable& table, Scene& scene) {
   read_obstacle(table, "wall", turned_rectangle(middle, length, thickness, yaw_rad), scene);
 }
 
+double duration_s(const RobotPath& path) {
+  double out = 0;
+  for (const Leg& leg : legs(path)) {
+    out += std::abs(leg.to_rad - leg.from_rad) / path.turn_rate_rad_s +
+           std::hypot(leg.to.x - leg.from.x, leg.to.y - leg.from.y) / path.speed_m_s;
+  }
+  return out;
+}
+
 RobotPath read_path(TomlTable table) {
   RobotPath path;
   if (table.has("path")) {
@@ -191,6 +201,9 @@ RobotPath read_path(TomlTable table) {
       table.refuse("attitude", "is \"" + attitude + "\"; expected level or terrain");
     }
     path.follows_terrain = attitude == "terrain";
+    if (const double whole_s = duration_s(path); whole_s > most_path_s) {
+      table.refuse("path", "takes " + std::to_string(std::llround(whole_s)) + " s; expected a day at most");
+    }
   } else {
     path.waypoints = {read_point(table, "at")};
     path.yaw_rad = read_angle_rad(table, "yaw_deg");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace curbline::tools {
@@ -43,10 +42,6 @@ Footing footing(const Scene& scene, Point2 at, double yaw_rad) {
   return {mean, (uz - u * mean) / (uu - u * u / n_all), (z[1] / n[1] - z[0] / n[0]) / track_m};
 }
 
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2 * std::numbers::pi);
-}
-
 }  // namespace
 
 Scene in_map_frame(const Scene& scene) {
@@ -72,20 +67,13 @@ Scene in_map_frame(const Scene& scene) {
   return out;
 }
 
-RobotMotion::RobotMotion(const Scene& scene) {
-  const std::vector<Point2>& way = scene.path.waypoints;
-  if (scene.path.stands()) {
-    samples_.push_back(on_ground(scene, way.front(), scene.path.yaw_rad));
-    return;
-  }
-  double yaw_rad = std::atan2(way[1].y - way[0].y, way[1].x - way[0].x);
-  samples_.push_back(on_ground(scene, way[0], yaw_rad));
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double heading = std::atan2(way[i].y - way[i - 1].y, way[i].x - way[i - 1].x);
-    const double to_rad = yaw_rad + wrapped(heading - yaw_rad);
-    turn(scene, way[i - 1], yaw_rad, to_rad);
-    yaw_rad = to_rad;
-    drive(scene, way[i - 1], way[i], yaw_rad);
+RobotMotion::RobotMotion(const Scene& scene, double until_s) : until_s_(until_s) {
+  const std::vector<Leg> way = legs(scene.path);
+  const double yaw_rad = way.empty() ? scene.path.yaw_rad : way.front().from_rad;
+  samples_.push_back(on_ground(scene, scene.path.waypoints.front(), yaw_rad));
+  for (const Leg& leg : way) {
+    turn(scene, leg);
+    drive(scene, leg);
   }
 }
 
@@ -97,18 +85,20 @@ RobotMotion::Sample RobotMotion::on_ground(const Scene& scene, Point2 at, double
   return {at.x, at.y, ground.z_m, std::atan(ground.across), -std::atan(ground.along), yaw_rad};
 }
 
-void RobotMotion::turn(const Scene& scene, Point2 at, double from_rad, double to_rad) {
-  const double steps = std::ceil(std::abs(to_rad - from_rad) / (scene.path.turn_rate_rad_s * step_s));
-  for (double i = 1; i <= steps; ++i) {
-    samples_.push_back(on_ground(scene, at, from_rad + (to_rad - from_rad) * i / steps));
+void RobotMotion::turn(const Scene& scene, const Leg& leg) {
+  const double whole_rad = leg.to_rad - leg.from_rad;
+  const double steps = std::ceil(std::abs(whole_rad) / (scene.path.turn_rate_rad_s * step_s));
+  for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
+    samples_.push_back(on_ground(scene, leg.from, leg.from_rad + whole_rad * i / steps));
   }
 }
 
-void RobotMotion::drive(const Scene& scene, Point2 from, Point2 to, double yaw_rad) {
-  const double steps = std::ceil(std::hypot(to.x - from.x, to.y - from.y) / (scene.path.speed_m_s * step_s));
-  for (double i = 1; i <= steps; ++i) {
+void RobotMotion::drive(const Scene& scene, const Leg& leg) {
+  const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y;
+  const double steps = std::ceil(std::hypot(dx, dy) / (scene.path.speed_m_s * step_s));
+  for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double t = i / steps;
-    samples_.push_back(on_ground(scene, {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)}, yaw_rad));
+    samples_.push_back(on_ground(scene, {leg.from.x + t * dx, leg.from.y + t * dy}, leg.to_rad));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "simulator/scene.hpp"
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 namespace curbline::tools {
@@ -18,7 +19,8 @@ Scene in_map_frame(const Scene& scene);
 /// The truth is the polyline between poses 10 ms apart: O(1) a call.
 class RobotMotion {
  public:
-  explicit RobotMotion(const Scene& scene);  ///< throws BadInput if the robot would leave the ground
+  /// Up to `until_s`: the robot stays there. Throws BadInput if it would leave the ground before.
+  explicit RobotMotion(const Scene& scene, double until_s = std::numeric_limits<double>::infinity());
 
   double duration_s() const;                          ///< 0 if it stands
   Eigen::Isometry3d T_map_base(double time_s) const;  ///< before and after the way, it stands at its ends
@@ -28,9 +30,10 @@ class RobotMotion {
     double x, y, z, roll, pitch, yaw;
   };
   Sample on_ground(const Scene& scene, Point2 at, double yaw_rad) const;
-  void turn(const Scene& scene, Point2 at, double from_rad, double to_rad);
-  void drive(const Scene& scene, Point2 from, Point2 to, double yaw_rad);
+  void turn(const Scene& scene, const Leg& leg);
+  void drive(const Scene& scene, const Leg& leg);
 
+  double until_s_;
   std::vector<Sample> samples_;
 };
 

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 
 namespace curbline::tools {
@@ -57,6 +59,17 @@ Scene find_scene(const std::string& name_or_path) {
     known += " " + name;
   }
   throw BadInput("no scene '" + name_or_path + "'; expected a file, random:SEED or one of:" + known);
+}
+
+std::vector<Leg> legs(const RobotPath& path) {
+  std::vector<Leg> out;
+  for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
+    const Point2 from = path.waypoints[i - 1], to = path.waypoints[i];
+    const double heading = std::atan2(to.y - from.y, to.x - from.x);
+    const double yaw_rad = out.empty() ? heading : out.back().to_rad;
+    out.push_back({from, to, yaw_rad, yaw_rad + std::remainder(heading - yaw_rad, 2 * std::numbers::pi)});
+  }
+  return out;
 }
 
 int region_at(const std::vector<GroundRegion>& regions, Point2 p) {

@@ -47,6 +47,13 @@ struct RobotPath {
   bool stands() const { return waypoints.size() == 1; }
 };
 
+/// To the next way point: a turn on the spot, then straight on.
+struct Leg {
+  Point2 from, to;
+  double from_rad, to_rad;  ///< yaw before and after the turn
+};
+std::vector<Leg> legs(const RobotPath& path);
+
 struct Scene {
   std::string file;    ///< where it was read from, for messages
   std::string source;  ///< its text, to be copied beside what is simulated

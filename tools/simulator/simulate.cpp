@@ -24,7 +24,8 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The files of one recording. What this recording lacks is taken away if an earlier one left it there.
+/// The files of one recording. What this recording lacks is taken away if an earlier one left it there, and so is what
+/// was found in that one.
 class Recording {
  public:
   Recording(const std::string& dir, const Robot& robot, bool with_poses) : dir_(dir), robot_(robot) {
@@ -36,6 +37,8 @@ class Recording {
     scans_ = open("scans.carmen");
     can_ = robot.tilt.fixed ? leave_out("can.log") : open("can.log");
     poses_ = with_poses ? open("poses.tum") : leave_out("poses.tum");
+    leave_out("labels.csv");
+    leave_out("curbs.csv");
   }
 
   std::ostream* open(const char* name) { return &files_.emplace_back(dir_ + "/" + name).stream(); }

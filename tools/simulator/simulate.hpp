@@ -5,6 +5,7 @@
 //   truth.json     planes, regions, curbs, obstacles (truth.hpp)
 //   regions.gt     the regions' polygons, the topmost first
 //   scene.toml robot.toml   what it was made from
+// labels.csv and curbs.csv, found in an earlier recording, are removed: evaluate would score them.
 // All or nothing is written. The same input and seed give the same bytes. About 1 s for a nod of 263 lines of 1081
 // beams.
 #pragma once

@@ -1,9 +1,11 @@
 #include "simulator/simulation.hpp"
 
 #include "can/signal.hpp"
+#include "formats/bad_input.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace curbline::tools {
 namespace {
@@ -23,6 +25,28 @@ Eigen::Isometry3d rotation(double roll_rad, double pitch_rad, double yaw_rad) {
 Eigen::Isometry3d transform(const MountSettings& mount) {
   return Eigen::Translation3d(mount.x_m, mount.y_m, mount.z_m) *
          rotation(mount.roll_rad, mount.pitch_rad, mount.yaw_rad);
+}
+
+/// A signal clips what it cannot hold.
+void check_sweep(const Robot& robot) {
+  if (robot.tilt.fixed) return;
+  const auto check = [&](const char* key, double angle_rad, const char* bound) {
+    can::Frame frame;
+    can::encode(robot.tilt_signal, angle_rad, frame);
+    const double held_rad = can::decode(robot.tilt_signal, frame).value_or(0);
+    if (std::abs(held_rad - angle_rad) <= std::abs(robot.tilt_signal.scale)) return;
+    std::ostringstream what;
+    what << robot.file << ": sweep." << key << " is " << angle_rad << "; expected an angle that tilt.signal holds, "
+         << held_rad << " at " << bound;
+    throw BadInput(what.str());
+  };
+  check("from_rad", robot.sweep.from_rad, "least");
+  check("to_rad", robot.sweep.to_rad, "most");
+}
+
+/// The last pose and the last beam come behind the end.
+double motion_until_s(const Robot& robot, std::optional<double> duration_s) {
+  return duration_s.value_or(never_s) + simulated_margin_s + 1 / robot.scan_rate_hz;
 }
 
 double default_duration_s(const Robot& robot, const RobotMotion& motion) {
@@ -55,7 +79,7 @@ double sweep_angle_rad(const Sweep& sweep, double time_s) {
 Simulation::Simulation(const Scene& scene, const Robot& robot, std::uint64_t seed, std::optional<double> duration_s)
     : robot_(robot),
       scene_(in_map_frame(scene)),
-      motion_(scene_),
+      motion_(scene_, motion_until_s(robot, duration_s)),
       world_(scene_),
       laser_(robot.laser, robot.simulated, 3 * seed),
       tilt_random_(3 * seed + 1),
@@ -66,6 +90,7 @@ Simulation::Simulation(const Scene& scene, const Robot& robot, std::uint64_t see
       duration_s_(duration_s.value_or(default_duration_s(robot, motion_))),
       frame_stamp_s_(-never_s),
       ranges_m_(static_cast<std::size_t>(robot.laser.beams)) {
+  check_sweep(robot);
   stamp_next_frame();
 }
 

@@ -38,7 +38,7 @@ inline constexpr std::int64_t simulated_start_ns = 1'700'000'000'000'000'000;
 class Simulation {
  public:
   /// Without a duration: one nod of a robot that stands (1 s if its tilt is fixed), the whole way of one that drives.
-  /// Throws BadInput if the robot stands on nothing.
+  /// Throws BadInput if the robot stands on nothing, or its tilt signal cannot hold the sweep.
   Simulation(const Scene& scene, const Robot& robot, std::uint64_t seed, std::optional<double> duration_s = {});
 
   double duration_s() const { return duration_s_; }
