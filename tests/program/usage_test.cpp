@@ -39,6 +39,41 @@ TEST_CASE("program: a window has an origin and a size") {
   check_wrong_usage(curbline({"map", "a.xyz", "--origin", "0", "--size", "4", "4"}), "--origin");
 }
 
+TEST_CASE("program: no output takes the place of an input or of another output") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n"), new_file = dir.path("new.csv");
+  std::filesystem::create_symlink(cloud, dir.path("link.xyz"));
+  const Words names = names_in(dir.path(""));
+  const auto refused = [&](const Words& arguments, const std::string& part) {
+    check_wrong_usage(curbline(arguments), part);
+    CHECK(names_in(dir.path("")) == names);
+    CHECK(read_file(cloud) == "1 1 0\n");
+  };
+  for (const std::string& name : {cloud, dir.path("./a.xyz"), dir.path("link.xyz")}) {
+    for (const std::string option : {"--labels", "--curbs", "--picture"})
+      refused({"map", cloud, option, name}, option + ": " + name + " is also the cloud; expected another file");
+  }
+  refused({"map", cloud, "--labels", new_file, "--curbs", dir.path("./new.csv")}, "is also --labels");
+  CHECK(curbline({"map", cloud, "--labels", "/dev/null", "--curbs", "/dev/null"}).status == 0);
+
+  for (const std::string input : {"--scans", "--can", "--poses", "--robot"}) {
+    for (const std::string output : {"--labels", "--curbs", "--picture", "--line-costs"}) {
+      Words arguments{"replay", output, cloud};
+      for (const std::string option : {"--scans", "--can", "--poses", "--robot"})
+        arguments = arguments + Words{option, option == input ? cloud : dir.path("none")};
+      refused(arguments, "is also " + input);
+    }
+  }
+}
+
+TEST_CASE("program: standard output is for curbs alone") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  for (const std::string option : {"--labels", "--picture"})
+    check_wrong_usage(curbline({"map", cloud, option, "-"}), option + ": -; expected a file name");
+  check_wrong_usage(curbline({"replay", "--scans", cloud, "--robot", cloud, "--line-costs", "-"}), "--line-costs: -;");
+}
+
 TEST_CASE("program: an unknown method or edge and the values that there are") {
   check_wrong_usage(curbline({"map", "a.xyz", "--method", "foo"}), "crf-em");
   check_wrong_usage(curbline({"map", "a.xyz", "--edge", "foo"}), "eq10");

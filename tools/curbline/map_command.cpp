@@ -18,6 +18,7 @@ void add_map(CLI::App& app) {
   command->add_option("cloud", o->cloud, "point cloud: .xyz .csv .pcd .bin")->required();
   add_map_options(*command, o->map);
   command->callback([o] {
+    check_outputs(outputs_of(o->map), {{"the cloud", o->cloud}});
     const std::vector<Point3> cloud = read_cloud(o->cloud);
     const Map map = map_cloud(cloud, o->map);
     give_out(o->map, map, {.title = o->cloud, .truth = {}, .robot = RobotMarker{}}, {{"points", cloud.size()}});

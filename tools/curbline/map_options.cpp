@@ -86,6 +86,12 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   command.add_flag("--json", options.json, "summary on stdout");
 }
 
+std::vector<NamedFile> outputs_of(const MapOptions& options) {
+  std::vector<NamedFile> files{{"--labels", options.labels}, {"--picture", options.picture}};
+  if (options.curbs != "-") files.push_back({"--curbs", options.curbs});
+  return files;
+}
+
 void apply_window(const MapOptions& options, WindowSettings& window) {
   if (!options.cell.empty()) {
     window.cell_x_m = static_cast<float>(options.cell.front());
