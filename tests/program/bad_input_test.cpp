@@ -1,4 +1,6 @@
 // Bad input: exit status 1, one line that says where and why, and no file that was not there before.
+#include <cstdlib>
+
 #include "program.hpp"
 
 namespace curbline::tools::testing {
@@ -212,6 +214,51 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
                 "expected a name that ends in");
   CHECK(names_in(dir.path("")) == names);
   CHECK(read_file(before) == "as it was\n");
+}
+
+/// A shell's line that runs the program.
+std::string line_of(const Words& arguments) {
+  std::string line = CURBLINE_PROGRAM;
+  for (const std::string& word : arguments) line += " '" + word + "'";
+  return line;
+}
+
+TEST_CASE("program: nothing is left of what a signal ends, and it ends by that signal") {
+  const TemporaryDirectory dir;
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  const Words before = names_in(logs.folder());
+  std::filesystem::create_directory(dir.path("run"));
+  for (const auto& [signal, number] : {std::pair{"HUP", 1}, {"INT", 2}, {"QUIT", 3}, {"PIPE", 13}, {"TERM", 15}}) {
+    INFO(signal);
+    const std::string timeout = "ulimit -c 0; timeout --preserve-status -s " + std::string(signal) + " 0.5 ";
+    const auto status_of = [&](const Words& arguments) {
+      return WEXITSTATUS(std::system((timeout + line_of(arguments) + " > /dev/null 2>&1").c_str()));
+    };
+    CHECK(status_of({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out", dir.path("run"),
+                     "--duration", "86400"}) == 128 + number);
+    CHECK(names_in(dir.path("run")) == Words{});
+    CHECK(status_of(logs.replay() + Words{"--speed", "1", "--line-costs", logs.path("lines.csv")}) == 128 + number);
+    CHECK(names_in(logs.folder()) == before);
+  }
+}
+
+TEST_CASE("program: a reader that closes the pipe leaves nothing half-written") {
+  const Recording logs("street", "utm30lx");
+  const Words before = names_in(logs.folder());
+  const std::string replay = line_of(logs.replay() + Words{"--curbs", "-", "--line-costs", logs.path("lines.csv")});
+  CHECK(std::system((replay + " 2> /dev/null | head -n 1 > /dev/null").c_str()) == 0);
+  CHECK(names_in(logs.folder()) == before);
+}
+
+TEST_CASE("program: a limit on the size of files is an error of writing") {
+  const TemporaryDirectory dir;
+  const std::string simulate = line_of({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
+                                        dir.path("run"), "--duration", "1"});
+  CHECK(WEXITSTATUS(std::system(("ulimit -f 100; " + simulate + " 2> " + dir.path("err")).c_str())) == 1);
+  CHECK(names_in(dir.path("run")) == Words{});
+  CHECK(read_file(dir.path("err")) ==
+        dir.path("run/scans.carmen") +
+            ": cannot be written: File too large; expected a file name in a folder to write to\n");
 }
 
 TEST_CASE("program: standard output that cannot be written is an error") {
