@@ -99,7 +99,7 @@ TEST_CASE("program: NaN and infinity are refused with line and field") {
   check_refused(replay_with(drive, "poses", poses), poses + ":4: tx is ", "expected a finite number");
 }
 
-TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames and poses") {
+TEST_CASE("program: a time that goes back is refused in scan lines and poses") {
   const Recording logs = driving();
   const auto swapped = [&](const std::string& name) {
     const std::string text = read_file(logs.path(name));
@@ -107,7 +107,6 @@ TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames a
     return logs.directory().write("back", with_line(with_line(text, 4, lines[4]), 5, lines[3]));
   };
   check_refused(replay_with(logs, "scans", swapped("scans.carmen")), logs.path("back") + ":5: ", "goes back; expected");
-  check_refused(replay_with(logs, "can", swapped("can.log")), logs.path("back") + ":5: ", "goes back; expected");
   check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include "curbline/evaluate.hpp"
 #include "curbline/recorded_run.hpp"
@@ -241,6 +242,7 @@ void draw(const Evaluation& e, const EvaluateOptions& options) {
 
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   const Evaluation e = evaluate_recording(options);
+  if (e.run && !e.run->remarks.empty()) std::cerr << e.run->remarks << '\n';
   const Scored here = scored(e.found, e.truth, e.seen);
   std::optional<Scored> reference;
   if (e.reference) reference = scored(*e.reference, e.truth, e.seen);
