@@ -157,6 +157,24 @@ TEST_CASE("program: points above --max-height are ignored") {
   CHECK(read_curbs(files.curbs).empty());
 }
 
+TEST_CASE("program: a cloud without a point in the window is refused with the extent of both") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 -2 0.5\n3.25 4 0.25\n");
+  const auto refused = [&](const Words& options, const std::string& window_text) {
+    check_refused(curbline(Words{"map", cloud, "--labels", dir.path("l.csv")} + options),
+                  cloud + ": no point within " + window_text,
+                  "the cloud has x 1.000 to 3.250, y -2.000 to 4.000, z 0.250 to 0.500\n");
+    CHECK(names_in(dir.path("")) == Words{"a.xyz"});
+  };
+  for (const std::string method : {"curbline", "crf-em", "canny"}) {
+    INFO(method);
+    refused({"--method", method, "--origin", "1000", "2000", "--size", "4", "6"},
+            "x 1000.000 to 1004.000, y 2000.000 to 2006.000 m; expected some: ");
+    refused({"--method", method, "--origin", "0", "-2", "--size", "4", "8", "--max-height", "-100"},
+            "x 0.000 to 4.000, y -2.000 to 6.000, z up to -100.000 m; expected some: ");
+  }
+}
+
 TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exactly as asked") {
   const TemporaryDirectory dir;
   const Files files(dir);

@@ -322,6 +322,14 @@ TEST_CASE("program: tilt frames in another order than their times are dropped an
   CHECK(replayed.outcome.err.ends_with(" tilt readings were dropped; expected times that rise\n"));
 }
 
+TEST_CASE("program: a window that no point falls in is told") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  const Outcome outcome = curbline(logs.replay() + Words{"--origin", "1000", "1000", "--size", "4", "4"});
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err.starts_with(logs.path("scans.carmen") + ": none of "));
+  CHECK(outcome.err.ends_with(" points lies in the window\n"));
+}
+
 TEST_CASE("program: --line-costs has a row for each scan line, and their sums are the summary's") {
   const Recording logs("street", "lms200");
   const Outcome outcome = curbline(logs.replay() + Words{"--json", "--line-costs", logs.path("lines.csv")});

@@ -93,7 +93,7 @@ TEST_CASE("program: a number that makes no sense is wrong usage and named") {
     check_wrong_usage(map({"--max-height", bad}), "--max-height");
     check_wrong_usage(map({"--origin", bad, "0", "--size", "4", "4"}), "--origin");
   }
-  for (const std::string bad : {"0", "-4", "nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-4", "nan", "inf", "x", "1e-9"}) {
     check_wrong_usage(map({"--origin", "0", "0", "--size", bad, "4"}), "--size");
   }
 }

@@ -1,6 +1,8 @@
 #include "curbline/map_options.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -31,6 +33,13 @@ CellSides cell_sides(const MapOptions& options, const WindowSettings& window) {
   if (!options.cell.empty()) return {options.cell.front(), options.cell.back()};
   const auto micrometres = [](float side_m) { return std::round(static_cast<double>(side_m) * 1e6) / 1e6; };
   return {micrometres(window.cell_x_m), micrometres(window.cell_y_m)};
+}
+
+/// A number in a message, as short as it can be.
+template <typename Number>
+std::string shown(Number value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 int whole_blocks(int cells) {
@@ -99,14 +108,16 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
   }
   for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
     if (!(cell_m >= 0.001f && cell_m <= 10.0f))
-      throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in [0.001, 10]");
+      throw CLI::ValidationError("--cell", shown(cell_m) + "; expected metres in [0.001, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
-  for (const double length_m : options.size) {
-    if (!(length_m > 0)) throw CLI::ValidationError("--size", std::to_string(length_m) + "; expected metres above 0");
-  }
   const CellSides side = cell_sides(options, window);
+  const std::array sides{side.x_m, side.y_m};
+  for (std::size_t axis = 0; axis < sides.size(); ++axis) {
+    if (const double length_m = options.size[axis]; !(length_m > count_slack * sides[axis]))
+      throw CLI::ValidationError("--size", shown(length_m) + "; expected metres above 0, a cell or more");
+  }
   const double longest = std::max(options.size[0] / side.x_m, options.size[1] / side.y_m);
   if (!(longest <= most_cells + count_slack)) {
     throw CLI::ValidationError("--size",

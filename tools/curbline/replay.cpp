@@ -206,6 +206,9 @@ std::string Replay::remarks() const {
   add(logs_.poses, c.poses_dropped, std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
   add(logs_.scans, lines_ - lines_taken_,
       std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
+  if (c.points == 0 && c.outside > 0)
+    text += (text.empty() ? "" : "\n") + logs_.scans + ": none of " + std::to_string(c.outside) +
+            " points lies in the window";
   return text;
 }
 
