@@ -9,6 +9,10 @@
 
 namespace curbline::tools {
 
+struct Point3 {
+  double x = 0, y = 0, z = 0;
+};
+
 /// The place of a grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
 struct Grid {
   double x0_m = 0, y0_m = 0;
@@ -16,19 +20,21 @@ struct Grid {
   int rows = 0;  ///< along x
   int cols = 0;  ///< along y
   std::size_t cells() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols); }
-  std::size_t at(int i, int j) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j); }
+  std::size_t at(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j);
+  }
   double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< of a cell's centre
   double y_m(int j) const { return y0_m + (j + 0.5) * dy_m; }
   Bounds bounds() const { return {x0_m, y0_m, x0_m + rows * dx_m, y0_m + cols * dy_m}; }
 };
 
 struct MapCell {
-  double x_m = 0, y_m = 0; ///< centroid of its points, or its centre
-  double height_m = 0;     ///< mean height
-  double variance_m2 = 0;  ///< of the cell's posterior
-  int points = 0;          ///< 0: the cell is invalid and every other field means nothing
-  int label = -1;          ///< of the plane; -1: none
-  double probability = 0;  ///< of that label
+  double x_m = 0, y_m = 0;  ///< centroid of its points, or its centre
+  double height_m = 0;      ///< mean height
+  double variance_m2 = 0;   ///< of the cell's posterior
+  int points = 0;           ///< 0: the cell is invalid and every other field means nothing
+  int label = -1;           ///< of the plane; -1: none
+  double probability = 0;   ///< of that label
 };
 
 /// z = z0 + sx x + sy y, in the grid's frame.
@@ -57,8 +63,7 @@ struct Map {
   std::vector<MapCurb> curbs;
 };
 
-struct Point3 {
-  double x = 0, y = 0, z = 0;
-};
+/// All of the map to another place.
+void move(Map& map, const Point3& by);
 
 }  // namespace curbline::tools
