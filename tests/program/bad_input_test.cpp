@@ -126,6 +126,19 @@ TEST_CASE("program: a CAN log without a frame of the servo is refused, with the 
   check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
 }
 
+TEST_CASE("program: tilt frames of a second interface are refused, other frames of it are not") {
+  const Recording logs = standing();
+  const auto with_twin = [&](const std::string& id) {
+    std::string both;
+    for (const std::string& line : lines_of(read_file(logs.path("can.log"))))
+      both += line + "\n" + line.substr(0, line.find(' ')) + " can1 " + id + line.substr(line.find('#')) + "\n";
+    return logs.directory().write("both.log", both);
+  };
+  check_refused(replay_with(logs, "can", with_twin("181")),
+                logs.path("both.log") + ":2: ", "tilt frames of can1 after those of can0; expected one interface");
+  CHECK(curbline(logs.replay("can", with_twin("182"))).status == 0);
+}
+
 TEST_CASE("program: an unknown key and a wrong type in a robot's description are named with their line") {
   const Recording logs = standing();
   const std::string unknown = logs.directory().write("r.toml", "name = \"r\"\n[laser]\nbeems = 1081\n");

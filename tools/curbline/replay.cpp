@@ -79,7 +79,7 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
     const auto bus = live_interface(logs.can);
     can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id,
                              is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans))
-               : log_frames(logs.can);
+               : log_frames(logs.can, robot.tilt_signal);
   }
   if (!robot.pose.still) poses_.emplace(logs.poses);
   scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
