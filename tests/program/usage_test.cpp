@@ -75,8 +75,12 @@ TEST_CASE("program: standard output is for curbs alone") {
 }
 
 TEST_CASE("program: an unknown method or edge and the values that there are") {
-  check_wrong_usage(curbline({"map", "a.xyz", "--method", "foo"}), "crf-em");
-  check_wrong_usage(curbline({"map", "a.xyz", "--edge", "foo"}), "eq10");
+  for (const std::string word : {"foo", "4"}) {
+    check_wrong_usage(curbline({"map", "a.xyz", "--method", word}),
+                      "--method: " + word + "; expected one of curbline, crf-em, em, segment, canny, gradient\n");
+    check_wrong_usage(curbline({"map", "a.xyz", "--edge", word}),
+                      "--edge: " + word + "; expected one of potts, eq10\n");
+  }
 }
 
 TEST_CASE("program: a number that makes no sense is wrong usage and named") {
@@ -87,9 +91,12 @@ TEST_CASE("program: a number that makes no sense is wrong usage and named") {
     INFO(bad);
     check_wrong_usage(map({"--cell", bad}), "--cell");
   }
-  for (const std::string bad : {"0", "-4", "nan", "x"})
-    check_wrong_usage(map({"--segment-scale", bad}), "--segment-scale");
-  for (const std::string bad : {"nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-4", "nan", "inf"})
+    check_wrong_usage(map({"--segment-scale", bad}),
+                      "--segment-scale: " + bad + "; expected a finite number above 0\n");
+  check_wrong_usage(map({"--segment-scale", "x"}), "--segment-scale");
+  check_wrong_usage(map({"--max-height", "1e300"}), "--max-height: 1e300; expected metres in [-1e9, 1e9]\n");
+  for (const std::string bad : {"nan", "inf", "x", "1e39"}) {
     check_wrong_usage(map({"--max-height", bad}), "--max-height");
     check_wrong_usage(map({"--origin", bad, "0", "--size", "4", "4"}), "--origin");
   }
@@ -116,7 +123,7 @@ TEST_CASE("program: a speed and a duration that make no sense are wrong usage") 
   for (const std::string bad : {"fast", "0", "-1", "nan", "1x"}) {
     check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}), "--speed");
   }
-  for (const std::string bad : {"0", "-1", "nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300"}) {
     const TemporaryDirectory out;
     check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
                                 out.path("o"), "--duration", bad}),
