@@ -259,6 +259,8 @@ TEST_CASE("program: replay sums up in one JSON object") {
   CHECK(summary.at("tilt_dropped") == 0);
   CHECK(summary.at("beams_without_tilt") == 0);
   CHECK(summary.at("points").get<int>() > 0);
+  CHECK(summary.at("outside").get<int>() > 0);
+  CHECK(summary.at("latency_steps") == 0);
 }
 
 /// Of replay; the summary where it exits with 0.

@@ -86,17 +86,20 @@ class CurbStream {
 nlohmann::json summary_of(const Replay& replay) {
   const Counters& c = replay.pipeline().counters();
   const can::TiltDecoderCounters can = replay.can_counters();
+  const TiltLatency& latency = replay.pipeline().tilt_latency();
   return {{"lines", c.lines},
           {"lines_dropped", c.lines_dropped},
           {"points", c.points},
+          {"outside", c.outside},
           {"no_returns", c.no_returns},
           {"can_frames", can.frames},
           {"can_malformed", can.malformed},
           {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
-          {"tilt_latency_offset_s", replay.pipeline().tilt_latency().offset_s()},
-          {"tilt_latency_sd_s", replay.pipeline().tilt_latency().sd_s()},
+          {"tilt_latency_offset_s", latency.offset_s()},
+          {"tilt_latency_sd_s", latency.sd_s()},
+          {"latency_steps", latency.steps()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},
           {"poses_dropped", c.poses_dropped},
