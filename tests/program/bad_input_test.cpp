@@ -298,6 +298,12 @@ TEST_CASE("program: an unknown scene is refused with those that ship, and no dir
   CHECK(names_in(dir.path("")).empty());
 }
 
+TEST_CASE("program: evaluate prints nothing where its picture is refused") {
+  const Recording logs = standing();
+  for (const std::string name : {"none/map.png", "map.gif"})
+    check_refused(curbline({"evaluate", logs.folder(), "--picture", logs.path(name)}), logs.path(name) + ": ", "");
+}
+
 TEST_CASE("program: truth that is cut is refused") {
   const Recording logs = standing();
   const std::string truth = read_file(logs.path("truth.json"));
