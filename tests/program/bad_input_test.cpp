@@ -110,6 +110,15 @@ TEST_CASE("program: a time that goes back is refused in scan lines and poses") {
   check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
 }
 
+TEST_CASE("program: a pose of the future is refused with the line behind it") {
+  const Recording logs = driving();
+  const std::string poses = read_file(logs.path("poses.tum"));
+  std::string pose = lines_of(poses)[9];
+  pose.replace(0, 10, std::to_string(std::stol(pose.substr(0, 10)) + 3600));
+  const std::string future = logs.directory().write("future", with_line(poses, 10, pose));
+  check_refused(replay_with(logs, "poses", future), future + ":11: ", "goes back; expected");
+}
+
 TEST_CASE("program: a laser that nods wants its tilt log, a robot that drives its poses") {
   const Recording logs = standing();
   check_refused(replay_with(logs, "can", ""), logs.path("robot.toml") + ": ", "expected --can");

@@ -89,7 +89,10 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
 
 bool Replay::step(std::vector<Point>* points) {
   auto next = scans_->next();
-  if (!next) return false;
+  if (!next) {
+    check_poses();
+    return false;
+  }
   line_ = std::move(*next);
   const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
                                                                       static_cast<float>(line_.ranges_m.size()));
@@ -176,6 +179,12 @@ void Replay::feed_poses(std::int64_t until_ns) {
                      std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
                                 1 - 2 * (pose->qy * pose->qy + pose->qz * pose->qz))};
   }
+}
+
+/// A pose of the future keeps the rest back: where lines had none, that is read as well, and refused where its times go
+/// back.
+void Replay::check_poses() {
+  while (poses_ && refused_ == Status::no_pose && poses_->next()) continue;
 }
 
 /// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept

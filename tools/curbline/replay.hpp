@@ -63,6 +63,7 @@ class Replay {
   bool is_damaged(std::int64_t time_ns, std::int64_t until_ns);
   bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
+  void check_poses();
   void keep_leaving_curbs();
 
   Robot robot_;
