@@ -1,4 +1,6 @@
 // Bad input: exit status 1, one line that says where and why, and no file that was not there before.
+#include <cstdlib>
+
 #include "program.hpp"
 
 namespace curbline::tools::testing {
@@ -97,7 +99,7 @@ TEST_CASE("program: NaN and infinity are refused with line and field") {
   check_refused(replay_with(drive, "poses", poses), poses + ":4: tx is ", "expected a finite number");
 }
 
-TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames and poses") {
+TEST_CASE("program: a time that goes back is refused in scan lines and poses") {
   const Recording logs = driving();
   const auto swapped = [&](const std::string& name) {
     const std::string text = read_file(logs.path(name));
@@ -105,8 +107,16 @@ TEST_CASE("program: a time that goes back is refused in scan lines, CAN frames a
     return logs.directory().write("back", with_line(with_line(text, 4, lines[4]), 5, lines[3]));
   };
   check_refused(replay_with(logs, "scans", swapped("scans.carmen")), logs.path("back") + ":5: ", "goes back; expected");
-  check_refused(replay_with(logs, "can", swapped("can.log")), logs.path("back") + ":5: ", "goes back; expected");
   check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
+}
+
+TEST_CASE("program: a pose of the future is refused with the line behind it") {
+  const Recording logs = driving();
+  const std::string poses = read_file(logs.path("poses.tum"));
+  std::string pose = lines_of(poses)[9];
+  pose.replace(0, 10, std::to_string(std::stol(pose.substr(0, 10)) + 3600));
+  const std::string future = logs.directory().write("future", with_line(poses, 10, pose));
+  check_refused(replay_with(logs, "poses", future), future + ":11: ", "goes back; expected");
 }
 
 TEST_CASE("program: a laser that nods wants its tilt log, a robot that drives its poses") {
@@ -123,6 +133,19 @@ TEST_CASE("program: a CAN log without a frame of the servo is refused, with the 
     log.replace(at, 4, "182#");
   const std::string wrong = logs.directory().write("wrong.log", log);
   check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
+}
+
+TEST_CASE("program: tilt frames of a second interface are refused, other frames of it are not") {
+  const Recording logs = standing();
+  const auto with_twin = [&](const std::string& id) {
+    std::string both;
+    for (const std::string& line : lines_of(read_file(logs.path("can.log"))))
+      both += line + "\n" + line.substr(0, line.find(' ')) + " can1 " + id + line.substr(line.find('#')) + "\n";
+    return logs.directory().write("both.log", both);
+  };
+  check_refused(replay_with(logs, "can", with_twin("181")),
+                logs.path("both.log") + ":2: ", "tilt frames of can1 after those of can0; expected one interface");
+  CHECK(curbline(logs.replay("can", with_twin("182"))).status == 0);
 }
 
 TEST_CASE("program: an unknown key and a wrong type in a robot's description are named with their line") {
@@ -215,6 +238,51 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
   CHECK(read_file(before) == "as it was\n");
 }
 
+/// A shell's line that runs the program.
+std::string line_of(const Words& arguments) {
+  std::string line = CURBLINE_PROGRAM;
+  for (const std::string& word : arguments) line += " '" + word + "'";
+  return line;
+}
+
+TEST_CASE("program: nothing is left of what a signal ends, and it ends by that signal") {
+  const TemporaryDirectory dir;
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  const Words before = names_in(logs.folder());
+  std::filesystem::create_directory(dir.path("run"));
+  for (const auto& [signal, number] : {std::pair{"HUP", 1}, {"INT", 2}, {"QUIT", 3}, {"PIPE", 13}, {"TERM", 15}}) {
+    INFO(signal);
+    const std::string timeout = "ulimit -c 0; timeout --preserve-status -s " + std::string(signal) + " 0.5 ";
+    const auto status_of = [&](const Words& arguments) {
+      return WEXITSTATUS(std::system((timeout + line_of(arguments) + " > /dev/null 2>&1").c_str()));
+    };
+    CHECK(status_of({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out", dir.path("run"),
+                     "--duration", "86400"}) == 128 + number);
+    CHECK(names_in(dir.path("run")) == Words{});
+    CHECK(status_of(logs.replay() + Words{"--speed", "1", "--line-costs", logs.path("lines.csv")}) == 128 + number);
+    CHECK(names_in(logs.folder()) == before);
+  }
+}
+
+TEST_CASE("program: a reader that closes the pipe leaves nothing half-written") {
+  const Recording logs("street", "utm30lx");
+  const Words before = names_in(logs.folder());
+  const std::string replay = line_of(logs.replay() + Words{"--curbs", "-", "--line-costs", logs.path("lines.csv")});
+  CHECK(std::system((replay + " 2> /dev/null | head -n 1 > /dev/null").c_str()) == 0);
+  CHECK(names_in(logs.folder()) == before);
+}
+
+TEST_CASE("program: a limit on the size of files is an error of writing") {
+  const TemporaryDirectory dir;
+  const std::string simulate = line_of({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
+                                        dir.path("run"), "--duration", "1"});
+  CHECK(WEXITSTATUS(std::system(("ulimit -f 100; " + simulate + " 2> " + dir.path("err")).c_str())) == 1);
+  CHECK(names_in(dir.path("run")) == Words{});
+  CHECK(read_file(dir.path("err")) ==
+        dir.path("run/scans.carmen") +
+            ": cannot be written: File too large; expected a file name in a folder to write to\n");
+}
+
 TEST_CASE("program: standard output that cannot be written is an error") {
   if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryDirectory dir;
@@ -238,6 +306,12 @@ TEST_CASE("program: an unknown scene is refused with those that ship, and no dir
   check_refused(curbline({"simulate", "--scene", "street", "--robot", dir.path("none"), "--out", dir.path("o")}),
                 dir.path("none"), "expected");
   CHECK(names_in(dir.path("")).empty());
+}
+
+TEST_CASE("program: evaluate prints nothing where its picture is refused") {
+  const Recording logs = standing();
+  for (const std::string name : {"none/map.png", "map.gif"})
+    check_refused(curbline({"evaluate", logs.folder(), "--picture", logs.path(name)}), logs.path(name) + ": ", "");
 }
 
 TEST_CASE("program: truth that is cut is refused") {

@@ -157,6 +157,59 @@ TEST_CASE("program: points above --max-height are ignored") {
   CHECK(read_curbs(files.curbs).empty());
 }
 
+TEST_CASE("program: a cloud without a point in the window is refused with the extent of both") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 -2 0.5\n3.25 4 0.25\n");
+  const auto refused = [&](const Words& options, const std::string& window_text) {
+    check_refused(curbline(Words{"map", cloud, "--labels", dir.path("l.csv")} + options),
+                  cloud + ": no point within " + window_text,
+                  "the cloud has x 1.000 to 3.250, y -2.000 to 4.000, z 0.250 to 0.500\n");
+    CHECK(names_in(dir.path("")) == Words{"a.xyz"});
+  };
+  for (const std::string method : {"curbline", "crf-em", "canny"}) {
+    INFO(method);
+    refused({"--method", method, "--origin", "1000", "2000", "--size", "4", "6"},
+            "x 1000.000 to 1004.000, y 2000.000 to 2006.000 m; expected some: ");
+    refused({"--method", method, "--origin", "0", "-2", "--size", "4", "8", "--max-height", "-100"},
+            "x 0.000 to 4.000, y -2.000 to 6.000, z up to -100.000 m; expected some: ");
+  }
+}
+
+TEST_CASE("program: a cloud in coordinates of a national grid gives its map there") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  const std::string cloud = cloud_with_a_step(dir);
+  check_done(curbline(Words{"map", cloud} + window + files.options()));
+  const std::vector<LabelledCell> here = read_labels(files.labels);
+  const std::vector<MapCurb> curbs_here = read_curbs(files.curbs);
+  REQUIRE(curbs_here.size() == 1);
+
+  constexpr double east_m = 465400, north_m = 5247000, high_m = 3600;
+  std::string text;
+  for (const std::string& point : lines_of(read_file(cloud))) {
+    double x = 0, y = 0, z = 0;
+    REQUIRE(std::sscanf(point.c_str(), "%lf %lf %lf", &x, &y, &z) == 3);
+    text += std::to_string(x + east_m) + " " + std::to_string(y + north_m) + " " + std::to_string(z + high_m) + "\n";
+  }
+  check_done(curbline(Words{"map", dir.write("grid.xyz", text), "--origin", "465400", "5246998", "--size", "4", "4",
+                            "--max-height", "3600.5", "--picture", dir.path("map.svg")} +
+                      files.options()));
+  const std::vector<LabelledCell> there = read_labels(files.labels);
+  REQUIRE(there.size() == here.size());
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    CHECK(there[k].x_m - east_m == Approx(here[k].x_m).margin(1e-6));
+    CHECK(there[k].y_m - north_m == Approx(here[k].y_m).margin(1e-6));
+    CHECK(there[k].cell.height_m - high_m == Approx(here[k].cell.height_m).margin(5e-4));
+    CHECK(there[k].cell.label == here[k].cell.label);
+  }
+  const std::vector<MapCurb> curbs = read_curbs(files.curbs);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].kind == "step_up");
+  CHECK(curbs[0].height_m == Approx(curbs_here[0].height_m).margin(5e-4));
+  for (const double x_m : {curbs[0].x0_m, curbs[0].x1_m}) CHECK(x_m - east_m == Approx(2.0).margin(0.05));
+  for (const double y_m : {curbs[0].y0_m, curbs[0].y1_m}) CHECK(std::abs(y_m - north_m) == Approx(2.0).margin(0.1));
+}
+
 TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exactly as asked") {
   const TemporaryDirectory dir;
   const Files files(dir);

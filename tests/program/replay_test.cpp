@@ -63,10 +63,11 @@ std::string labels_by_signal(const std::string& lines) {
   std::string text = read_file(shipped_robot("utm30lx"));
   text.replace(text.find("node = 1\n"), 9, lines);
   const std::string robot = dir.write("r.toml", text);
-  const Words simulate{"simulate", "--scene", "straight_curb", "--robot", robot, "--out", dir.path("run"), "--duration", "2"};
+  const Words simulate{"simulate", "--scene",       "straight_curb", "--robot", robot,
+                       "--out",    dir.path("run"), "--duration",    "2"};
   REQUIRE(curbline(simulate).status == 0);
-  const Outcome outcome = curbline({"replay", "--scans", dir.path("run/scans.carmen"), "--can", dir.path("run/can.log"), "--robot",
-                                    robot, "--labels", dir.path("labels.csv"), "--json"});
+  const Outcome outcome = curbline({"replay", "--scans", dir.path("run/scans.carmen"), "--can", dir.path("run/can.log"),
+                                    "--robot", robot, "--labels", dir.path("labels.csv"), "--json"});
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);
   const auto summary = nlohmann::json::parse(outcome.out);
@@ -88,7 +89,8 @@ TEST_CASE("program: positions without their SYNC are refused with what was expec
   std::string robot = read_file(shipped_robot("clausius"));
   robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
   const std::string path = logs.directory().write("sync.toml", robot);
-  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ", "expected id 0x80 before each");
+  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ",
+                "expected id 0x80 before each");
 }
 
 TEST_CASE("program: a curb of 3 cm is found too") {
@@ -128,7 +130,8 @@ TEST_CASE("program: a ramp has edges and no step") {
   CHECK(evaluate(logs).at("height_rmse_m").get<double>() < height_m);
 }
 
-/// The robot's servo lags by 15 ms more than its file says: the first turn tells it, and what was mapped before is mended.
+/// The robot's servo lags by 15 ms more than its file says: the first turn tells it, and what was mapped before is
+/// mended.
 TEST_CASE("program: a servo that lags leaves one street, where it is") {
   const TemporaryDirectory directory;
   std::string robot = read_file(shipped_robot("utm30lx"));
@@ -256,6 +259,77 @@ TEST_CASE("program: replay sums up in one JSON object") {
   CHECK(summary.at("tilt_dropped") == 0);
   CHECK(summary.at("beams_without_tilt") == 0);
   CHECK(summary.at("points").get<int>() > 0);
+  CHECK(summary.at("outside").get<int>() > 0);
+  CHECK(summary.at("latency_steps") == 0);
+}
+
+/// Of replay; the summary where it exits with 0.
+struct Replayed {
+  explicit Replayed(const Recording& logs) : outcome(curbline(logs.replay() + Words{"--json"})) {
+    INFO("standard error: " << outcome.err);
+    REQUIRE(outcome.status == 0);
+    summary = nlohmann::json::parse(outcome.out);
+  }
+  Outcome outcome;
+  nlohmann::json summary;
+};
+
+TEST_CASE("program: scan lines that are dropped are told, with the last reason") {
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  Words frames = lines_of(read_file(logs.path("can.log")));
+  frames.resize(60);
+  std::string cut;
+  for (const std::string& frame : frames) cut += frame + "\n";
+  logs.directory().write("can.log", cut);
+  const Replayed replayed(logs);
+  const int dropped = replayed.summary.at("lines_dropped");
+  CHECK(dropped > 40);
+  const std::string told = logs.path("scans.carmen") + ": " + std::to_string(dropped) +
+                           " of 80 scan lines were dropped, the last for: no tilt angle near the scan line's time\n";
+  CHECK(replayed.outcome.err == told);
+  CHECK(curbline({"evaluate", logs.folder()}).err == told);
+}
+
+/// The log with one frame's time moved.
+void move_frame(const Recording& logs, std::size_t number, double by_s) {
+  const std::string log = read_file(logs.path("can.log"));
+  std::string frame = lines_of(log).at(number - 1);
+  const std::size_t end = frame.find(')');
+  const double time_s = std::stod(frame.substr(1, end - 1)) + by_s;
+  char moved[32];
+  std::snprintf(moved, sizeof moved, "(%.6f", time_s);
+  logs.directory().write("can.log", with_line(log, number, moved + frame.substr(end)));
+}
+
+TEST_CASE("program: a tilt frame of the future costs the lines beside it, not the rest of the log") {
+  for (const double by_s : {3600.0, 0.5}) {
+    INFO(by_s << " s");
+    const Recording logs("street", "utm30lx", {"--duration", "4"});
+    move_frame(logs, 201, by_s);
+    const Replayed replayed(logs);
+    CHECK(replayed.summary.at("lines").get<int>() + replayed.summary.at("lines_dropped").get<int>() == 160);
+    CHECK(replayed.summary.at("lines_dropped") < 10);
+    CHECK(replayed.summary.at("tilt_dropped") == 15);
+    CHECK(replayed.outcome.err.starts_with(logs.path("can.log") + ": 15 of "));
+    CHECK_FALSE(replayed.outcome.err.ends_with("\n\n"));
+  }
+}
+
+TEST_CASE("program: tilt frames in another order than their times are dropped and told") {
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  move_frame(logs, 100, 0.0101);
+  const Replayed replayed(logs);
+  CHECK(replayed.summary.at("lines_dropped") == 0);
+  CHECK(replayed.outcome.err.starts_with(logs.path("can.log") + ": 1 of "));
+  CHECK(replayed.outcome.err.ends_with(" tilt readings were dropped; expected times that rise\n"));
+}
+
+TEST_CASE("program: a window that no point falls in is told") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  const Outcome outcome = curbline(logs.replay() + Words{"--origin", "1000", "1000", "--size", "4", "4"});
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err.starts_with(logs.path("scans.carmen") + ": none of "));
+  CHECK(outcome.err.ends_with(" points lies in the window\n"));
 }
 
 TEST_CASE("program: --line-costs has a row for each scan line, and their sums are the summary's") {

@@ -39,9 +39,48 @@ TEST_CASE("program: a window has an origin and a size") {
   check_wrong_usage(curbline({"map", "a.xyz", "--origin", "0", "--size", "4", "4"}), "--origin");
 }
 
+TEST_CASE("program: no output takes the place of an input or of another output") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n"), new_file = dir.path("new.csv");
+  std::filesystem::create_symlink(cloud, dir.path("link.xyz"));
+  const Words names = names_in(dir.path(""));
+  const auto refused = [&](const Words& arguments, const std::string& part) {
+    check_wrong_usage(curbline(arguments), part);
+    CHECK(names_in(dir.path("")) == names);
+    CHECK(read_file(cloud) == "1 1 0\n");
+  };
+  for (const std::string& name : {cloud, dir.path("./a.xyz"), dir.path("link.xyz")}) {
+    for (const std::string option : {"--labels", "--curbs", "--picture"})
+      refused({"map", cloud, option, name}, option + ": " + name + " is also the cloud; expected another file");
+  }
+  refused({"map", cloud, "--labels", new_file, "--curbs", dir.path("./new.csv")}, "is also --labels");
+  CHECK(curbline({"map", cloud, "--labels", "/dev/null", "--curbs", "/dev/null"}).status == 0);
+
+  for (const std::string input : {"--scans", "--can", "--poses", "--robot"}) {
+    for (const std::string output : {"--labels", "--curbs", "--picture", "--line-costs"}) {
+      Words arguments{"replay", output, cloud};
+      for (const std::string option : {"--scans", "--can", "--poses", "--robot"})
+        arguments = arguments + Words{option, option == input ? cloud : dir.path("none")};
+      refused(arguments, "is also " + input);
+    }
+  }
+}
+
+TEST_CASE("program: standard output is for curbs alone") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  for (const std::string option : {"--labels", "--picture"})
+    check_wrong_usage(curbline({"map", cloud, option, "-"}), option + ": -; expected a file name");
+  check_wrong_usage(curbline({"replay", "--scans", cloud, "--robot", cloud, "--line-costs", "-"}), "--line-costs: -;");
+}
+
 TEST_CASE("program: an unknown method or edge and the values that there are") {
-  check_wrong_usage(curbline({"map", "a.xyz", "--method", "foo"}), "crf-em");
-  check_wrong_usage(curbline({"map", "a.xyz", "--edge", "foo"}), "eq10");
+  for (const std::string word : {"foo", "4"}) {
+    check_wrong_usage(curbline({"map", "a.xyz", "--method", word}),
+                      "--method: " + word + "; expected one of curbline, crf-em, em, segment, canny, gradient\n");
+    check_wrong_usage(curbline({"map", "a.xyz", "--edge", word}),
+                      "--edge: " + word + "; expected one of potts, eq10\n");
+  }
 }
 
 TEST_CASE("program: a number that makes no sense is wrong usage and named") {
@@ -52,13 +91,16 @@ TEST_CASE("program: a number that makes no sense is wrong usage and named") {
     INFO(bad);
     check_wrong_usage(map({"--cell", bad}), "--cell");
   }
-  for (const std::string bad : {"0", "-4", "nan", "x"})
-    check_wrong_usage(map({"--segment-scale", bad}), "--segment-scale");
-  for (const std::string bad : {"nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-4", "nan", "inf"})
+    check_wrong_usage(map({"--segment-scale", bad}),
+                      "--segment-scale: " + bad + "; expected a finite number above 0\n");
+  check_wrong_usage(map({"--segment-scale", "x"}), "--segment-scale");
+  check_wrong_usage(map({"--max-height", "1e300"}), "--max-height: 1e300; expected metres in [-1e9, 1e9]\n");
+  for (const std::string bad : {"nan", "inf", "x", "1e39"}) {
     check_wrong_usage(map({"--max-height", bad}), "--max-height");
     check_wrong_usage(map({"--origin", bad, "0", "--size", "4", "4"}), "--origin");
   }
-  for (const std::string bad : {"0", "-4", "nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-4", "nan", "inf", "x", "1e-9"}) {
     check_wrong_usage(map({"--origin", "0", "0", "--size", bad, "4"}), "--size");
   }
 }
@@ -81,7 +123,7 @@ TEST_CASE("program: a speed and a duration that make no sense are wrong usage") 
   for (const std::string bad : {"fast", "0", "-1", "nan", "1x"}) {
     check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}), "--speed");
   }
-  for (const std::string bad : {"0", "-1", "nan", "inf", "x"}) {
+  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300"}) {
     const TemporaryDirectory out;
     check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
                                 out.path("o"), "--duration", bad}),

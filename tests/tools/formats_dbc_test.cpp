@@ -111,6 +111,11 @@ bool same(const can::Signal& a, const can::Signal& b) {
 
 }  // namespace
 
+TEST_CASE("dbc: a byte order mark is passed over") {
+  const TemporaryDirectory dir;
+  CHECK(read_dbc(dir.write("a.dbc", "\xEF\xBB\xBF" + good)).size() == read_dbc(dir.write("b.dbc", good)).size());
+}
+
 TEST_CASE("dbc: a little-endian signal has the words of its line") {
   const DbcTiltSignal position = found("Tilt", "Position");
   CHECK(position.unit == "rad");

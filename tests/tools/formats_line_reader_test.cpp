@@ -19,6 +19,14 @@ std::vector<std::string> lines_of(const std::string& path, std::size_t max_line 
 
 }  // namespace
 
+TEST_CASE("line reader: a byte order mark is no part of the first line") {
+  const TemporaryDirectory dir;
+  const std::string mark = "\xEF\xBB\xBF";
+  CHECK(lines_of(dir.write("a", mark + "one\n" + mark + "two\n")) == std::vector<std::string>{"one", mark + "two"});
+  CHECK(lines_of(dir.write("a", mark + "\r\n")) == std::vector<std::string>{""});
+  CHECK(lines_of(dir.write("a", mark)) == std::vector<std::string>{""});
+}
+
 TEST_CASE("line reader: lines come one by one, whatever their end") {
   const TemporaryDirectory dir;
   CHECK(lines_of(dir.write("a", "one\ntwo\r\n\nlast")) == std::vector<std::string>{"one", "two", "", "last"});

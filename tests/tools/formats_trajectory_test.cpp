@@ -48,6 +48,12 @@ TEST_CASE("trajectory: a quaternion near norm 1 is normalised, another one refus
   CHECK(error_in(dir, "1 0 0 0 1e200 0 0 0\n").starts_with("p.tum:1: the quaternion's norm"));
 }
 
+TEST_CASE("trajectory: positions in coordinates of a national grid are refused, with their field") {
+  const TemporaryDirectory dir;
+  CHECK(error_in(dir, "1 465000.5 -1e6 400 0 0 0 1\n2 465000.5 5247000.25 400 0 0 0 1\n") ==
+        "p.tum:2: ty is \"5247000.250\"; expected metres within 1000 km, better 1 km, of the map's origin");
+}
+
 TEST_CASE("trajectory: cut lines, junk and times that go back are refused") {
   const TemporaryDirectory dir;
   CHECK(error_in(dir, "1 0 0 0 0 0 0\n") == "p.tum:1: the line ends before qw; expected one field more");

@@ -33,6 +33,14 @@ double given(LogClock& clock, int k, AngleOf angle_of, int late_ms = 0) {
   return static_cast<double>(frame.time_ns - t0) / (10.0 * ms);
 }
 
+TEST_CASE("recorded times: a log whose times go back is refused with its line") {
+  const TemporaryDirectory directory;
+  std::ostringstream log;
+  for (const int k : {0, 2, 1}) write_can_frame(log, position(t0 + 10 * ms * k, 0.1 * k), "can0");
+  RecordedTimes recorded(directory.write("can.log", log.str()), can::cia402_position(1), std::nullopt);
+  CHECK(error_of([&] { recorded.read_all(); }).starts_with("can.log:3: the time goes back"));
+}
+
 TEST_CASE("recorded times: after a gap in which the servo turned, a frame is not taken for one of the way before") {
   const TemporaryDirectory directory;
   const auto nods = [](int k) { return 0.01 * std::abs(k - 30); };  // 45 is 15 again

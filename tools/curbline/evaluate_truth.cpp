@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include "curbline/evaluate.hpp"
 #include "curbline/recorded_run.hpp"
@@ -241,6 +242,8 @@ void draw(const Evaluation& e, const EvaluateOptions& options) {
 
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   const Evaluation e = evaluate_recording(options);
+  if (e.run && !e.run->remarks.empty()) std::cerr << e.run->remarks << '\n';
+  if (!options.picture.empty()) draw(e, options);  // it may be refused: before anything is printed
   const Scored here = scored(e.found, e.truth, e.seen);
   std::optional<Scored> reference;
   if (e.reference) reference = scored(*e.reference, e.truth, e.seen);
@@ -252,7 +255,6 @@ nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
     std::printf("\ncurbs found: %d of %zu\n\n", static_cast<int>(found), rows.size());
     print_table(here, reference, detection);
   }
-  if (!options.picture.empty()) draw(e, options);
 
   nlohmann::json out = to_json(here);
   out["curbs"] = rows_json(rows);

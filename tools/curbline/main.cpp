@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "curbline/commands.hpp"
+#include "formats/atomic_file.hpp"
 #include "formats/bad_input.hpp"
 
 namespace {
@@ -24,6 +25,7 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace curbline::tools;
+  remove_uncommitted_at_signals();
   CLI::App app("Finds curbs in the scan lines of a nodding laser.", "curbline");
   app.require_subcommand(1);
   add_simulate(app);

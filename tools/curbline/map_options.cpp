@@ -1,9 +1,11 @@
 #include "curbline/map_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <set>
 
@@ -11,6 +13,7 @@
 #include "curbline/host_pipeline.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/csv.hpp"
+#include "formats/decimals.hpp"
 #include "picture/picture.hpp"
 
 namespace curbline::tools {
@@ -43,47 +46,72 @@ void check_written(AtomicFile* file, const std::string& path) {
     throw BadInput(path + ": cannot be written; expected room for the file");
 }
 
+/// An option that is one of a few words.
+template <typename Choice>
+void add_choice(CLI::App& command, const std::string& option, Choice& choice,
+                const CLI::TransformPairs<Choice>& choices, const std::string& help) {
+  const auto choose = [&choice, option, choices](const std::string& word) {
+    std::string words;
+    for (const auto& [name, value] : choices) {
+      if (name == word) choice = value;
+      words += (words.empty() ? "" : ", ") + name;
+    }
+    if (std::none_of(choices.begin(), choices.end(), [&](const auto& each) { return each.first == word; }))
+      throw CLI::ValidationError(option, word + "; expected one of " + words);
+  };
+  command.add_option_function<std::string>(option, choose, help);
+}
+
+/// Numbers in [low, high].
+CLI::Validator within(double low, double high, const std::string& expected) {
+  const auto check = [=](const std::string& text) {
+    const double value = std::strtod(text.c_str(), nullptr);
+    return value >= low && value <= high ? "" : text + "; expected " + expected;
+  };
+  return CLI::Validator(check, "");
+}
+
 }  // namespace
 
 void add_method_option(CLI::App& command, MapMethod& method) {
-  const std::map<std::string, MapMethod> methods{
-      {"curbline", MapMethod::curbline}, {"crf-em", MapMethod::crf_em}, {"em", MapMethod::em},
-      {"segment", MapMethod::segment},   {"canny", MapMethod::canny},   {"gradient", MapMethod::gradient}};
-  command
-      .add_option("--method", method,
-                  "curbline; the paper's steps: crf-em, em, segment; its peers, curbs alone: canny, gradient")
-      ->transform(CLI::CheckedTransformer(methods).description(""))
-      ->option_text("METHOD");
+  add_choice<MapMethod>(command, "--method", method,
+                        {{"curbline", MapMethod::curbline},
+                         {"crf-em", MapMethod::crf_em},
+                         {"em", MapMethod::em},
+                         {"segment", MapMethod::segment},
+                         {"canny", MapMethod::canny},
+                         {"gradient", MapMethod::gradient}},
+                        "curbline; the paper's steps: crf-em, em, segment; its peers, curbs alone: canny, gradient");
 }
 
 void add_map_options(CLI::App& command, MapOptions& options) {
-  const CLI::Validator finite(
-      [](const std::string& text) {
-        return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; expected a finite number";
-      },
-      "");
+  const CLI::Validator place = within(-1e9, 1e9, "metres in [-1e9, 1e9]");
   auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")
                      ->expected(2)
-                     ->check(finite);
+                     ->check(place);
   auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
   origin->needs(size);
   size->needs(origin);
   command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
-  command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(finite);
+  command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(place);
   add_method_option(command, options.method);
-  const std::map<std::string, reference::EdgePotential> edges{{"potts", reference::EdgePotential::potts},
-                                                              {"eq10", reference::EdgePotential::eq10}};
-  command.add_option("--edge", options.edge, "edge potential of crf-em: potts (factor 10) or eq10")
-      ->transform(CLI::CheckedTransformer(edges).description(""))
-      ->option_text("EDGE");
+  add_choice<reference::EdgePotential>(
+      command, "--edge", options.edge,
+      {{"potts", reference::EdgePotential::potts}, {"eq10", reference::EdgePotential::eq10}},
+      "edge potential of crf-em: potts (factor 10) or eq10");
   command.add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
-      ->check(CLI::PositiveNumber)
-      ->check(finite)
+      ->check(within(std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a finite number above 0"))
       ->capture_default_str();
   command.add_option("--labels", options.labels, "CSV of the valid cells");
   command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout");
   command.add_option("--picture", options.picture, "PNG or SVG");
   command.add_flag("--json", options.json, "summary on stdout");
+}
+
+std::vector<NamedFile> outputs_of(const MapOptions& options) {
+  std::vector<NamedFile> files{{"--labels", options.labels}, {"--picture", options.picture}};
+  if (options.curbs != "-") files.push_back({"--curbs", options.curbs});
+  return files;
 }
 
 void apply_window(const MapOptions& options, WindowSettings& window) {
@@ -93,14 +121,16 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
   }
   for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
     if (!(cell_m >= 0.001f && cell_m <= 10.0f))
-      throw CLI::ValidationError("--cell", std::to_string(cell_m) + "; expected metres in [0.001, 10]");
+      throw CLI::ValidationError("--cell", shortest(cell_m) + "; expected metres in [0.001, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
-  for (const double length_m : options.size) {
-    if (!(length_m > 0)) throw CLI::ValidationError("--size", std::to_string(length_m) + "; expected metres above 0");
-  }
   const CellSides side = cell_sides(options, window);
+  const std::array sides{side.x_m, side.y_m};
+  for (std::size_t axis = 0; axis < sides.size(); ++axis) {
+    if (const double length_m = options.size[axis]; !(length_m > count_slack * sides[axis]))
+      throw CLI::ValidationError("--size", shortest(length_m) + "; expected metres above 0, a cell or more");
+  }
   const double longest = std::max(options.size[0] / side.x_m, options.size[1] / side.y_m);
   if (!(longest <= most_cells + count_slack)) {
     throw CLI::ValidationError("--size",

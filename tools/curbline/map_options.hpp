@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "curbline/outputs.hpp"
 #include "curbline/settings.hpp"
 #include "formats/bad_input.hpp"
 #include "map/map.hpp"
@@ -36,6 +37,9 @@ void add_method_option(CLI::App& command, MapMethod& method);
 
 /// Adds the shared flags to a command.
 void add_map_options(CLI::App& command, MapOptions& options);
+
+/// What give_out() would write to files.
+std::vector<NamedFile> outputs_of(const MapOptions& options);
 
 /// Puts the window of the flags in place of the robot's: rows and columns are rounded up to whole blocks. Throws
 /// BadInput if it makes no sense.

@@ -42,6 +42,7 @@ class Record {
 
   void finish(const Replay& replay) {
     look(replay);
+    run_.remarks = replay.remarks();
     run_.map = replay.pipeline().map();
     run_.robot = replay.robot();
     run_.found.windows.push_back(labelled_cells(run_.map));

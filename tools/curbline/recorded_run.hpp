@@ -20,6 +20,7 @@ struct RecordedRun {
   std::vector<Detections::Detection> detections;  ///< as Truth::curbs
   RobotMarker robot;                              ///< at the end
   bool drove = false;
+  std::string remarks;  ///< Replay::remarks()
   double max_height_m = 0;
 };
 

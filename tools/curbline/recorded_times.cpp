@@ -47,6 +47,9 @@ bool RecordedTimes::read_one() {
     const auto frame = log_.next();
     at_end_ = !frame;
     if (frame && wanted(*frame)) {
+      if (frame->time_ns < newest_ns_)
+        throw BadInput(log_.path(), log_.line(), "the time goes back; expected no less than that of the frame before");
+      newest_ns_ = frame->time_ns;
       ahead_.push_back(*frame);
       return true;
     }

@@ -22,8 +22,9 @@ class RecordedTimes {
   /// Reads the whole log now; nothing is allocated after that.
   void read_all();
 
-  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s): the next one, or
-  /// one that comes a second late or 0.2 s early at most; nothing if there is none. Recorded frames before it have been missed.
+  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s): the
+  /// next one, or one that comes a second late or 0.2 s early at most; nothing if there is none. Recorded frames before
+  /// it have been missed.
   std::optional<std::int64_t> time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns);
 
   /// Whether every recorded frame has been met or missed.
@@ -38,7 +39,8 @@ class RecordedTimes {
   CanLogReader log_;
   can::Signal signal_;
   std::optional<std::uint16_t> sync_id_;
-  std::deque<can::Frame> ahead_;  ///< read and not met yet
+  std::deque<can::Frame> ahead_;  ///< read and not met yet, in order of time
+  std::int64_t newest_ns_ = INT64_MIN;
   bool at_end_ = false;
   long missed_ = 0;
 };

@@ -50,11 +50,12 @@ std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
 std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
   const std::string frames = std::to_string(counters.frames) + " frames";
   if (counters.without_sync > 0) {
-    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id 0x" + hexadecimal(*robot.tilt_sync_id) +
-           " before each, as the robot's description has it";
+    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id 0x" +
+           hexadecimal(*robot.tilt_sync_id) + " before each, as the robot's description has it";
   }
   if (counters.malformed > 0) {
-    return std::to_string(counters.malformed) + " of " + frames + " have the tilt signal's id and none holds an angle; expected " +
+    return std::to_string(counters.malformed) + " of " + frames +
+           " have the tilt signal's id and none holds an angle; expected " +
            std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
   }
   return "none of " + frames + " is the tilt signal; expected id 0x" + hexadecimal(robot.tilt_signal.id) +
@@ -76,7 +77,9 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
   }
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
-    can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id, is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans)) : log_frames(logs.can);
+    can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id,
+                             is_scanner(logs.scans) ? std::nullopt : std::optional(logs.scans))
+               : log_frames(logs.can, robot.tilt_signal);
   }
   if (!robot.pose.still) poses_.emplace(logs.poses);
   scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
@@ -86,11 +89,15 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
 
 bool Replay::step(std::vector<Point>* points) {
   auto next = scans_->next();
-  if (!next) return false;
+  if (!next) {
+    check_poses();
+    return false;
+  }
   line_ = std::move(*next);
   const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
                                                                       static_cast<float>(line_.ranges_m.size()));
-  feed_tilt(last_beam_ns + static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
+  feed_tilt(last_beam_ns +
+            static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
   curbs_before_.clear();
   for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
@@ -98,7 +105,9 @@ bool Replay::step(std::vector<Point>* points) {
   const auto start = std::chrono::steady_clock::now();
   status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
   take_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ++lines_;
   lines_taken_ += status_ == Status::ok;
+  if (status_ != Status::ok) refused_ = status_;
   keep_leaving_curbs();
   return true;
 }
@@ -106,18 +115,46 @@ bool Replay::step(std::vector<Point>* points) {
 /// Frames up to the first reading at or after a time.
 void Replay::feed_tilt(std::int64_t until_ns) {
   while (can_ && tilt_until_ns_ < until_ns) {
-    const auto frame = can_->next(line_.time_ns);
-    if (!frame) {
+    const auto reading = next_tilt();
+    if (!reading) {
       if (can_->ended()) tilt_until_ns_ = log_ended;
       if (!can_->ended() && beyond_extrapolation(line_.time_ns)) can_->fail_silent();
       return;
     }
+    pipeline_->add_tilt(*reading);
+    if (!is_damaged(reading->time_ns, until_ns)) tilt_until_ns_ = reading->time_ns;
+  }
+}
+
+/// From the log or bus; nothing at the end, or when the bus is silent.
+std::optional<TiltReading> Replay::read_tilt() {
+  while (const auto frame = can_->next(line_.time_ns)) {
     if (const auto reading = tilt_decoder_.take(*frame)) {
       ++tilt_readings_;
-      pipeline_->add_tilt(*reading);
-      tilt_until_ns_ = reading->time_ns;
+      return reading;
     }
   }
+  return std::nullopt;
+}
+
+std::optional<TiltReading> Replay::next_tilt() {
+  if (tilt_ahead_.empty()) return read_tilt();
+  const TiltReading reading = tilt_ahead_.front();
+  tilt_ahead_.pop_front();
+  return reading;
+}
+
+/// Whether a time is so far ahead of what is waited for that it cannot help, and an earlier one follows: it would hold
+/// back all others. After a gap none is earlier.
+bool Replay::is_damaged(std::int64_t time_ns, std::int64_t until_ns) {
+  if (time_ns <= until_ns + static_cast<std::int64_t>(robot_.tilt.max_gap_s * 1e9f)) return false;
+  while (tilt_ahead_.size() <= RisingTimes::most_refused) {
+    const auto reading = read_tilt();
+    if (!reading) break;
+    tilt_ahead_.push_back(*reading);
+  }
+  return std::any_of(tilt_ahead_.begin(), tilt_ahead_.end(),
+                     [&](const TiltReading& reading) { return reading.time_ns < time_ns; });
 }
 
 /// Whether the newest reading is too old to say anything of that time.
@@ -134,6 +171,7 @@ void Replay::feed_poses(std::int64_t until_ns) {
       return;
     }
     const auto f = [](double value) { return static_cast<float>(value); };
+    ++poses_fed_;
     pipeline_->add_pose(
         {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
     poses_until_ns_ = pose->time_ns;
@@ -141,6 +179,12 @@ void Replay::feed_poses(std::int64_t until_ns) {
                      std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
                                 1 - 2 * (pose->qy * pose->qy + pose->qz * pose->qz))};
   }
+}
+
+/// A pose of the future keeps the rest back: where lines had none, that is read as well, and refused where its times go
+/// back.
+void Replay::check_poses() {
+  while (poses_ && refused_ == Status::no_pose && poses_->next()) continue;
 }
 
 /// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept
@@ -160,10 +204,26 @@ void Replay::keep_leaving_curbs() {
   grid_before_ = grid;
 }
 
-std::string Replay::remarks() const { return can_ ? can_->remarks() : std::string(); }
+std::string Replay::remarks() const {
+  std::string text = can_ ? can_->remarks() : std::string();
+  const auto add = [&](const std::string& log, long count, const std::string& what) {
+    if (count > 0) text += (text.empty() ? "" : "\n") + log + ": " + std::to_string(count) + " of " + what;
+  };
+  const Counters& c = pipeline_->counters();
+  add(logs_.can, c.tilt_dropped,
+      std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
+  add(logs_.poses, c.poses_dropped, std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
+  add(logs_.scans, lines_ - lines_taken_,
+      std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
+  if (c.points == 0 && c.outside > 0)
+    text += (text.empty() ? "" : "\n") + logs_.scans + ": none of " + std::to_string(c.outside) +
+            " points lies in the window";
+  return text;
+}
 
 void Replay::check_complete() const {
-  if (can_ && tilt_readings_ == 0) throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
+  if (can_ && tilt_readings_ == 0)
+    throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
   if (lines_taken_ == 0) {
     throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
                    "; expected times that agree with the tilt log and the poses");

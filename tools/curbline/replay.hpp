@@ -2,6 +2,7 @@
 // have them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,7 +19,8 @@
 
 namespace curbline::tools {
 
-/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty where the robot has none.
+/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty where the robot has
+/// none.
 struct ReplayLogs {
   std::string scans;  ///< or a live scanner: scan_source.hpp
   std::string can;
@@ -33,14 +35,14 @@ class Replay {
   Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline);
   std::unique_ptr<HostPipeline> take_pipeline() { return std::move(pipeline_); }
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. Its points are added to `points`, for the
-  /// methods that take a whole cloud.
+  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. Its points are added to
+  /// `points`, for the methods that take a whole cloud.
   bool step(std::vector<Point>* points = nullptr);
 
   /// At the end of a log without one usable reading: throws BadInput that says so.
   void check_complete() const;
 
-  /// What a user should know of a live bus at the end; empty if all is well.
+  /// What a user should know at the end of what was lost or dropped, a line each; empty if all is well.
   std::string remarks() const;
 
   const HostPipeline& pipeline() const { return *pipeline_; }
@@ -56,8 +58,12 @@ class Replay {
 
  private:
   void feed_tilt(std::int64_t until_ns);
+  std::optional<TiltReading> read_tilt();
+  std::optional<TiltReading> next_tilt();
+  bool is_damaged(std::int64_t time_ns, std::int64_t until_ns);
   bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
+  void check_poses();
   void keep_leaving_curbs();
 
   Robot robot_;
@@ -66,13 +72,14 @@ class Replay {
   std::unique_ptr<ScanSource> scans_;
   std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
   can::TiltDecoder tilt_decoder_;
+  std::deque<TiltReading> tilt_ahead_;  ///< read and not fed yet
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   RobotMarker robot_marker_;
-  Status status_ = Status::ok;
+  Status status_ = Status::ok, refused_ = Status::ok;  ///< of the newest line; why the last one was refused that was
   double take_s_ = 0;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
-  long tilt_readings_ = 0, lines_taken_ = 0;
+  long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
   Grid grid_before_;
   std::vector<MapCurb> curbs_before_, left_behind_;
 };

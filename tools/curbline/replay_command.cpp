@@ -86,17 +86,20 @@ class CurbStream {
 nlohmann::json summary_of(const Replay& replay) {
   const Counters& c = replay.pipeline().counters();
   const can::TiltDecoderCounters can = replay.can_counters();
+  const TiltLatency& latency = replay.pipeline().tilt_latency();
   return {{"lines", c.lines},
           {"lines_dropped", c.lines_dropped},
           {"points", c.points},
+          {"outside", c.outside},
           {"no_returns", c.no_returns},
           {"can_frames", can.frames},
           {"can_malformed", can.malformed},
           {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
-          {"tilt_latency_offset_s", replay.pipeline().tilt_latency().offset_s()},
-          {"tilt_latency_sd_s", replay.pipeline().tilt_latency().sd_s()},
+          {"tilt_latency_offset_s", latency.offset_s()},
+          {"tilt_latency_sd_s", latency.sd_s()},
+          {"latency_steps", latency.steps()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},
           {"poses_dropped", c.poses_dropped},
@@ -107,7 +110,15 @@ nlohmann::json summary_of(const Replay& replay) {
           {"cells_deferred", c.cells_deferred}};
 }
 
+void check_files(const Options& o) {
+  std::vector<NamedFile> outputs = outputs_of(o.map);
+  outputs.push_back({"--line-costs", o.line_costs});
+  check_outputs(outputs,
+                {{"--scans", o.logs.scans}, {"--can", o.logs.can}, {"--poses", o.logs.poses}, {"--robot", o.robot}});
+}
+
 void run(const Options& o) {
+  check_files(o);
   Pace pace(parse_speed(o.speed, live_interface(o.logs.can).has_value()));
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
@@ -148,7 +159,10 @@ void run(const Options& o) {
 void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
   auto o = std::make_shared<Options>();
-  command->add_option("--scans", o->logs.scans, "scan lines: a CARMEN log, or a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE")->required();
+  command
+      ->add_option("--scans", o->logs.scans,
+                   "scan lines: a CARMEN log, or a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE")
+      ->required();
   command->add_option("--can", o->logs.can, "tilt frames: a candump log, or can:IFACE, a live interface");
   command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory");
   command->add_option("--robot", o->robot, "robot description")->required();
@@ -157,7 +171,8 @@ void add_replay(CLI::App& app) {
   command->add_option("--line-costs", o->line_costs, "CSV of each line's time and work");
   add_map_options(*command, o->map);
   command->footer(
-      "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded times:\n"
+      "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded "
+      "times:\n"
       "each frame is given the time that the recording's own CAN log has for it (NAME.candump beside NAME.carmen, or\n"
       "can.log), else that of its arrival after the first frame, which stands for the first scan line.\n"
       "Start replay first, then canplayer -I LOG IFACE=can0.");

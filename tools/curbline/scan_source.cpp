@@ -15,27 +15,25 @@ namespace {
 using port::Milliseconds, scanner::LiveScanner;
 
 std::atomic<bool> interrupted = false;
+struct sigaction before_interrupt {};
 
 void interrupt(int) {
   interrupted = true;
+  ::sigaction(SIGINT, &before_interrupt, nullptr);
 }
 
-/// Ctrl-C ends the scan while this lives; a second one is the system's.
+/// Ctrl-C ends the scan while this lives; a second one does what it did before.
 class InterruptWatch {
  public:
   InterruptWatch() {
     interrupted = false;
     struct sigaction action {};
     action.sa_handler = interrupt;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    ::sigaction(SIGINT, &action, &before_);
+    ::sigaction(SIGINT, &action, &before_interrupt);
   }
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
-  ~InterruptWatch() { ::sigaction(SIGINT, &before_, nullptr); }
-
- private:
-  struct sigaction before_ {};
+  ~InterruptWatch() { ::sigaction(SIGINT, &before_interrupt, nullptr); }
 };
 
 class LogSource final : public ScanSource {

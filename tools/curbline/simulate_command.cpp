@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "curbline/commands.hpp"
+#include "formats/decimals.hpp"
 #include "simulator/simulate.hpp"
 
 namespace curbline::tools {
@@ -29,8 +30,7 @@ void add_simulate(CLI::App& app) {
   command->callback([o] {
     const double duration_s = o->simulation.duration_s.value_or(1.0);
     if (!(duration_s > 0 && duration_s <= most_seconds)) {
-      throw CLI::ValidationError("--duration",
-                                 std::to_string(duration_s) + "; expected seconds above 0, at most a day");
+      throw CLI::ValidationError("--duration", shortest(duration_s) + "; expected seconds above 0, at most a day");
     }
     const SimulationSummary summary = simulate(find_scene(o->scene), o->robot, o->out, o->simulation);
     if (::isatty(STDERR_FILENO) == 0) return;

@@ -16,17 +16,29 @@ constexpr int first_silence_ms = 10'000, silence_ms = 2'000;
 
 class LogFrames final : public TiltFrames {
  public:
-  explicit LogFrames(const std::string& path) : log_(path) {}
+  LogFrames(const std::string& path, const can::Signal& signal) : log_(path), signal_(signal) {}
   std::optional<can::Frame> next(std::int64_t) override {
     auto frame = log_.next();
     ended_ = !frame;
+    if (frame && can::carries(signal_, *frame)) check_interface();
     return frame;
   }
   bool ended() const override { return ended_; }
   void fail_silent() const override { throw BadInput(log_.path() + ": no more frames"); }
 
  private:
+  /// Two servos of one id, each on a bus of its own, would be one that jumps.
+  void check_interface() {
+    if (interface_.empty()) interface_ = log_.interface_name();
+    if (interface_ == log_.interface_name()) return;
+    throw BadInput(
+        log_.path(), log_.line(),
+        "tilt frames of " + log_.interface_name() + " after those of " + interface_ + "; expected one interface");
+  }
+
   CanLogReader log_;
+  can::Signal signal_;
+  std::string interface_;
   bool ended_ = false;
 };
 
@@ -36,7 +48,8 @@ class LiveFrames final : public TiltFrames {
              const std::optional<std::string>& scan_log)
       : name_("can:" + interface_name), signal_(signal) {
     const std::array filters{socketcan::filter_of(signal), socketcan::Filter{sync_id.value_or(0), CAN_SFF_MASK, false}};
-    if (const auto status = bus_.open(interface_name.c_str(), std::span(filters).first(sync_id ? 2 : 1)); status != socketcan::Status::ok) {
+    if (const auto status = bus_.open(interface_name.c_str(), std::span(filters).first(sync_id ? 2 : 1));
+        status != socketcan::Status::ok) {
       throw BadInput(name_ + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
     }
     if (!scan_log) {
@@ -105,12 +118,13 @@ class LiveFrames final : public TiltFrames {
 
 }  // namespace
 
-std::unique_ptr<TiltFrames> log_frames(const std::string& path) {
-  return std::make_unique<LogFrames>(path);
+std::unique_ptr<TiltFrames> log_frames(const std::string& path, const can::Signal& signal) {
+  return std::make_unique<LogFrames>(path, signal);
 }
 
 std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const can::Signal& signal,
-                                        std::optional<std::uint16_t> sync_id, const std::optional<std::string>& scan_log) {
+                                        std::optional<std::uint16_t> sync_id,
+                                        const std::optional<std::string>& scan_log) {
   return std::make_unique<LiveFrames>(interface_name, signal, sync_id, scan_log);
 }
 

@@ -37,13 +37,15 @@ class TiltFrames {
   virtual std::string remarks() const { return {}; }
 };
 
-/// Reads a candump log.
-std::unique_ptr<TiltFrames> log_frames(const std::string& path);
+/// Reads a candump log. Its next() throws BadInput for a frame of the signal from a second interface.
+std::unique_ptr<TiltFrames> log_frames(const std::string& path, const can::Signal& signal);
 
-/// Frames of the signal, and SYNC frames if it waits for them, on a live interface. `scan_log` is where the recording's CAN log is looked for; beside a live scanner there is
-/// none, and frames keep the kernel's times. Throws BadInput if the interface cannot be opened.
+/// Frames of the signal, and SYNC frames if it waits for them, on a live interface. `scan_log` is where the recording's
+/// CAN log is looked for; beside a live scanner there is none, and frames keep the kernel's times. Throws BadInput if
+/// the interface cannot be opened.
 std::unique_ptr<TiltFrames> live_frames(const std::string& interface_name, const can::Signal& signal,
-                                        std::optional<std::uint16_t> sync_id, const std::optional<std::string>& scan_log);
+                                        std::optional<std::uint16_t> sync_id,
+                                        const std::optional<std::string>& scan_log);
 
 /// "vcan0" of "can:vcan0"; nothing if the text names a file.
 std::optional<std::string> live_interface(const std::string& can);

@@ -1,7 +1,9 @@
 #include "formats/atomic_file.hpp"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -17,6 +19,28 @@ std::string temporary_beside(const std::string& target) {
   return target + "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".part";
 }
 
+/// Names of what is not committed, for the handler of signals; null: none.
+std::array<std::atomic<const char*>, 16> uncommitted{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+/// In the first place that holds one name, puts another.
+void replace(const char* name, const char* by) {
+  for (auto& place : uncommitted) {
+    const char* expected = name;
+    if (place.compare_exchange_strong(expected, by)) return;
+  }
+}
+
+/// The signal is sent again for its own action, which follows when this returns. Not by SA_RESETHAND: a second one that
+/// comes before the first one's handler has begun would have its way at once.
+void remove_uncommitted(int signal) {
+  for (const auto& place : uncommitted) {
+    if (const char* const name = place) ::unlink(name);
+  }
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
 std::string reason() {
   return std::string(": cannot be written: ") + std::strerror(errno) + "; expected a file name in a folder to write to";
 }
@@ -29,15 +53,20 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
   if (fs::is_directory(status)) throw BadInput(path_ + ": cannot be written: it is a directory; expected a file name");
   if (fs::is_symlink(path, none) && fs::is_regular_file(status)) target_ = fs::canonical(path, none).string();
   if (!fs::exists(status) || fs::is_regular_file(status)) temporary_ = temporary_beside(target_);
+  if (!temporary_.empty()) replace(nullptr, temporary_.c_str());
   errno = 0;
   stream_.open(temporary_.empty() ? target_ : temporary_, std::ios::binary);
-  if (!stream_) throw BadInput(path_ + reason());
+  if (!stream_) {
+    replace(temporary_.c_str(), nullptr);
+    throw BadInput(path_ + reason());
+  }
 }
 
 AtomicFile::~AtomicFile() {
   stream_.close();
   std::error_code none;
   if (!temporary_.empty()) fs::remove(temporary_, none);
+  replace(temporary_.c_str(), nullptr);
 }
 
 void AtomicFile::commit() {
@@ -50,7 +79,19 @@ void AtomicFile::commit() {
   if (error)
     throw BadInput(path_ + ": cannot be written: " + error.message() +
                    "; expected a file name in a folder to write to");
+  replace(temporary_.c_str(), nullptr);
   temporary_.clear();
+}
+
+void remove_uncommitted_at_signals() {
+  struct sigaction remove {};
+  remove.sa_handler = remove_uncommitted;
+  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGXCPU}) {
+    struct sigaction before {};
+    ::sigaction(signal, &remove, &before);
+    if (before.sa_handler == SIG_IGN) ::sigaction(signal, &before, nullptr);
+  }
+  ::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace curbline::tools

@@ -30,4 +30,8 @@ class AtomicFile {
   std::ofstream stream_;
 };
 
+/// For main(): from now on what is not committed is removed as well when a signal ends the program, Ctrl-C or a closed
+/// pipe; and to write beyond the limit on a file's size is an error, not an end. Of 16 files at a time.
+void remove_uncommitted_at_signals();
+
 }  // namespace curbline::tools

@@ -12,10 +12,6 @@ std::optional<can::Frame> CanLogReader::next() {
     if (text->find_first_not_of(" \t") == std::string_view::npos || text->starts_with('#')) continue;
     const candump::ParsedLine parsed = candump::parse_line(*text);
     if (!parsed.ok()) source_.fail(std::string(parsed.error));
-    if (parsed.frame.time_ns < last_time_ns_) {
-      source_.fail("the time goes back; expected no less than that of the frame before");
-    }
-    last_time_ns_ = parsed.frame.time_ns;
     interface_name_ = parsed.interface_name;
     return parsed.frame;
   }

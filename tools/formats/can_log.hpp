@@ -1,8 +1,7 @@
-// CAN frames in a candump log (candump/candump.hpp says what a line looks like), in order of time.
+// CAN frames in a candump log (candump/candump.hpp says what a line looks like), in the log's order, whatever their
+// times.
 #pragma once
 
-#include <cstdint>
-#include <limits>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -17,7 +16,7 @@ class CanLogReader {
   explicit CanLogReader(const std::string& path) : source_(path) {}
 
   /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are passed over. Throws BadInput
-  /// for any other line that candump does not write, for a time before the last one, and for a file without a frame.
+  /// for any other line that candump does not write, and for a file without a frame.
   std::optional<can::Frame> next();
 
   const std::string& path() const { return source_.path(); }
@@ -27,7 +26,6 @@ class CanLogReader {
  private:
   LineReader source_;
   std::string interface_name_;
-  std::int64_t last_time_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 
 /// Writes one line. The frame must be one that a bus carries; times are cut to the microsecond, as candump has them.

@@ -8,6 +8,7 @@
 
 #include "formats/bad_input.hpp"
 #include "formats/dbc_scanner.hpp"
+#include "formats/line_reader.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -42,6 +43,7 @@ std::string read_text(const std::string& path) {
   }
   if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected a DBC file");
   if (text.size() > limit) throw BadInput(path + ": longer than 16 MiB; expected a DBC file");
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }
 

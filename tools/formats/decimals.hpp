@@ -22,6 +22,13 @@ inline std::string decimals(double value, int places) {
   return text;
 }
 
+/// As short as reads back the same, "1e+300": for messages.
+template <typename Number>
+std::string shortest(Number value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
 /// Nanoseconds >= 0 as seconds, 6 or 9 decimals; with 6 the rest is cut, so that times stay in order.
 inline std::string seconds(std::int64_t time_ns, int places) {
   std::string fraction = std::to_string(1'000'000'000 + time_ns % 1'000'000'000).substr(1);

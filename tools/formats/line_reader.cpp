@@ -38,6 +38,7 @@ std::optional<std::string_view> LineReader::next() {
 
 std::string_view LineReader::take(std::size_t length, std::size_t end_bytes) {
   std::string_view line(buffer_.data() + begin_, length);
+  if (line_ == 0 && line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
   if (line.ends_with('\r')) line.remove_suffix(1);
   begin_ += length + end_bytes;
   ++line_;

@@ -14,6 +14,8 @@
 
 namespace curbline::tools {
 
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  ///< of UTF-8, as spreadsheets begin with
+
 class LineReader {
  public:
   /// A scan line of 1081 ranges is 10 kB; what is longer than this is not the text it is taken for.
@@ -22,8 +24,8 @@ class LineReader {
   /// Throws BadInput if the file cannot be opened.
   explicit LineReader(std::string path, std::size_t max_line = default_max_line);
 
-  /// The next line without its end (LF or CR LF), valid until the next call; nothing at the end of the file. Throws
-  /// BadInput if the line is too long, the file empty or reading fails.
+  /// The next line without its end (LF or CR LF), the first without UTF-8's byte order mark; valid until the next call;
+  /// nothing at the end of the file. Throws BadInput if the line is too long, the file empty or reading fails.
   std::optional<std::string_view> next();
 
   /// Reads bytes that follow the last line, for formats with a text header. False if the file ends before.

@@ -8,12 +8,21 @@
 namespace curbline::tools {
 namespace {
 
+constexpr double furthest_m = 1e6;  ///< PoseTrack takes none beyond
+
+double read_position(Fields& fields, std::string_view name) {
+  const double metres = fields.number(name);
+  if (std::abs(metres) > furthest_m)
+    fields.fail(name, decimals(metres, 3), "metres within 1000 km, better 1 km, of the map's origin");
+  return metres;
+}
+
 TrajectoryPose parse_pose(Fields& fields) {
   TrajectoryPose pose;
   pose.time_ns = fields.time_ns("time");
-  pose.x_m = fields.number("tx");
-  pose.y_m = fields.number("ty");
-  pose.z_m = fields.number("tz");
+  pose.x_m = read_position(fields, "tx");
+  pose.y_m = read_position(fields, "ty");
+  pose.z_m = read_position(fields, "tz");
   pose.qx = fields.number("qx");
   pose.qy = fields.number("qy");
   pose.qz = fields.number("qz");

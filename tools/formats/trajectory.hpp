@@ -23,8 +23,8 @@ class TrajectoryReader {
   explicit TrajectoryReader(const std::string& path) : source_(path) {}
 
   /// The next pose; nothing at the end. Throws BadInput for a line that is cut or holds anything but numbers, for a
-  /// quaternion whose norm differs from 1 by more than 0.01 (within, it is normalised), for a time before the last one,
-  /// and for a file without a pose.
+  /// position beyond 1000 km, for a quaternion whose norm differs from 1 by more than 0.01 (within, it is normalised),
+  /// for a time before the last one, and for a file without a pose.
   std::optional<TrajectoryPose> next();
 
   const std::string& path() const { return source_.path(); }

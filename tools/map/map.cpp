@@ -19,4 +19,21 @@ const MapPlane* plane_of(const Map& map, int label) {
   return nullptr;
 }
 
+void move(Map& map, const Point3& by) {
+  map.grid.x0_m += by.x;
+  map.grid.y0_m += by.y;
+  for (MapCell& cell : map.cells) {
+    cell.x_m += by.x;
+    cell.y_m += by.y;
+    cell.height_m += by.z;
+  }
+  for (MapPlane& plane : map.planes) plane.z0_m += by.z - plane.sx * by.x - plane.sy * by.y;
+  for (MapCurb& curb : map.curbs) {
+    curb.x0_m += by.x;
+    curb.y0_m += by.y;
+    curb.x1_m += by.x;
+    curb.y1_m += by.y;
+  }
+}
+
 }  // namespace curbline::tools

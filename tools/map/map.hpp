@@ -9,6 +9,10 @@
 
 namespace curbline::tools {
 
+struct Point3 {
+  double x = 0, y = 0, z = 0;
+};
+
 /// The place of a grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
 struct Grid {
   double x0_m = 0, y0_m = 0;
@@ -63,8 +67,7 @@ struct Map {
 /// nullptr: the map has none of that label. O(planes).
 const MapPlane* plane_of(const Map& map, int label);
 
-struct Point3 {
-  double x = 0, y = 0, z = 0;
-};
+/// All of the map to another place.
+void move(Map& map, const Point3& by);
 
 }  // namespace curbline::tools

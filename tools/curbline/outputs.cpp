@@ -1,0 +1,37 @@
+#include "curbline/outputs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace curbline::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// By whatever names, links too. Devices and pipes may be written more than once.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code none;
+  if (a.empty() || b.empty()) return false;
+  if (!fs::exists(a, none) || !fs::exists(b, none)) {
+    return fs::weakly_canonical(fs::absolute(a, none), none) == fs::weakly_canonical(fs::absolute(b, none), none);
+  }
+  return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
+}
+
+void check_apart(const NamedFile& output, const NamedFile& other) {
+  if (same_file(output.path, other.path))
+    throw CLI::ValidationError(output.option, output.path + " is also " + other.option + "; expected another file");
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (output->path == "-")
+      throw CLI::ValidationError(output->option, "-; expected a file name: standard output is for --curbs alone");
+    for (const NamedFile& input : inputs) check_apart(*output, input);
+    for (auto before = outputs.begin(); before != output; ++before) check_apart(*output, *before);
+  }
+}
+
+}  // namespace curbline::tools

@@ -1,0 +1,17 @@
+// The files that a command is to write, before it reads any.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace curbline::tools {
+
+/// A file and the option that names it; an empty path: none.
+struct NamedFile {
+  std::string option, path;
+};
+
+/// Throws CLI::ValidationError unless each output is a name, and a file that is neither an input nor another output.
+void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
+
+}  // namespace curbline::tools
