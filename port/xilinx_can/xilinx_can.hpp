@@ -8,9 +8,9 @@
 //   const int n = bus.receive(frames, now_ns);
 //
 // Call receive() from the controller's interrupt, whose line is raised while a frame waits, and a few times a second
-// besides, which ends bus-off; or poll it. A frame's time is that which receive() was given, on the caller's clock. The
-// controller's own stamp is not used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full
-// bus at 1 Mbit/s.
+// besides, which ends bus-off; or poll it, faster than the servo reports: a frame's time is that which receive() was
+// given, on the caller's clock, and of frames of one time TiltTrack takes the first. The controller's own stamp is not
+// used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full bus at 1 Mbit/s.
 //
 // What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
 // set up anew after Settings::restart_after_ns). open() and self_test() wait for the controller, 100,000 reads of a
