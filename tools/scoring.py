@@ -1,5 +1,7 @@
 """What the scripts that score many scenes share."""
-import argparse, os, shutil, subprocess, sys
+import argparse, os, shutil, signal, subprocess, sys
+
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/streets | head` ends without a traceback
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CURBLINE = os.environ.get("CURBLINE", os.path.join(ROOT, "build", "bin", "curbline"))

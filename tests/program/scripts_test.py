@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The scripts that score many scenes refuse wrong usage before they begin: one line, exit status 2, nothing written."""
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -41,6 +42,15 @@ class Scripts(unittest.TestCase):
     def test_clouds_that_are_not_there(self):
         self.refuses("/nonexist", "paper", "/nonexist")
         self.refuses("/", "paper", "/")
+
+    def test_who_reads_no_more_gets_no_traceback(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = subprocess.Popen([sys.executable, os.path.join(TOOLS, "streets"), "1", "--out", folder], text=True,
+                                      env={**os.environ, "CURBLINE": sys.argv[1]}, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            script.stdout.close()
+            self.assertEqual(script.stderr.read(), "")
+            script.stderr.close()
+            self.assertEqual(script.wait(timeout=60), -signal.SIGPIPE)
 
 
 if __name__ == "__main__":
