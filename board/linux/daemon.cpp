@@ -268,6 +268,7 @@ Report Daemon::make_report() {
     tilt_counters_ = tilt_decoder_.counters();
     s.tilt = &tilt_watch_;
     s.tilt_frames = &tilt_counters_;
+    s.tilt_latency = &pipeline_->tilt_latency();
     s.latency = &latency_;
   }
   if (has_bus_) s.bus = &bus_;

@@ -35,6 +35,8 @@ void put_tilt(JsonLine& json, const Report& s) {
   put(json, "malformed", s.tilt_frames->malformed);
   put(json, "without_sync", s.tilt_frames->without_sync);
   put(json, "dropped", s.pipeline.tilt_dropped);
+  json.key("latency_offset_s").metres(s.tilt_latency->offset_s()).key("latency_sd_s").metres(s.tilt_latency->sd_s());
+  put(json, "latency_steps", s.tilt_latency->steps());
   json.close('}');
 }
 

@@ -10,6 +10,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/curb.hpp"
 #include "curbline/line_queue.hpp"
+#include "curbline/tilt_latency.hpp"
 #include "curbline/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "scanner_thread.hpp"
@@ -23,6 +24,7 @@ struct Report {
   double uptime_s = 0, scan_line_s = 0;
   const TiltWatch* tilt = nullptr;
   const can::TiltDecoderCounters* tilt_frames = nullptr;
+  const TiltLatency* tilt_latency = nullptr;
   const socketcan::SocketCan* bus = nullptr;
   const ScannerState* scanner = nullptr;
   LineQueueCounters lines{};

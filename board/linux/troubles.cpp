@@ -59,7 +59,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
     std::uint64_t count;
     std::string_view what;
   };
-  const std::array<Counted, 16> all{{
+  const std::array<Counted, 17> all{{
       {can.times_bus_off, "the CAN controller has left the bus (bus-off)"},
       {can.restarts, "the CAN controller is back on the bus"},
       {can.bus_errors, "errors on the CAN bus"},
@@ -70,6 +70,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {frames.malformed, "damaged tilt frames"},
       {frames.without_sync, "tilt frames whose SYNC was not seen"},
       {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
+      {s.tilt_latency == nullptr ? 0 : s.tilt_latency->steps(), "the tilt frames are late by another time"},
       {s.not_recorded, "tilt frames that the recording does not have"},
       {std::uint64_t{s.lines.dropped} + s.lines.too_long + s.lines.crowded,
        "scan lines came faster than they are taken"},

@@ -65,16 +65,18 @@ TEST_CASE("reports: the fullest status fits") {
   }
   Report status;
   const TiltWatch watch;
+  const TiltLatency latency;
   const can::TiltDecoderCounters frames{~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
   const auto bus = std::make_unique<socketcan::SocketCan>();
   const ScannerState scanner;
-  status.tilt = &watch, status.tilt_frames = &frames, status.bus = bus.get(), status.scanner = &scanner;
+  status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = bus.get(), status.scanner = &scanner;
   status.latency = status.work = &full;
   std::array<char, 32 << 10> buffer{};
   const auto line = status_line(status, buffer);
   CHECK(line.size() < buffer.size() / 2);
   const nlohmann::json read = nlohmann::json::parse(line);
   CHECK(read.at("status").at("tilt").at("frames") == ~0u);
+  CHECK(read.at("status").at("tilt").at("latency_steps") == 0);
   CHECK(read.at("status").at("microseconds").at("pipeline").at("below").size() == LatencyHistogram::buckets);
   CHECK(read.at("status").at("state") == "can_down");
 }
