@@ -8,12 +8,13 @@
 #include <optional>
 
 #include "curbline/line_queue.hpp"
+#include "robot/robot.hpp"
 
 namespace curbline::daemon {
 
 /// Room for the lines of a second and more, at any scanner's rate up to 64 Hz, of as many beams as any scanner here
 /// has.
-inline constexpr Limits inbox_limits{.beams = 2881};
+inline constexpr Limits inbox_limits{.beams = tools::most_beams};
 inline constexpr int inbox_lines = 64;
 
 class LineInbox {

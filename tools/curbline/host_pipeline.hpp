@@ -10,6 +10,7 @@
 #include "curbline/pipeline.hpp"
 #include "curbline/settings.hpp"
 #include "map/map.hpp"
+#include "robot/robot.hpp"
 
 namespace curbline::tools {
 
@@ -19,7 +20,7 @@ inline constexpr Limits board_limits{};
 inline constexpr Limits wide_limits{.rows = 128,
                                     .cols = 128,
                                     .planes = 64,
-                                    .beams = 2881,
+                                    .beams = most_beams,
                                     .tilt_samples = 1024,
                                     .poses = 256,
                                     .regions = 6000,
@@ -32,7 +33,7 @@ inline constexpr int margin_cells = 4;
 inline constexpr Limits largest_limits{.rows = most_cells + 2 * margin_cells,
                                        .cols = most_cells + 2 * margin_cells,
                                        .planes = 250,
-                                       .beams = 2881,
+                                       .beams = most_beams,
                                        .tilt_samples = 1024,
                                        .poses = 256,
                                        .regions = 88000,

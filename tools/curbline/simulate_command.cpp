@@ -5,14 +5,10 @@
 
 #include "curbline/commands.hpp"
 #include "formats/decimals.hpp"
+#include "simulator/scene.hpp"
 #include "simulator/simulate.hpp"
 
 namespace curbline::tools {
-namespace {
-
-constexpr double most_seconds = 86'400;
-
-}  // namespace
 
 void add_simulate(CLI::App& app) {
   struct Options {
@@ -29,7 +25,7 @@ void add_simulate(CLI::App& app) {
                       "seconds; without: one nod, or the whole way of a robot that drives");
   command->callback([o] {
     const double duration_s = o->simulation.duration_s.value_or(1.0);
-    if (!(duration_s > 0 && duration_s <= most_seconds)) {
+    if (!(duration_s > 0 && duration_s <= longest_s)) {
       throw CLI::ValidationError("--duration", shortest(duration_s) + "; expected seconds above 0, at most a day");
     }
     const SimulationSummary summary = simulate(find_scene(o->scene), o->robot, o->out, o->simulation);

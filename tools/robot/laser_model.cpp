@@ -7,7 +7,6 @@ namespace curbline::tools {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr int most_beams = 2881;  ///< that the host programs have room for
 
 struct LaserModel {
   const char* name;

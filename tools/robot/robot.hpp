@@ -12,6 +12,9 @@
 
 namespace curbline::tools {
 
+/// Of a laser: what the host programs have room for.
+inline constexpr int most_beams = 2881;
+
 /// What only the simulator needs to know of the robot's sensors.
 struct SimulatedErrors {
   double dropout = 0.0;                  ///< share of returns that are lost

@@ -13,7 +13,6 @@ namespace {
 constexpr double rad = std::numbers::pi / 180;
 constexpr Range any{-1e5, 1e5};  // metres, metres a second or degrees: beyond, it is a slip of the pen
 constexpr Range positive{1e-6, 1e5};
-constexpr double most_path_s = 86'400;  // as of a simulation
 
 struct Repeat {
   int count_x = 1, count_y = 1;
@@ -201,7 +200,7 @@ RobotPath read_path(TomlTable table) {
       table.refuse("attitude", "is \"" + attitude + "\"; expected level or terrain");
     }
     path.follows_terrain = attitude == "terrain";
-    if (const double whole_s = duration_s(path); whole_s > most_path_s) {
+    if (const double whole_s = duration_s(path); whole_s > longest_s) {
       table.refuse("path", "takes " + std::to_string(std::llround(whole_s)) + " s; expected a day at most");
     }
   } else {

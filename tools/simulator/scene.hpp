@@ -47,6 +47,8 @@ struct RobotPath {
   bool stands() const { return waypoints.size() == 1; }
 };
 
+inline constexpr double longest_s = 86'400;  ///< of a simulation
+
 /// To the next way point: a turn on the spot, then straight on.
 struct Leg {
   Point2 from, to;
