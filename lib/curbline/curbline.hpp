@@ -9,6 +9,7 @@
 #include "curbline/frames.hpp"           // map <- base <- tilt <- laser
 #include "curbline/scan_line.hpp"        // in: ranges
 #include "curbline/rising_times.hpp"     // what comes late, a clock that is set back
+#include "curbline/extrapolation.hpp"    // how angles and poses go on
 #include "curbline/tilt_track.hpp"       // in: servo angles
 #include "curbline/tilt_watch.hpp"       // whether the servo is alive
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/extrapolation.hpp"
 #include "curbline/frames.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/rising_times.hpp"
@@ -17,6 +18,7 @@ namespace curbline {
 /// Position of the base in the map frame and its attitude as a unit quaternion. float keeps 0.1 mm within 1 km of the
 /// map's origin: put it near the robot.
 struct Pose {
+  static constexpr float furthest_m = 1e6f;  ///< along each axis: beyond, float would not tell one cell from the next
   std::int64_t time_ns = 0;
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
   float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;
@@ -60,7 +62,7 @@ class PoseTrack {
 
 namespace detail {
 bool acceptable(const Pose& pose);
-/// Within 1000 km of it: further out float would not tell one cell from the next.
+/// Of the map: within Pose::furthest_m.
 bool near_origin(const Pose& pose);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 }  // namespace detail
@@ -89,21 +91,15 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
   return true;
 }
 
-/// Later than all poses, or earlier: goes on from the one at that end as the robot went, as one that is far enough from
-/// it tells, by half as long a time at least: what two poses a moment apart differ by is their error. Without one the
-/// nearest stands. `inward` is the way to the other end.
+/// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it
+/// stands. `inward` is the way to the other end.
 template <Limits limits>
 bool PoseTrack<limits>::beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const {
-  const auto apart = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };
-  const Pose& nearest = back(end);
-  const std::int64_t beyond_ns = apart(time_ns, nearest.time_ns);
-  if (beyond_ns > bound) return false;
-  out = nearest;
-  for (int age = end + inward; age >= 0 && age < size_; age += inward) {
-    if (2 * apart(back(age).time_ns, nearest.time_ns) < beyond_ns) continue;
-    out = detail::interpolate(back(inward > 0 ? age : end), back(inward > 0 ? end : age), time_ns);
-    break;
-  }
+  const std::int64_t end_ns = back(end).time_ns;
+  if (time_ns - end_ns > bound || end_ns - time_ns > bound) return false;
+  const int other = sample_for_rate(time_ns, end, inward, size_, [this](int age) { return back(age).time_ns; });
+  out = other < 0 ? back(end)
+                  : detail::interpolate(back(inward > 0 ? other : end), back(inward > 0 ? end : other), time_ns);
   return detail::near_origin(out);
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/extrapolation.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/rising_times.hpp"
@@ -42,6 +43,7 @@ class TiltSnapshot {
   friend class TiltTrack;
   TiltAngle find(std::int64_t time_ns);
   TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
+  static TiltAngle along(const TiltReading& a, const TiltReading& b, std::int64_t time_ns, TiltAngle::Source source);
   static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
@@ -160,38 +162,37 @@ TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   if (cursor_ == 0) return beyond(time_ns, 0, 1);
   if (cursor_ == size_) return beyond(time_ns, size_ - 1, -1);
   const TiltReading &a = reading(cursor_ - 1), &b = reading(cursor_);
-  const std::int64_t gap_ns = b.time_ns - a.time_ns;
-  if (gap_ns > max_gap_ns_) return alone(time_ns, a);
-  const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(gap_ns);
-  if (gap_ns <= INT32_MAX) {
+  if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, a);
+  const TiltAngle angle = along(a, b, time_ns, TiltAngle::Source::interpolated);
+  if (b.time_ns - a.time_ns <= INT32_MAX) {
     segment_from_ns_ = a.time_ns;
     segment_to_ns_ = b.time_ns;
     segment_angle_rad_ = a.angle_rad;
-    segment_rate_rad_s_ = rate_rad_s;
+    segment_rate_rad_s_ = angle.rate_rad_s;
   }
-  const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
-  return {TiltAngle::Source::interpolated, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+  return angle;
 }
 
-/// The angle at an end of the readings or beyond it, at their rate there: over half as long a time as it lies beyond,
-/// at least, since a frame that has waited on the bus is stamped just before the next, and what a stamp is off by would
-/// be carried on that many times. `inward` is the way to the other end.
+/// The angle at an end of the readings or beyond it, at their rate there. `inward` is the way to the other end.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward) const {
-  const TiltReading& nearest = reading(end);
-  const std::int64_t beyond_ns = inward > 0 ? nearest.time_ns - time_ns : time_ns - nearest.time_ns;
+  const std::int64_t end_ns = reading(end).time_ns;
+  const std::int64_t beyond_ns = inward > 0 ? end_ns - time_ns : time_ns - end_ns;
   if (beyond_ns > max_extrapolation_ns_) return {};
-  for (int k = end + inward; k >= 0 && k < size_; k += inward) {
-    const TiltReading &a = reading(inward > 0 ? end : k), &b = reading(inward > 0 ? k : end);
-    const std::int64_t base_ns = b.time_ns - a.time_ns;
-    if (base_ns > max_gap_ns_) break;
-    if (2 * base_ns < beyond_ns) continue;
-    const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(base_ns);
-    const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
-    return {beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
-            a.angle_rad + since_s * rate_rad_s, rate_rad_s};
-  }
-  return alone(time_ns, nearest);
+  const int other = sample_for_rate(time_ns, end, inward, size_, [this](int k) { return reading(k).time_ns; });
+  if (other < 0) return alone(time_ns, reading(end));
+  const TiltReading &a = reading(inward > 0 ? end : other), &b = reading(inward > 0 ? other : end);
+  if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, reading(end));
+  return along(a, b, time_ns, beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated);
+}
+
+/// On the line through two readings, a before b.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::along(const TiltReading& a, const TiltReading& b, std::int64_t time_ns,
+                                      TiltAngle::Source source) {
+  const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(b.time_ns - a.time_ns);
+  const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
+  return {source, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
 }
 
 /// Of one reading, or beside a gap too wide to say anything of the time between: good at its own moment only.

@@ -27,7 +27,7 @@ bool acceptable(const Pose& pose) {
 
 bool near_origin(const Pose& pose) {
   for (const float metres : {pose.x_m, pose.y_m, pose.z_m}) {
-    if (metres > 1e6f || metres < -1e6f) return false;
+    if (metres > Pose::furthest_m || metres < -Pose::furthest_m) return false;
   }
   return true;
 }

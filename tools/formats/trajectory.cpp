@@ -2,17 +2,16 @@
 
 #include <cmath>
 
+#include "curbline/pose_track.hpp"
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
 
 namespace curbline::tools {
 namespace {
 
-constexpr double furthest_m = 1e6;  ///< PoseTrack takes none beyond
-
 double read_position(Fields& fields, std::string_view name) {
   const double metres = fields.number(name);
-  if (std::abs(metres) > furthest_m)
+  if (std::abs(metres) > static_cast<double>(Pose::furthest_m))
     fields.fail(name, decimals(metres, 3), "metres within 1000 km, better 1 km, of the map's origin");
   return metres;
 }
