@@ -80,6 +80,7 @@ class TiltLatency {
   struct Sums {
     float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
     void add(const Sighting& seen);
+    void add(const Sums& other);
   };
 
   void turn_standing();
@@ -103,7 +104,7 @@ class TiltLatency {
   Known other_{};  ///< standing: of the last sweep of the other direction
 
   Sums seen_{};              ///< of the line in hand: what agrees with what is known ...
-  Sums possible_{};          ///< ... or would after a step
+  Sums stepped_{};           ///< ... and what would after a step alone
   Observation suspected_{};  ///< of the last line, if it disagreed
   int lines_suspected_ = 0;  ///< on end, that agree with each other
   std::uint32_t steps_ = 0;

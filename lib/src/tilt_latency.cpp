@@ -101,27 +101,40 @@ void TiltLatency::Sums::add(const Sighting& seen) {
   points += 1.0f;
 }
 
+void TiltLatency::Sums::add(const Sums& other) {
+  precision += other.precision;
+  mapped += other.mapped;
+  weighted += other.weighted;
+  growth += other.growth;
+  common_m2 += other.common_m2;
+  points += other.points;
+}
+
 /// What even a step does not explain is another surface: the face of a curb, somebody walking.
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + g * g * covariance_[now][now] -
                             2.0f * g * m * covariance_[now][earlier] + m * m * covariance_[earlier][earlier];
-  const float by_step_m2 = prior_variance_s2_ * square(known(earlier) ? g : g - m);
   const float above_m2 = square(seen.above_m);
-  if (above_m2 <= gate * variance_m2) seen_.add(seen);
-  if (above_m2 <= gate * (variance_m2 + by_step_m2)) possible_.add(seen);
+  if (above_m2 <= gate * variance_m2) {
+    seen_.add(seen);
+    return;
+  }
+  const float by_step_m2 = prior_variance_s2_ * square(known(earlier) ? g : g - m);
+  if (above_m2 <= gate * (variance_m2 + by_step_m2)) stepped_.add(seen);
 }
 
 TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
   Correction correction;
   const bool moves = square(tilt_rate_rad_s) > 0.0f;
   const bool agrees = moves && seen_.precision > 0.0f && update(observation(seen_, tilt_rate_rad_s), correction);
-  if (agrees && 2.0f * seen_.points >= possible_.points) {
+  if (agrees && seen_.points >= stepped_.points) {
     lines_suspected_ = 0;
-  } else if (moves && possible_.precision > 0.0f) {
-    suspect(observation(possible_, tilt_rate_rad_s));
+  } else {
+    seen_.add(stepped_);
+    if (moves && seen_.precision > 0.0f) suspect(observation(seen_, tilt_rate_rad_s));
   }
-  seen_ = possible_ = Sums{};
+  seen_ = stepped_ = Sums{};
   return correction;
 }
 
