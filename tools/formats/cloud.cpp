@@ -10,17 +10,13 @@
 
 #include "formats/fields.hpp"
 #include "formats/line_reader.hpp"
+#include "formats/lower_case.hpp"
 #include "formats/pcd.hpp"
 
 namespace curbline::tools {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "KITTI clouds are little-endian");
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// Which columns x, y and z stand in.
 struct Columns {
@@ -32,13 +28,14 @@ struct Columns {
 /// The axis that a column's name means, "X", "y_m", "//z": 0 to 2, or -1.
 int axis_of(std::string_view name) {
   const std::size_t start = std::min(name.find_first_not_of("/\""), name.size());
-  const std::string word = lower(std::string(name.substr(start)));
+  const std::string word = lower_case(std::string(name.substr(start)));
   if (word.empty() || word[0] < 'x' || word[0] > 'z') return -1;
   return word.size() == 1 || std::isalnum(static_cast<unsigned char>(word[1])) == 0 ? word[0] - 'x' : -1;
 }
 
 bool is_header(std::string_view line) {
-  const std::string start = lower(std::string(line.substr(std::min(line.find_first_not_of(" \t/\""), line.size()), 3)));
+  const std::string start =
+      lower_case(std::string(line.substr(std::min(line.find_first_not_of(" \t/\""), line.size()), 3)));
   return !start.empty() && std::isalpha(static_cast<unsigned char>(start[0])) != 0 && start != "nan" && start != "inf";
 }
 
@@ -110,7 +107,7 @@ std::vector<Point3> read_kitti(const std::string& path) {
 }  // namespace
 
 std::vector<Point3> read_cloud(const std::string& path) {
-  const std::string ending = lower(std::filesystem::path(path).extension().string());
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
   std::vector<Point3> points;
   if (ending == ".xyz" || ending == ".csv") {
     points = read_text(path);

@@ -22,7 +22,7 @@ inline std::string decimals(double value, int places) {
   return text;
 }
 
-/// As short as reads back the same, "1e+300": for messages.
+/// As short as reads back the same, "1e+300".
 template <typename Number>
 std::string shortest(Number value) {
   std::array<char, 32> text{};

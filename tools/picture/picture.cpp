@@ -2,7 +2,6 @@
 
 #include <cairo-svg.h>
 #include <cairo.h>
-#include <strings.h>
 
 #include <cstddef>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "formats/atomic_file.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/lower_case.hpp"
 #include "picture/page.hpp"
 
 namespace curbline::tools {
@@ -87,11 +87,9 @@ std::string svg(const Map& map, const PictureExtras& extras, const std::string& 
 }  // namespace
 
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras) {
-  const auto ends_with = [&](const char* ending) {
-    return path.size() >= 4 && ::strcasecmp(path.c_str() + path.size() - 4, ending) == 0;
-  };
-  const bool as_png = ends_with(".png");
-  if (!as_png && !ends_with(".svg")) {
+  const std::string name = lower_case(path);
+  const bool as_png = name.ends_with(".png");
+  if (!as_png && !name.ends_with(".svg")) {
     throw BadInput(path + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
   }
   AtomicFile file(path);

@@ -8,17 +8,12 @@
 #include <optional>
 
 #include "can/curb_frames.hpp"
+#include "formats/decimals.hpp"
 
 namespace curbline::tools {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-template <typename Number>
-std::string shortest(Number value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
 
 std::string hexadecimal(std::uint32_t id) {
   std::array<char, 8> text{};
