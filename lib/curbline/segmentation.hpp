@@ -10,6 +10,7 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/index_set.hpp"
 #include "curbline/region_graph.hpp"
 #include "curbline/settings.hpp"
 
@@ -37,20 +38,19 @@ class Segmentation {
     settings_ = settings;
     evidence_ = PlaneEvidence(prior);
     region_.fill(none);
-    mark_.fill(0);
+    dissolved_.clear();
   }
 
   /// A cell is about to leave the window: its region will be cut anew.
   void forget(int slot) {
     const auto s = static_cast<std::size_t>(slot);
-    if (region_[s] != none) mark_[region_[s]] = dissolved;
+    if (region_[s] != none) dissolved_.insert(region_[s]);
     region_[s] = none;
   }
 
   /// Working memory of one update(), for the mixture to read right after it.
   struct Work {
     RegionGraph<limits> graph;
-    std::array<typename RegionGraph<limits>::Index, Dem<limits>::capacity> node_of_name;  ///< of a leaf or region
     std::array<typename RegionGraph<limits>::Index, Dem<limits>::capacity> node_of_cell;
     std::array<Region, limits.regions> region_of_node;
   };
@@ -73,7 +73,6 @@ class Segmentation {
  private:
   using Node = typename RegionGraph<limits>::Index;
   static constexpr Node no_node = RegionGraph<limits>::none;
-  enum Mark : std::uint8_t { standing = 0, neighbour = 1, dissolved = 2 };
 
   void cut_touched_blocks(const Dem<limits>& dem);
   void dissolve_neighbours(const Dem<limits>& dem);
@@ -81,14 +80,14 @@ class Segmentation {
   void name_regions(const Dem<limits>& dem, Work& work);
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
   Region representative(std::size_t s) const {
-    return region_[s] == none || mark_[region_[s]] != standing ? leaf_[s] : region_[s];
+    return region_[s] == none || dissolved_.contains(region_[s]) ? leaf_[s] : region_[s];
   }
 
   SegmentationSettings settings_{};
   PlaneEvidence evidence_{};
   std::array<Region, Dem<limits>::capacity> leaf_{};  ///< slot of the first cell of a cell's leaf
   std::array<Region, Dem<limits>::capacity> region_{};
-  std::array<std::uint8_t, Dem<limits>::capacity> mark_{};  ///< of a region, under its name
+  IndexSet<Dem<limits>::capacity> dissolved_{};  ///< regions to be cut into leaves and merged anew, by name
 };
 
 template <Limits limits>
@@ -118,7 +117,7 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem) {
         const Cell& cell = dem.cell(slots[n]);
         cells[n] = {cell.height_m, cell.variance_m2(settings_.cell), cell.valid()};
         const auto s = static_cast<std::size_t>(slots[n]);
-        if (region_[s] != none) mark_[region_[s]] = dissolved;
+        if (region_[s] != none) dissolved_.insert(region_[s]);
       }
       const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
       for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -130,23 +129,24 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem) {
 
 template <Limits limits>
 void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
+  IndexSet<Dem<limits>::capacity> neighbours;
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
-    const std::size_t s = link.from, t = link.to;
-    const Region a = region_[s], b = region_[t];
+    const Region a = region_[link.from], b = region_[link.to];
     if (a == b || a == none || b == none) return;
-    if (mark_[a] == dissolved && mark_[b] == standing) mark_[b] = neighbour;
-    if (mark_[b] == dissolved && mark_[a] == standing) mark_[a] = neighbour;
+    if (dissolved_.contains(a)) neighbours.insert(b);
+    if (dissolved_.contains(b)) neighbours.insert(a);
   });
+  dissolved_.insert(neighbours);
 }
 
 template <Limits limits>
 void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const {
   RegionGraph<limits>& graph = work.graph;
   graph.clear();
-  work.node_of_name.fill(no_node);
+  work.node_of_cell.fill(no_node);
   Node last = no_node;
   dem.for_each_valid([&](int i, int j, int s) {
-    Node& node = work.node_of_name[representative(static_cast<std::size_t>(s))];
+    Node& node = work.node_of_cell[representative(static_cast<std::size_t>(s))];  // a cell that bears the name
     if (node == no_node) node = graph.add_node();
     if (node == no_node) {
       ++counters.regions_full;
@@ -171,7 +171,7 @@ void Segmentation<limits>::name_regions(const Dem<limits>& dem, Work& work) {
     if (region == none) region = static_cast<Region>(s);
     region_[s] = region;
   });
-  mark_.fill(standing);
+  dissolved_.clear();
 }
 
 }  // namespace curbline
