@@ -27,8 +27,7 @@
 
 namespace curbline {
 
-inline constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
-inline constexpr float least_ramp = 0.05f;      ///< 1 in 20: a way that rises by more is a ramp, ISO 21542
+inline constexpr float least_ramp = 0.05f;  ///< 1 in 20: a way that rises by more is a ramp, ISO 21542
 
 template <Limits limits>
 class Ground {

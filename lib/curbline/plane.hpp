@@ -8,6 +8,8 @@
 
 namespace curbline {
 
+inline constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
+
 /// Weighted moments of points (x, y, z), metres in the window's frame. 48 bytes.
 struct PlaneMoments {
   float points = 0.0f;                    ///< how many independent points they are worth
@@ -33,7 +35,8 @@ struct PlanePrior {
       0.5f;  ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
   float curvature_1_m = 0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre
 };
-// The precision of level and slopes is noise_m2 per noise variance: a standard deviation of 1 m and of 45 degrees.
+// As evidence the precision of level and slopes is noise_m2 per noise variance, a standard deviation of 1 m and of 45
+// degrees: faces and obstacles are regions too.
 
 struct Plane;
 
@@ -101,8 +104,9 @@ struct Plane {
   }
 };
 
-/// Posterior mean of the plane and mean square residual, not below what the points of a cell share of the expected
-/// noise: averaging over a cell does not help against that. `cells`: how many cells the moments span.
+/// Posterior mean of the plane, the slopes' standard deviation being that of the steepest ramp: what a row of cells
+/// leaves open is no steeper than ground is. And mean square residual, not below what the points of a cell share of the
+/// expected noise: averaging over a cell does not help against that. `cells`: how many cells the moments span.
 Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior);
 
 }  // namespace curbline

@@ -118,7 +118,8 @@ bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) cons
 }
 
 Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
-  const Slopes slopes = solve(m, prior.noise_m2);
+  const float ridge = prior.noise_m2 / (steepest_ramp * steepest_ramp);
+  const Slopes slopes = solve(m, ridge);
   // Positions weigh by points; one cell is one observation.
   const float per_cell = m.weight / cells / slopes.determinant;
   Plane plane;
@@ -131,9 +132,9 @@ Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   const float floor_m2 = prior.common_share * prior.noise_m2;
   plane.variance_m2 = plane.fit_variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
   plane.cells = cells;
-  plane.pxx = (m.yy + prior.noise_m2) * per_cell;
+  plane.pxx = (m.yy + ridge) * per_cell;
   plane.pxy = -m.xy * per_cell;
-  plane.pyy = (m.xx + prior.noise_m2) * per_cell;
+  plane.pyy = (m.xx + ridge) * per_cell;
   return plane;
 }
 

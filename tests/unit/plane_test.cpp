@@ -204,6 +204,16 @@ TEST_CASE("plane fit: no plane is known better than what the points of a cell sh
   CHECK(fit_plane(of_points(points), 100.0f, prior).variance_m2 == prior.common_share * prior.noise_m2);
 }
 
+TEST_CASE("plane fit: what a row of cells leaves open of its slope is no steeper than a ramp") {
+  Noise noise;
+  const auto points = test::sample({0, 0.01, 0, 1}, 0.01, 0.01, noise, [](double, double) { return 0.0; });
+  const Plane plane = fit_plane(of_points(points), static_cast<float>(points.size()), PlanePrior{});
+  const float beside_m = 0.1f;
+  CHECK(std::abs(plane.slope_x) < steepest_ramp);
+  CHECK(plane.rise_variance_m2(beside_m, 0.0f) < std::pow(1.1f * steepest_ramp * beside_m, 2.0f));
+  CHECK(plane.rise_variance_m2(beside_m, 0.0f) > std::pow(0.5f * steepest_ramp * beside_m, 2.0f));
+}
+
 TEST_CASE("plane fit: the height is best known at the centroid and worse the further away") {
   Noise noise;
   const auto points = test::sample({0, 2, 0, 1}, 0.1, 0.01, noise, [](double x, double) { return 0.1 * x; });
