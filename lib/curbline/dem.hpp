@@ -290,8 +290,8 @@ bool Dem<limits>::add(const Point& point) {
     return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
-  const float u = (point.x_m - origin_x_m()) / settings_.cell_x_m;
-  const float v = (point.y_m - origin_y_m()) / settings_.cell_y_m;
+  const float u = (point.x_m + point.shift_x_m - origin_x_m()) / settings_.cell_x_m;
+  const float v = (point.y_m + point.shift_y_m - origin_y_m()) / settings_.cell_y_m;
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
       !(v < static_cast<float>(settings_.cols)))
     return false;
@@ -300,8 +300,8 @@ bool Dem<limits>::add(const Point& point) {
   if (!cells_[s].valid()) meet_neighbours(i, j);
   if (mapped_before(static_cast<int>(s)) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   const float weight = prior_.noise_m2 / variance_m2;
-  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m,
-                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m, point.z_m, weight);
+  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
+                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
   add_growth(s, point.growth_m_s, weight);
   touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;

@@ -214,16 +214,12 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   return Status::ok;
 }
 
-/// The points that the line has where an earlier sweep has been, and this one not yet. Whether it has is asked at the
-/// neighbour: a point's own error in range moves it up or down and into the next cell or not, so that those just over a
-/// border would all be too low.
+/// The points that the line has where an earlier sweep has been, and this one not yet.
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
-  bool neighbour = false;
   for (const Point& p : line.points()) {
-    const int slot = p.z_m <= ceiling_m_ ? dem_.slot_at(p.x_m, p.y_m) : -1;
-    if (neighbour && slot >= 0 && dem_.cell(slot).valid()) compare_with_cell(p, slot);
-    neighbour = slot >= 0 && dem_.mapped_before(slot);
+    const int slot = p.z_m <= ceiling_m_ ? dem_.slot_at(p.x_m + p.shift_x_m, p.y_m + p.shift_y_m) : -1;
+    if (slot >= 0 && dem_.mapped_before(slot)) compare_with_cell(p, slot);
   }
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
@@ -238,7 +234,8 @@ void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
   if (dem_.several_surfaces(cell)) return;
   const Plane& plane = plane_mixture_.plane(label);
   const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
-  const int i = static_cast<int>(x / dem_.cell_x_m()), j = static_cast<int>(y / dem_.cell_y_m());
+  const int i = static_cast<int>((x + p.shift_x_m) / dem_.cell_x_m());
+  const int j = static_cast<int>((y + p.shift_y_m) / dem_.cell_y_m());
   const float dx = x - dem_.centroid_x_m(i, cell), dy = y - dem_.centroid_y_m(j, cell);
   const float rise = plane.slope_x * dx + plane.slope_y * dy;
   const float variance_m2 = p.variance_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);

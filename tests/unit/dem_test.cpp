@@ -222,6 +222,20 @@ TEST_CASE("dem: a point weighs the expected noise over its own plus the ground's
   CHECK(dem.cell(dem.slot(0, 8)).weight == Approx(prior.noise_m2 / (3e-4f + prior.texture_m2)));
 }
 
+TEST_CASE("dem: a point goes to the cell where the beams beside its own have it, and counts there where it lies") {
+  Map dem = make_map(moving());
+  Point point = at(0.11, 0.05, 0.3);
+  point.shift_x_m = -0.02f;
+  REQUIRE(dem.add(point));
+  CHECK_FALSE(dem.cell(dem.slot(1, 8)).valid());
+  const Cell& cell = dem.cell(dem.slot(0, 8));
+  REQUIRE(cell.valid());
+  CHECK(dem.centroid_x_m(0, cell) == Approx(0.11));
+  CHECK(cell.height_m == 0.3f);
+  point.shift_x_m = -0.12f;  // beyond the window
+  CHECK_FALSE(dem.add(point));
+}
+
 TEST_CASE("dem: points that share their errors are worth fewer independent ones") {
   Map dem = make_map(moving());
   for (int k = 0; k < 9; ++k) dem.add(at(0.05, 0.05, 0.01 * k));

@@ -147,6 +147,58 @@ TEST_CASE(
   CHECK(bench->counters.beams_without_tilt == 60);
 }
 
+TEST_CASE("line projection: a beam's point goes where the beams beside it have it, if they see the same surface") {
+  Settings s = base_settings();
+  s.tilt.fixed = true;
+  s.tilt.fixed_tilt_rad = 0.5f;
+  s.laser.range_sd_m = 0.01f;
+  const auto bench = std::make_unique<Bench>(s);
+  std::vector<float> ranges(361, 3.0f);
+  ranges[180] = 3.03f;                                                          // by chance
+  ranges[100] = 3.05f;                                                          // by more than chance: something else
+  for (int i = 250; i < 361; ++i) ranges[static_cast<std::size_t>(i)] = 3.05f;  // another surface
+  ranges[20] = std::numeric_limits<float>::quiet_NaN();
+  const auto points = bench->project(ranges);
+  REQUIRE(points.size() == 360);
+  const auto shift_m = [&](std::size_t beam) {
+    const Point& p = points[beam > 20 ? beam - 1 : beam];
+    const double along = std::hypot(p.shift_x_m, p.shift_y_m) / std::hypot(p.x_m, p.y_m) * 3.0;
+    return p.shift_x_m * p.x_m + p.shift_y_m * p.y_m < 0.0f ? -along : along;
+  };
+  CHECK(shift_m(180) == Approx(-0.03).margin(5e-4));
+  CHECK(shift_m(179) == Approx(0.015).margin(5e-4));
+  for (const std::size_t alone : {100u, 99u, 101u, 249u, 250u, 0u, 360u, 19u, 21u}) CHECK(shift_m(alone) == 0.0);
+}
+
+TEST_CASE("line projection: where the ground ceases to be seen the points of a cell are not all too high") {
+  // Straight ahead, 70 degrees down from 1.2 m: the ground is seen just beyond a cell's border, from where noise brings
+  // one point in a hundred into the cell before.
+  Settings s = base_settings();
+  s.laser.range_sd_m = 0.012f;
+  s.laser.bearing_step_rad = 1e-4f;
+  s.laser.first_bearing_rad = -0.018f;
+  s.tilt.T_base_tilt.z_m = 1.2f;
+  s.tilt.fixed = true;
+  s.tilt.fixed_tilt_rad = 1.22f;
+  const auto bench = std::make_unique<Bench>(s);
+  Noise noise(5);
+  const double seen_m = 1.2 / std::sin(1.22), border_m = seen_m * std::cos(1.22) - 0.006;
+  double own_m = 0.0, beside_m = 0.0;
+  int own = 0, beside = 0;
+  for (int line = 0; line < 200; ++line) {
+    std::vector<float> ranges(361);
+    for (float& r : ranges) r = static_cast<float>(seen_m + 0.012 * noise.normal());
+    for (const Point& p : bench->project(ranges)) {
+      if (p.x_m < border_m) own_m += p.z_m, ++own;
+      if (p.x_m + p.shift_x_m < border_m) beside_m += p.z_m, ++beside;
+    }
+  }
+  REQUIRE(own > 500);
+  REQUIRE(beside > 500);
+  CHECK(own_m / own > 0.015);
+  CHECK(std::abs(beside_m / beside) < 0.004);
+}
+
 TEST_CASE("line projection: NaN, infinity and readings out of range are no returns") {
   Settings s = base_settings();
   s.tilt.fixed = true;
