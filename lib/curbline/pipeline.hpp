@@ -57,7 +57,7 @@ class Pipeline {
   /// TiltSettings::max_extrapolation_s. Bounded by the limits.
   Status take(const ScanLine& line);
 
-  /// Beams to points, points to cells. About 150 operations a beam.
+  /// Beams to points, points to cells. About 170 operations a beam.
   Status observe(const ScanLine& line);
 
   /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells. The window follows.

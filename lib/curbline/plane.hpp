@@ -40,6 +40,13 @@ struct PlanePrior {
 
 struct Plane;
 
+/// What the neighbouring cells on both sides of the border between two regions show: means over their pairs, from a
+/// cell of the first region to that of the second.
+struct BorderRise {
+  float pairs = 0.0f;  ///< how many; 0: the regions lie apart, and nothing is known
+  float dx_m = 0.0f, dy_m = 0.0f, rise_m = 0.0f;
+};
+
 /// How well one plane explains points; what depends on the prior alone is computed once.
 class PlaneEvidence {
  public:
@@ -57,17 +64,20 @@ class PlaneEvidence {
   /// By how much the posterior of the partition rises, in nats, when two regions of which the scores are known become
   /// `both`. The prior keeps ground that is bent from falling apart into the planes that follow it; it takes no part
   /// where two planes are parted as bent ground is not, see parted().
-  float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b,
-             const PlaneMoments& both) const;
+  float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b, const PlaneMoments& both,
+             const BorderRise& border) const;
 
   /// Two planes that follow one bent surface meet between their centroids, at an angle that its curvature makes over
-  /// the distance between them. Parted are two of which one lies above the other at both centroids (a step), by three
-  /// standard deviations and by more than what the points of a place share of their noise (two standard deviations); or
-  /// which meet at an angle that is more by three standard deviations (a crease). About 200 operations.
-  bool parted(const PlaneMoments& a, const PlaneMoments& b) const;
+  /// the distance between them. Parted are two of which one lies above the other by more than what the points of a
+  /// place share of their noise (two standard deviations): at both centroids, by three standard deviations (a step); or
+  /// on the mean of both, and the ground rises as much more than either plane from cell to cell along their border, by
+  /// one standard deviation of that share and three of its own (a step between planes of different slope). Or which
+  /// meet at an angle that is more by three standard deviations (a crease). About 250 operations.
+  bool parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const;
 
  private:
-  bool step_between(const Plane& first, const Plane& second) const;
+  bool step_between(const Plane& first, const Plane& second, const BorderRise& border) const;
+  bool rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const;
   bool crease_between(const Plane& first, const Plane& second) const;
   float log_gamma_of(float cells) const {
     const auto n = static_cast<unsigned>(cells);

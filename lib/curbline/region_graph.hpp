@@ -23,7 +23,12 @@ class RegionGraph {
   using Index = std::conditional_t<(limits.regions < 65535 && limits.links < 32767), std::uint16_t, std::uint32_t>;
   static constexpr Index none = static_cast<Index>(-1);
 
-  void clear() { nodes_ = links_ = 0; }
+  /// Empties it; the sides of a cell.
+  void clear(float cell_x_m, float cell_y_m) {
+    nodes_ = links_ = 0;
+    cell_x_m_ = cell_x_m;
+    cell_y_m_ = cell_y_m;
+  }
   int nodes() const { return nodes_; }
 
   /// A new node without points, or `none` if the store is full.
@@ -31,8 +36,13 @@ class RegionGraph {
   PlaneMoments& moments(Index node) { return node_[node].moments; }
   const PlaneMoments& moments(Index node) const { return node_[node].moments; }
 
-  /// Joins two nodes, once; false if the store is full. Cost: the links that `b` has.
-  bool link(Index a, Index b);
+  /// Joins two nodes, once. Returns the end of their link that leaves from `a`, `none` if the store is full. Cost: the
+  /// links that `b` has.
+  Index link(Index a, Index b);
+
+  /// A pair of cells side by side: one of the node that the end leaves from, the other next to it along +x (axis 0) or
+  /// +y (1) and higher by rise_m. What is more than 6 cm counts as that, and as many as 127 pairs tell enough.
+  void add_pair(Index end, int axis, float rise_m);
 
   /// Merges until no gain is >= 0. Returns how many evidences it computed: nodes + links, and at most the degrees of
   /// merged nodes, a few each as a rule. Cost of each: a PlaneEvidence and a heap move.
@@ -59,15 +69,38 @@ class RegionGraph {
   struct Link {
     float gain;
     Index place;  ///< in the heap
-    bool stale;   ///< a node has grown since
+    // Sums over its pairs of cells, from the node that its odd end leaves from to that of its even one.
+    std::int16_t rise;             ///< in 1 / rise_scale m
+    std::int8_t along_x, along_y;  ///< cells
+    std::uint8_t pairs;
+    bool stale;  ///< a node has grown since
+
+    /// Takes in another link's, or the other way round, as long as they fit.
+    void add_pairs(const Link& other, int sign) {
+      if (pairs + other.pairs > most_pairs) return;
+      pairs = static_cast<std::uint8_t>(pairs + other.pairs);
+      rise = static_cast<std::int16_t>(rise + sign * other.rise);
+      along_x = static_cast<std::int8_t>(along_x + sign * other.along_x);
+      along_y = static_cast<std::int8_t>(along_y + sign * other.along_y);
+    }
   };
+  static constexpr int most_pairs = 127;
+  static constexpr float rise_scale = 2000.0f;
 
   float gain(Index link, const PlaneEvidence& evidence) const {
     const Node& a = node_[end_[2 * link].target];
     const Node& b = node_[end_[2 * link + 1].target];
     PlaneMoments both = a.moments;
     both.add(b.moments);
-    return evidence.gain(a.moments, a.score, b.moments, b.score, both);
+    return evidence.gain(a.moments, a.score, b.moments, b.score, both, border(link_[link]));
+  }
+  BorderRise border(const Link& link) const {
+    if (link.pairs == 0) return {};
+    const auto pairs = static_cast<float>(link.pairs);
+    const float share = 1.0f / pairs;
+    return {pairs, static_cast<float>(link.along_x) * share * cell_x_m_,
+            static_cast<float>(link.along_y) * share * cell_y_m_,
+            static_cast<float>(link.rise) * share * (1.0f / rise_scale)};
   }
   int refresh_all(const PlaneEvidence& evidence);
   void build_heap() {
@@ -93,6 +126,7 @@ class RegionGraph {
   int nodes_ = 0;
   int links_ = 0;
   std::size_t heap_size_ = 0;
+  float cell_x_m_ = 0.0f, cell_y_m_ = 0.0f;
 };
 
 template <Limits limits>
@@ -132,22 +166,34 @@ void RegionGraph<limits>::remove(Index node, Index end) {
 }
 
 template <Limits limits>
-bool RegionGraph<limits>::link(Index a, Index b) {
+auto RegionGraph<limits>::link(Index a, Index b) -> Index {
   if (const Index first = node_[b].first; first != none) {
     Index end = first;
     do {
-      if (end_[end].target == a) return true;
+      if (end_[end].target == a) return static_cast<Index>(end ^ 1u);
       end = end_[end].next;
     } while (end != first);
   }
-  if (links_ == limits.links) return false;
+  if (links_ == limits.links) return none;
   const auto l = static_cast<Index>(links_++);
   const auto from_a = static_cast<Index>(2 * l), from_b = static_cast<Index>(2 * l + 1);
+  link_[l] = Link{};
   end_[from_a].target = b;
   end_[from_b].target = a;
   insert(a, from_a);
   insert(b, from_b);
-  return true;
+  return from_a;
+}
+
+template <Limits limits>
+void RegionGraph<limits>::add_pair(Index end, int axis, float rise_m) {
+  constexpr float most = 127.0f;  // of one pair: 127 of them fit 16 bits
+  const float scaled = rise_m * rise_scale;
+  Link pair{};
+  pair.pairs = 1;
+  pair.rise = static_cast<std::int16_t>(round_to_int(scaled > most ? most : scaled < -most ? -most : scaled));
+  (axis == 0 ? pair.along_x : pair.along_y) = 1;
+  link_[end / 2].add_pairs(pair, end % 2 == 0 ? -1 : 1);
 }
 
 template <Limits limits>
@@ -213,7 +259,8 @@ void RegionGraph<limits>::merge_ends(Index link) {
   } while (end != first);
 }
 
-/// b becomes part of a: its links leave from a; a second link to the same neighbour and the one between a and b go.
+/// b becomes part of a: its links leave from a; of a second link to the same neighbour
+/// its pairs stay; the one between a and b goes.
 template <Limits limits>
 void RegionGraph<limits>::absorb(Index a, Index b) {
   node_[a].moments.add(node_[b].moments);
@@ -231,6 +278,7 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
     const Index target = end_[end].target;
     remove(b, end);
     if (target == a || seen_[target] != none) {
+      if (target != a) link_[seen_[target] / 2].add_pairs(link_[end / 2], (end ^ seen_[target]) % 2 == 0 ? 1 : -1);
       remove(target, other);
       heap_remove(link_[end / 2].place);
     } else {

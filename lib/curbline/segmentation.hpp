@@ -142,7 +142,7 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
 template <Limits limits>
 void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const {
   RegionGraph<limits>& graph = work.graph;
-  graph.clear();
+  graph.clear(dem.cell_x_m(), dem.cell_y_m());
   work.node_of_cell.fill(no_node);
   Node last = no_node;
   dem.for_each_valid([&](int i, int j, int s) {
@@ -157,7 +157,15 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Count
   });
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
-    if (a != b && !graph.link(a, b)) ++counters.links_full;
+    if (a == b) return;
+    const Node end = graph.link(a, b);
+    if (end == no_node) {
+      ++counters.links_full;
+    } else if (link.distance == 1) {
+      const Cell& from = dem.cell(static_cast<int>(link.from));
+      const Cell& to = dem.cell(static_cast<int>(link.to));
+      graph.add_pair(end, link.axis, to.height_m - from.height_m);
+    }
   });
 }
 

@@ -81,29 +81,46 @@ float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
 }
 
 float PlaneEvidence::gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b,
-                          const PlaneMoments& both) const {
+                          const PlaneMoments& both, const BorderRise& border) const {
   const float gain = score(both) - score_a - score_b;
   if (gain < 0.0f) return gain;
   const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
-  return by_evidence < 0.0f && parted(a, b) ? by_evidence : gain;
+  return by_evidence < 0.0f && parted(a, b, border) ? by_evidence : gain;
 }
 
-bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b) const {
+bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const {
   const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
-  return step_between(first, second) || crease_between(first, second);
+  return step_between(first, second, border) || crease_between(first, second);
 }
 
-bool PlaneEvidence::step_between(const Plane& first, const Plane& second) const {
+bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const BorderRise& border) const {
+  const float share_m2 = prior_.common_share * prior_.noise_m2;
   const auto above_m = [&](const Plane& at) {
     return second.height_m(at.x_m, at.y_m) - first.height_m(at.x_m, at.y_m);
   };
   const auto apart = [&](const Plane& at, float step_m) {
     const float square_m2 = step_m * step_m;
     return square_m2 > 9.0f * (first.height_variance_m2(at.x_m, at.y_m) + second.height_variance_m2(at.x_m, at.y_m)) &&
-           square_m2 > 4.0f * prior_.common_share * prior_.noise_m2;
+           square_m2 > 4.0f * share_m2;
   };
   const float at_first_m = above_m(first), at_second_m = above_m(second);
-  return at_first_m * at_second_m > 0.0f && apart(first, at_first_m) && apart(second, at_second_m);
+  if (at_first_m * at_second_m > 0.0f && apart(first, at_first_m) && apart(second, at_second_m)) return true;
+  const float mean_m = 0.5f * (at_first_m + at_second_m);
+  return mean_m * mean_m > 4.0f * share_m2 && rises(first, second, border, mean_m);
+}
+
+/// Does the ground jump along the border, up if `toward` is above 0, else down? Where it is one bent surface it rises
+/// there by the mean of both planes' slopes.
+bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const {
+  if (!(border.pairs > 0.0f)) return false;
+  const float share_m2 = prior_.common_share * prior_.noise_m2;
+  const float slope_x = 0.5f * (first.slope_x + second.slope_x), slope_y = 0.5f * (first.slope_y + second.slope_y);
+  const float jump_m = border.rise_m - slope_x * border.dx_m - slope_y * border.dy_m;
+  const float variance_m2 =
+      2.0f * share_m2 / border.pairs +
+      0.25f * (first.rise_variance_m2(border.dx_m, border.dy_m) + second.rise_variance_m2(border.dx_m, border.dy_m));
+  const float square_m2 = jump_m * jump_m;
+  return jump_m * toward > 0.0f && square_m2 > share_m2 && square_m2 > 9.0f * variance_m2;
 }
 
 /// The angle, across the line along which they meet, and what is known of it; all times its own square.

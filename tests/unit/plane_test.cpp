@@ -151,7 +151,7 @@ TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, groun
     const PlaneMoments second = of_points(test::sample({2, 4, 0, 4}, 0.1, 0.007, noise, height_m));
     PlaneMoments both = first;
     both.add(second);
-    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both);
+    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both, {});
   };
   const auto kerb = [](double height_m) {
     return [=](double x, double) { return 0.02 * x + (x < 2.0 ? 0.0 : height_m); };
@@ -161,6 +161,27 @@ TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, groun
   CHECK(gain(kerb(0.025)) < 0.0f);
   CHECK(gain(kerb(-0.025)) < 0.0f);
   CHECK(gain([](double x, double) { return 0.01 * (x - 2.0) * (x - 2.0); }) > 0.0f);
+}
+
+//                    __--
+//  ________________|--   2.5 cm, of which the planes show 3 mm at the one middle: the border tells
+TEST_CASE("plane evidence: a low kerb between planes of different slope parts them, if the ground jumps along it") {
+  Noise noise;
+  const PlaneEvidence evidence;
+  const auto height_m = [](double x, double) { return x < 2.0 ? 0.0 : 0.025 + 0.022 * (x - 2.0); };
+  const PlaneMoments first = of_points(test::sample({0, 2, 0, 4}, 0.1, 0.007, noise, height_m));
+  const PlaneMoments second = of_points(test::sample({2, 4, 0, 4}, 0.1, 0.007, noise, height_m));
+  const auto parted = [&](float pairs, float rise_m) {
+    const BorderRise border{pairs, 0.1f, 0.0f, rise_m}, back{pairs, -0.1f, 0.0f, -rise_m};
+    CHECK(evidence.parted(first, second, border) == evidence.parted(second, first, back));
+    return evidence.parted(first, second, border);
+  };
+  CHECK_FALSE(parted(0.0f, 0.0f));
+  CHECK(parted(40.0f, 0.0125f));         // as many cells hold points of both sides as not
+  CHECK_FALSE(parted(40.0f, 0.0011f));   // bent ground
+  CHECK_FALSE(parted(40.0f, -0.0125f));  // a step the other way
+  CHECK_FALSE(parted(40.0f, 0.006f));    // no more than the cells of a scan line share
+  CHECK_FALSE(parted(4.0f, 0.0125f));    // too few to tell
 }
 
 //        _______________                          __-------__
@@ -174,7 +195,7 @@ TEST_CASE("plane evidence: a crease parts two planes, ground that bends over the
     const PlaneMoments above = of_points(test::sample({0.3, 0.7, 0, 2.0}, 0.1, 0.012, noise, height_m));
     PlaneMoments both = face;
     both.add(above);
-    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both);
+    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, {});
   };
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.35 * x : 0.105 + 0.07 * (x - 0.3); }) < 0.0f);
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.07 * x : 0.021 - 0.20 * (x - 0.3); }) < 0.0f);

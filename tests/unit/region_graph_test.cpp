@@ -43,10 +43,10 @@ Graph::Index add(Graph& graph, const PlaneMoments& moments) {
 TEST_CASE("region graph: two halves of a plane merge, two sides of a step do not") {
   const auto graph = std::make_unique<Graph>();
   test::Noise noise;
-  graph->clear();
+  graph->clear(0.1f, 0.1f);
   const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
   const auto c = add(*graph, leaf(0.8, 0.0, 0.12, noise)), d = add(*graph, leaf(1.2, 0.0, 0.12, noise));
-  for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, d}}) REQUIRE(graph->link(from, to));
+  for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, d}}) REQUIRE(graph->link(from, to) != Graph::none);
   graph->merge(PlaneEvidence{});
   CHECK(graph->root(a) == graph->root(b));
   CHECK(graph->root(c) == graph->root(d));
@@ -80,13 +80,55 @@ TEST_CASE("region graph: a second link between two nodes takes no place, whichev
   constexpr Limits two{.regions = 8, .links = 2};
   const auto graph = std::make_unique<RegionGraph<two>>();
   const auto a = graph->add_node(), b = graph->add_node(), c = graph->add_node(), d = graph->add_node();
-  CHECK(graph->link(a, b));
-  CHECK(graph->link(a, b));
-  CHECK(graph->link(b, a));
-  CHECK(graph->link(b, c));
-  CHECK(graph->link(c, b));
-  CHECK_FALSE(graph->link(c, d));  // the store is full
-  CHECK(graph->link(a, b));        // but known links are still known
+  const auto from_a = graph->link(a, b), from_b = graph->link(b, c);
+  REQUIRE(from_a != graph->none);
+  REQUIRE(from_b != graph->none);
+  CHECK(graph->link(a, b) == from_a);
+  CHECK(graph->link(b, a) == (from_a ^ 1));  // the other end
+  CHECK(graph->link(c, b) == (from_b ^ 1));
+  CHECK(graph->link(c, d) == graph->none);  // the store is full
+  CHECK(graph->link(a, b) == from_a);       // but known links are still known
+}
+
+//   road  | pavement, from 3 mm above the road's plane to 7 cm: neither plane, but the cells along the border tell the
+//  _______|----------  kerb. Half of the border is seen on either half of the pavement.
+TEST_CASE(
+    "region graph: what pairs of cells show of a border is kept when regions merge, whichever way it was linked") {
+  test::Noise noise;
+  const auto patch = [&](double x0, double x1, double y0, double y1) {
+    PlaneMoments all;
+    const auto height_m = [](double x, double) { return x < 2.0 ? 0.0 : 0.025 + 0.022 * (x - 2.0); };
+    for (const Point& p : test::sample({x0, x1, y0, y1}, 0.1, 0.007, noise, height_m)) {
+      PlaneMoments m;
+      m.points = m.cells = m.weight = 1.0f;
+      m.x = p.x_m, m.y = p.y_m, m.z = p.z_m;
+      all.add(m);
+    }
+    return all;
+  };
+  const PlaneMoments road = patch(0, 2, 0, 4), right = patch(2, 4, 0, 2), left = patch(2, 4, 2, 4);
+  const auto merges = [&](bool road_first, int pairs, float rise_m) {
+    const auto graph = std::make_unique<Graph>();
+    graph->clear(0.1f, 0.1f);
+    const auto p = add(*graph, right), r = add(*graph, road), q = add(*graph, left);
+    REQUIRE(graph->link(p, q) != Graph::none);
+    const auto to_p = graph->link(r, p), to_q = road_first ? graph->link(r, q) : graph->link(q, r);
+    for (int k = 0; k < pairs; ++k) {
+      graph->add_pair(to_p, 0, rise_m);
+      graph->add_pair(road_first ? to_q : static_cast<Graph::Index>(to_q ^ 1u), 0, rise_m);
+    }
+    graph->merge(PlaneEvidence{});
+    CHECK(graph->root(p) == graph->root(q));
+    return graph->root(r) == graph->root(p);
+  };
+  for (const bool road_first : {true, false}) {
+    CHECK(merges(road_first, 0, 0.0f));     // nothing is known of the border
+    CHECK(merges(road_first, 20, 0.001f));  // the ground does not jump there
+    CHECK(merges(road_first, 20, -0.02f));  // it jumps, but not as the planes do
+    CHECK_FALSE(merges(road_first, 20, 0.02f));
+    CHECK_FALSE(merges(road_first, 4, 0.02f));  // eight pairs together tell what four do not
+    CHECK(merges(road_first, 1, 0.02f));        // two do not
+  }
 }
 
 TEST_CASE("region graph: a full store refuses nodes") {
@@ -95,7 +137,7 @@ TEST_CASE("region graph: a full store refuses nodes") {
   for (int k = 0; k < 3; ++k) CHECK(graph->add_node() == k);
   CHECK(graph->add_node() == RegionGraph<three>::none);
   CHECK(graph->nodes() == 3);
-  graph->clear();
+  graph->clear(0.1f, 0.1f);
   CHECK(graph->nodes() == 0);
   CHECK(graph->add_node() == 0);
 }
@@ -104,7 +146,7 @@ TEST_CASE("region graph: a full store refuses nodes") {
 /// given.
 std::vector<int> partition_of_street(std::uint32_t link_order) {
   static const auto graph = std::make_unique<Graph>();
-  graph->clear();
+  graph->clear(0.1f, 0.1f);
   test::Noise noise(5);
   std::vector<Graph::Index> nodes;
   for (int i = 0; i < 8; ++i) {
@@ -126,7 +168,7 @@ std::vector<int> partition_of_street(std::uint32_t link_order) {
     if (engine() % 2 == 0) std::swap(links[k - 1].first, links[k - 1].second);
   }
   for (const auto& [a, b] : links)
-    REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]));
+    REQUIRE(graph->link(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]) != Graph::none);
   graph->merge(PlaneEvidence{});
   std::vector<int> first_of_root(64, -1), partition;
   for (int k = 0; k < 64; ++k) {
@@ -193,7 +235,7 @@ float gain(const PlaneMoments& a, const PlaneMoments& b) {
   const PlaneEvidence evidence;
   PlaneMoments both = a;
   both.add(b);
-  return evidence.gain(a, evidence.score(a), b, evidence.score(b), both);
+  return evidence.gain(a, evidence.score(a), b, evidence.score(b), both, {});
 }
 
 /// What merge() must come to: all gains anew for every merge, the best one taken. Numbers of the blocks.
