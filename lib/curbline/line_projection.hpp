@@ -59,7 +59,12 @@ class LineProjection {
   bool returned(float range_m) const {
     return range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
-  float beside_m(std::span<const float> ranges_m, std::size_t beam) const;
+  /// How much farther than a beam the two beside it see, on the mean, as long as all three see one surface, agreeing
+  /// with each other within three standard deviations; else 0. What did not return does not agree.
+  static float beside_m(float before_m, float own_m, float after_m, float three_sd_m2) {
+    const float apart = after_m - before_m, off = 0.5f * (before_m + after_m) - own_m;
+    return apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2 ? off : 0.0f;
+  }
   TiltAngle tilt_at(std::int64_t time_ns, TiltSnapshot<limits>& tilt) const;
   float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt,
                            const Eigen::Vector3f& p_base, float tilt_rate) const;
@@ -101,6 +106,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     return rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(axis));
   };
   const Eigen::Vector3f x_axis = gradient(0), y_axis = gradient(1), up_axis = gradient(2);
+  const float three_sd_m2 = 9.0f * laser_.range_sd_m * laser_.range_sd_m;
   NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
     const float range = line.ranges_m[i];
@@ -130,23 +136,11 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
     const float variance_m2 =
         height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
-    const float beside = beside_m(line.ranges_m, i) - range;
+    const bool within = i > 0 && i + 1 < beams;
+    const float beside = within ? beside_m(line.ranges_m[i - 1], range, line.ranges_m[i + 1], three_sd_m2) : 0.0f;
     out.add({p_map.x(), p_map.y(), p_map.z(), variance_m2, by_tilt * angle.rate_rad_s, beside * dot(x_axis, along),
              beside * dot(y_axis, along)});
   }
-}
-
-/// The range that the beams on both sides tell of a beam's: their mean, as long as all three see one surface, agreeing
-/// with each other within three standard deviations; else its own.
-template <Limits limits>
-float LineProjection<limits>::beside_m(std::span<const float> ranges_m, std::size_t beam) const {
-  const float own = ranges_m[beam];
-  if (beam == 0 || beam + 1 == ranges_m.size()) return own;
-  const float before = ranges_m[beam - 1], after = ranges_m[beam + 1];
-  if (!returned(before) || !returned(after)) return own;
-  const float apart = after - before, mean = 0.5f * (before + after), off = mean - own;
-  const float three_sd_m2 = 9.0f * laser_.range_sd_m * laser_.range_sd_m;
-  return apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2 ? mean : own;
 }
 
 template <Limits limits>

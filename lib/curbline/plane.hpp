@@ -63,9 +63,15 @@ class PlaneEvidence {
 
   /// By how much the posterior of the partition rises, in nats, when two regions of which the scores are known become
   /// `both`. The prior keeps ground that is bent from falling apart into the planes that follow it; it takes no part
-  /// where two planes are parted as bent ground is not, see parted().
+  /// where two planes are parted as bent ground is not, see parted(), which wants border_of(), a BorderRise.
+  template <typename BorderOf>
   float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b, const PlaneMoments& both,
-             const BorderRise& border) const;
+             BorderOf&& border_of) const {
+    const float gain = score(both) - score_a - score_b;
+    if (gain < 0.0f) return gain;
+    const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
+    return by_evidence < 0.0f && parted(a, b, border_of()) ? by_evidence : gain;
+  }
 
   /// Two planes that follow one bent surface meet between their centroids, at an angle that its curvature makes over
   /// the distance between them. Parted are two of which one lies above the other by more than what the points of a

@@ -92,7 +92,7 @@ class RegionGraph {
     const Node& b = node_[end_[2 * link + 1].target];
     PlaneMoments both = a.moments;
     both.add(b.moments);
-    return evidence.gain(a.moments, a.score, b.moments, b.score, both, border(link_[link]));
+    return evidence.gain(a.moments, a.score, b.moments, b.score, both, [&] { return border(link_[link]); });
   }
   BorderRise border(const Link& link) const {
     if (link.pairs == 0) return {};
@@ -188,12 +188,15 @@ auto RegionGraph<limits>::link(Index a, Index b) -> Index {
 template <Limits limits>
 void RegionGraph<limits>::add_pair(Index end, int axis, float rise_m) {
   constexpr float most = 127.0f;  // of one pair: 127 of them fit 16 bits
+  Link& link = link_[end / 2];
+  if (link.pairs == most_pairs) return;
+  const int sign = end % 2 == 0 ? -1 : 1;
   const float scaled = rise_m * rise_scale;
-  Link pair{};
-  pair.pairs = 1;
-  pair.rise = static_cast<std::int16_t>(round_to_int(scaled > most ? most : scaled < -most ? -most : scaled));
-  (axis == 0 ? pair.along_x : pair.along_y) = 1;
-  link_[end / 2].add_pairs(pair, end % 2 == 0 ? -1 : 1);
+  const std::int32_t rise = round_to_int(scaled > most ? most : scaled < -most ? -most : scaled);
+  ++link.pairs;
+  link.rise = static_cast<std::int16_t>(link.rise + sign * rise);
+  std::int8_t& along = axis == 0 ? link.along_x : link.along_y;
+  along = static_cast<std::int8_t>(along + sign);
 }
 
 template <Limits limits>

@@ -80,14 +80,6 @@ float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
   return shape * (log(shape / rate) - 1.0f) + (1.0f / 12) / shape - 0.5f * log(shape * volume) + constant_;
 }
 
-float PlaneEvidence::gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b,
-                          const PlaneMoments& both, const BorderRise& border) const {
-  const float gain = score(both) - score_a - score_b;
-  if (gain < 0.0f) return gain;
-  const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
-  return by_evidence < 0.0f && parted(a, b, border) ? by_evidence : gain;
-}
-
 bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const {
   const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
   return step_between(first, second, border) || crease_between(first, second);

@@ -151,7 +151,8 @@ TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, groun
     const PlaneMoments second = of_points(test::sample({2, 4, 0, 4}, 0.1, 0.007, noise, height_m));
     PlaneMoments both = first;
     both.add(second);
-    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both, {});
+    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both,
+                         [] { return BorderRise{}; });
   };
   const auto kerb = [](double height_m) {
     return [=](double x, double) { return 0.02 * x + (x < 2.0 ? 0.0 : height_m); };
@@ -195,7 +196,7 @@ TEST_CASE("plane evidence: a crease parts two planes, ground that bends over the
     const PlaneMoments above = of_points(test::sample({0.3, 0.7, 0, 2.0}, 0.1, 0.012, noise, height_m));
     PlaneMoments both = face;
     both.add(above);
-    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, {});
+    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, [] { return BorderRise{}; });
   };
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.35 * x : 0.105 + 0.07 * (x - 0.3); }) < 0.0f);
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.07 * x : 0.021 - 0.20 * (x - 0.3); }) < 0.0f);

@@ -126,8 +126,8 @@ TEST_CASE(
     CHECK(merges(road_first, 20, 0.001f));  // the ground does not jump there
     CHECK(merges(road_first, 20, -0.02f));  // it jumps, but not as the planes do
     CHECK_FALSE(merges(road_first, 20, 0.02f));
-    CHECK_FALSE(merges(road_first, 2, 0.02f));  // four pairs together tell what two do not
-    CHECK(merges(road_first, 1, 0.02f));        // as here
+    CHECK_FALSE(merges(road_first, 2, 0.02f));  // four pairs tell together what two do not
+    CHECK(merges(road_first, 1, 0.02f));        // nor do two together
   }
 }
 
@@ -235,7 +235,7 @@ float gain(const PlaneMoments& a, const PlaneMoments& b) {
   const PlaneEvidence evidence;
   PlaneMoments both = a;
   both.add(b);
-  return evidence.gain(a, evidence.score(a), b, evidence.score(b), both, {});
+  return evidence.gain(a, evidence.score(a), b, evidence.score(b), both, [] { return BorderRise{}; });
 }
 
 /// What merge() must come to: all gains anew for every merge, the best one taken. Numbers of the blocks.
