@@ -234,8 +234,8 @@ void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
   if (dem_.several_surfaces(cell)) return;
   const Plane& plane = plane_mixture_.plane(label);
   const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
-  const int i = static_cast<int>((x + p.shift_x_m) / dem_.cell_x_m());
-  const int j = static_cast<int>((y + p.shift_y_m) / dem_.cell_y_m());
+  const int i = static_cast<int>((p.x_m + p.shift_x_m - dem_.origin_x_m()) / dem_.cell_x_m());
+  const int j = static_cast<int>((p.y_m + p.shift_y_m - dem_.origin_y_m()) / dem_.cell_y_m());
   const float dx = x - dem_.centroid_x_m(i, cell), dy = y - dem_.centroid_y_m(j, cell);
   const float rise = plane.slope_x * dx + plane.slope_y * dy;
   const float variance_m2 = p.variance_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);

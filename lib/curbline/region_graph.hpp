@@ -75,7 +75,7 @@ class RegionGraph {
     std::uint8_t pairs;
     bool stale;  ///< a node has grown since
 
-    /// Takes in another link's, or the other way round, as long as they fit.
+    /// Takes in those of another link (sign 1), or of one that leads the other way (-1), as long as they fit.
     void add_pairs(const Link& other, int sign) {
       if (pairs + other.pairs > most_pairs) return;
       pairs = static_cast<std::uint8_t>(pairs + other.pairs);
@@ -262,8 +262,8 @@ void RegionGraph<limits>::merge_ends(Index link) {
   } while (end != first);
 }
 
-/// b becomes part of a: its links leave from a; of a second link to the same neighbour
-/// its pairs stay; the one between a and b goes.
+/// b becomes part of a: its links leave from a; a second link to the same neighbour, but for its pairs, and the one
+/// between a and b go.
 template <Limits limits>
 void RegionGraph<limits>::absorb(Index a, Index b) {
   node_[a].moments.add(node_[b].moments);
