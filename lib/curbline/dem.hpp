@@ -153,8 +153,20 @@ class Dem {
   /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
   /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
-  /// The cell under a point; -1 outside the window.
-  int slot_at(float x_m, float y_m) const;
+  /// Where in the window something lies.
+  struct Place {
+    int i = -1, j = -1;        ///< its cell; -1 outside the window
+    float u = 0.0f, v = 0.0f;  ///< in cells from the window's lowest corner
+
+    bool inside() const { return i >= 0; }
+  };
+  /// Of a place of the map; what is not finite lies outside.
+  Place place_at(float x_m, float y_m) const;
+  /// The cell there; -1 outside the window.
+  int slot_at(float x_m, float y_m) const {
+    const Place place = place_at(x_m, y_m);
+    return place.inside() ? slot(place.i, place.j) : -1;
+  }
 
   /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
   /// at most max_link_reach. O(1).
@@ -276,12 +288,12 @@ void Dem<limits>::leave(int i, int j) {
 }
 
 template <Limits limits>
-int Dem<limits>::slot_at(float x_m, float y_m) const {
+auto Dem<limits>::place_at(float x_m, float y_m) const -> Place {
   const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
       !(v < static_cast<float>(settings_.cols)))
-    return -1;
-  return slot(static_cast<int>(u), static_cast<int>(v));
+    return {};
+  return {static_cast<int>(u), static_cast<int>(v), u, v};
 }
 
 template <Limits limits>
@@ -290,18 +302,15 @@ bool Dem<limits>::add(const Point& point) {
     return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
-  const float u = (point.x_m + point.shift_x_m - origin_x_m()) / settings_.cell_x_m;
-  const float v = (point.y_m + point.shift_y_m - origin_y_m()) / settings_.cell_y_m;
-  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
-      !(v < static_cast<float>(settings_.cols)))
-    return false;
-  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const Place place = place_at(point.place_x_m(), point.place_y_m());
+  if (!place.inside()) return false;
+  const int i = place.i, j = place.j;
   const auto s = static_cast<std::size_t>(slot(i, j));
   if (!cells_[s].valid()) meet_neighbours(i, j);
   if (mapped_before(static_cast<int>(s)) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   const float weight = prior_.noise_m2 / variance_m2;
-  cells_[s].add((u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
-                (v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
+  cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
+                (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
   add_growth(s, point.growth_m_s, weight);
   touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
   any_touched_ = true;

@@ -102,7 +102,7 @@ class Pipeline {
  private:
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
   void compare_with_map(const ProjectedLine<limits>& line);
-  void compare_with_cell(const Point& p, int slot);
+  void compare_with_cell(const Point& p, const typename Dem<limits>::Place& place);
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -218,8 +218,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
   for (const Point& p : line.points()) {
-    const int slot = p.z_m <= ceiling_m_ ? dem_.slot_at(p.x_m + p.shift_x_m, p.y_m + p.shift_y_m) : -1;
-    if (slot >= 0 && dem_.mapped_before(slot)) compare_with_cell(p, slot);
+    if (p.z_m <= ceiling_m_) compare_with_cell(p, dem_.place_at(p.place_x_m(), p.place_y_m()));
   }
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
@@ -227,16 +226,17 @@ void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
 
 /// By the slope of the cell's plane from its centroid to the point.
 template <Limits limits>
-void Pipeline<limits>::compare_with_cell(const Point& p, int slot) {
+void Pipeline<limits>::compare_with_cell(const Point& p, const typename Dem<limits>::Place& place) {
+  if (!place.inside()) return;
+  const int slot = dem_.slot(place.i, place.j);
+  if (!dem_.mapped_before(slot)) return;
   const Label<limits> label = label_field_.label(slot);
   if (label == no_label<limits>) return;
   const Cell& cell = dem_.cell(slot);
   if (dem_.several_surfaces(cell)) return;
   const Plane& plane = plane_mixture_.plane(label);
   const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
-  const int i = static_cast<int>((p.x_m + p.shift_x_m - dem_.origin_x_m()) / dem_.cell_x_m());
-  const int j = static_cast<int>((p.y_m + p.shift_y_m - dem_.origin_y_m()) / dem_.cell_y_m());
-  const float dx = x - dem_.centroid_x_m(i, cell), dy = y - dem_.centroid_y_m(j, cell);
+  const float dx = x - dem_.centroid_x_m(place.i, cell), dy = y - dem_.centroid_y_m(place.j, cell);
   const float rise = plane.slope_x * dx + plane.slope_y * dy;
   const float variance_m2 = p.variance_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
   tilt_latency_.compare(

@@ -34,6 +34,9 @@ struct PlanePrior {
   float common_share =
       0.5f;  ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
   float curvature_1_m = 0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre
+
+  /// Variance that the points of a cell have in common: averaging over them does not help against it.
+  float common_m2() const { return common_share * noise_m2; }
 };
 // As evidence the precision of level and slopes is noise_m2 per noise variance, a standard deviation of 1 m and of 45
 // degrees: faces and obstacles are regions too.

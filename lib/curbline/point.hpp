@@ -13,6 +13,9 @@ struct Point {
   /// From here to where the beams beside its own have it. It goes to the cell there: by its own error in range it would
   /// cross a cell's border or not, and where the next cell is not seen those that do are all too high, or too low.
   float shift_x_m = 0.0f, shift_y_m = 0.0f;
+
+  float place_x_m() const { return x_m + shift_x_m; }
+  float place_y_m() const { return y_m + shift_y_m; }
 };
 
 /// Where the laser looks from, the tilt axis: x and y in the window's frame, z of the map frame.

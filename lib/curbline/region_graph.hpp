@@ -75,13 +75,13 @@ class RegionGraph {
     std::uint8_t pairs;
     bool stale;  ///< a node has grown since
 
-    /// Takes in those of another link (sign 1), or of one that leads the other way (-1), as long as they fit.
-    void add_pairs(const Link& other, int sign) {
-      if (pairs + other.pairs > most_pairs) return;
-      pairs = static_cast<std::uint8_t>(pairs + other.pairs);
-      rise = static_cast<std::int16_t>(rise + sign * other.rise);
-      along_x = static_cast<std::int8_t>(along_x + sign * other.along_x);
-      along_y = static_cast<std::int8_t>(along_y + sign * other.along_y);
+    /// Takes in others, as long as they fit: sign 1, or -1 if these lead the other way.
+    void add_pairs(int sign, int more, int more_rise, int more_x, int more_y) {
+      if (pairs + more > most_pairs) return;
+      pairs = static_cast<std::uint8_t>(pairs + more);
+      rise = static_cast<std::int16_t>(rise + sign * more_rise);
+      along_x = static_cast<std::int8_t>(along_x + sign * more_x);
+      along_y = static_cast<std::int8_t>(along_y + sign * more_y);
     }
   };
   static constexpr int most_pairs = 127;
@@ -188,15 +188,9 @@ auto RegionGraph<limits>::link(Index a, Index b) -> Index {
 template <Limits limits>
 void RegionGraph<limits>::add_pair(Index end, int axis, float rise_m) {
   constexpr float most = 127.0f;  // of one pair: 127 of them fit 16 bits
-  Link& link = link_[end / 2];
-  if (link.pairs == most_pairs) return;
-  const int sign = end % 2 == 0 ? -1 : 1;
   const float scaled = rise_m * rise_scale;
   const std::int32_t rise = round_to_int(scaled > most ? most : scaled < -most ? -most : scaled);
-  ++link.pairs;
-  link.rise = static_cast<std::int16_t>(link.rise + sign * rise);
-  std::int8_t& along = axis == 0 ? link.along_x : link.along_y;
-  along = static_cast<std::int8_t>(along + sign);
+  link_[end / 2].add_pairs(end % 2 == 0 ? -1 : 1, 1, rise, axis == 0, axis != 0);
 }
 
 template <Limits limits>
@@ -281,7 +275,11 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
     const Index target = end_[end].target;
     remove(b, end);
     if (target == a || seen_[target] != none) {
-      if (target != a) link_[seen_[target] / 2].add_pairs(link_[end / 2], (end ^ seen_[target]) % 2 == 0 ? 1 : -1);
+      if (target != a) {
+        const Link& twin = link_[end / 2];
+        const int sign = (end ^ seen_[target]) % 2 == 0 ? 1 : -1;
+        link_[seen_[target] / 2].add_pairs(sign, twin.pairs, twin.rise, twin.along_x, twin.along_y);
+      }
       remove(target, other);
       heap_remove(link_[end / 2].place);
     } else {

@@ -86,7 +86,7 @@ bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b, const B
 }
 
 bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const BorderRise& border) const {
-  const float share_m2 = prior_.common_share * prior_.noise_m2;
+  const float share_m2 = prior_.common_m2();
   const auto above_m = [&](const Plane& at) {
     return second.height_m(at.x_m, at.y_m) - first.height_m(at.x_m, at.y_m);
   };
@@ -105,7 +105,7 @@ bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const 
 /// there by the mean of both planes' slopes.
 bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const {
   if (!(border.pairs > 0.0f)) return false;
-  const float share_m2 = prior_.common_share * prior_.noise_m2;
+  const float share_m2 = prior_.common_m2();
   const float slope_x = 0.5f * (first.slope_x + second.slope_x), slope_y = 0.5f * (first.slope_y + second.slope_y);
   const float jump_m = border.rise_m - slope_x * border.dx_m - slope_y * border.dy_m;
   const float variance_m2 =
@@ -138,7 +138,7 @@ Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   plane.slope_x = slopes.x;
   plane.slope_y = slopes.y;
   const float mean_square = slopes.residual_m2 / m.weight;
-  const float floor_m2 = prior.common_share * prior.noise_m2;
+  const float floor_m2 = prior.common_m2();
   plane.variance_m2 = plane.fit_variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
   plane.cells = cells;
   plane.pxx = (m.yy + ridge) * per_cell;

@@ -7,29 +7,16 @@
 #include <numbers>
 #include <vector>
 
+#include "support/moments.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {
 namespace {
 
 using test::Noise;
+using test::of_point;
+using test::of_points;
 using test::Patch;
-
-PlaneMoments of_point(const Point& p, float weight = 1.0f) {
-  PlaneMoments m;
-  m.points = m.cells = 1.0f;
-  m.weight = weight;
-  m.x = p.x_m;
-  m.y = p.y_m;
-  m.z = p.z_m;
-  return m;
-}
-
-PlaneMoments of_points(const std::vector<Point>& points) {
-  PlaneMoments m;
-  for (const Point& p : points) m.add(of_point(p));
-  return m;
-}
 
 /// A prior under which points without noise make a plane without.
 PlanePrior no_floor() {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/moments.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {
@@ -20,17 +21,8 @@ using Graph = RegionGraph<limits>;
 
 /// A square of ground of 0.4 m with 16 points, as a leaf is.
 PlaneMoments leaf(double x0, double y0, double height_m, test::Noise& noise, double slope = 0.0) {
-  PlaneMoments all;
-  for (const Point& p : test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise,
-                                     [&](double x, double) { return height_m + slope * x; })) {
-    PlaneMoments m;
-    m.points = m.cells = m.weight = 1.0f;
-    m.x = p.x_m;
-    m.y = p.y_m;
-    m.z = p.z_m;
-    all.add(m);
-  }
-  return all;
+  return test::of_points(test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise,
+                                      [&](double x, double) { return height_m + slope * x; }));
 }
 
 Graph::Index add(Graph& graph, const PlaneMoments& moments) {
@@ -96,15 +88,8 @@ TEST_CASE(
     "region graph: what pairs of cells show of a border is kept when regions merge, whichever way it was linked") {
   test::Noise noise;
   const auto patch = [&](double x0, double x1, double y0, double y1) {
-    PlaneMoments all;
     const auto height_m = [](double x, double) { return x < 2.0 ? 0.0 : 0.025 + 0.022 * (x - 2.0); };
-    for (const Point& p : test::sample({x0, x1, y0, y1}, 0.1, 0.007, noise, height_m)) {
-      PlaneMoments m;
-      m.points = m.cells = m.weight = 1.0f;
-      m.x = p.x_m, m.y = p.y_m, m.z = p.z_m;
-      all.add(m);
-    }
-    return all;
+    return test::of_points(test::sample({x0, x1, y0, y1}, 0.1, 0.007, noise, height_m));
   };
   const PlaneMoments road = patch(0, 2, 0, 4), right = patch(2, 4, 0, 2), left = patch(2, 4, 2, 4);
   const auto merges = [&](bool road_first, int pairs, float rise_m) {
