@@ -4,9 +4,9 @@
 //     sides makes.
 //   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp or so
-//     narrow that its slope is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so
-//     wider.
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp, or
+//     falls there at least half as steeply as the rays, as about an edge that is bent, or is so narrow that its slope
+//     is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so wider.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle and the ground around it.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
@@ -58,13 +58,29 @@ class Ground {
   static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
   static constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
 
+  /// How far something falls from its end near the laser to the far one, and how far the rays there do.
+  struct Fall {
+    float own_m = 0.0f, of_rays_m = 0.0f;
+  };
+  /// Strips that a step down leaves in its shadow.
+  struct Shadowed {
+    float cells = 0.0f, strips = 0.0f;
+    Fall fall{};
+
+    void add(float strip_cells, const Fall& of_strip) {
+      cells += strip_cells;
+      strips += 1.0f;
+      fall.own_m += of_strip.own_m;
+      fall.of_rays_m += of_strip.of_rays_m;
+    }
+    bool falls_as_rays() const { return 2.0f * fall.own_m >= fall.of_rays_m; }
+  };
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
     float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
-    std::array<float, 2> shadow_cells{};  ///< in strips that a step down leaves in its shadow
-    std::array<float, 2> shadows{};       ///< these strips
+    std::array<Shadowed, 2> shadow{};
     std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
@@ -88,14 +104,14 @@ class Ground {
              mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
-    bool shadow() const { return most(shadow_cells[0]) || most(shadow_cells[1]); }
-    bool narrow_shadow() const { return narrow_shadow(0) || narrow_shadow(1); }
+    bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
 
    private:
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
-    bool narrow_shadow(std::size_t axis) const {
-      return most(shadow_cells[axis]) && shadow_cells[axis] < narrow * shadows[axis];
+    bool veil(const Shadowed& in_shadow, bool steep) const {
+      return most(in_shadow.cells) &&
+             (steep || in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_as_rays());
     }
   };
   using Tallies = std::array<Tally, limits.planes>;
@@ -136,6 +152,14 @@ class Ground {
       const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
       const float away_m = ahead ? ahead_m : behind_m, above_m = sight.eye_z_m - near_m;
       return above_m > 0.0f && static_cast<float>(length() - 1) * sight.cell_m * above_m <= away_m * drop_m;
+    }
+    /// Of a strip in a shadow, which lies wholly on one side of the laser.
+    Fall fall(const Sight& sight) const {
+      const float middle_m = 0.5f * static_cast<float>(first + last + 1) * sight.cell_m - sight.eye_m;
+      const float drop_m = first_height_m - last_height_m;
+      const float above_m = sight.eye_z_m - 0.5f * (first_height_m + last_height_m);
+      const float away_m = middle_m > 0.0f ? middle_m : -middle_m;
+      return {middle_m > 0.0f ? drop_m : -drop_m, static_cast<float>(last - first) * sight.cell_m * above_m / away_m};
     }
   };
 
@@ -231,9 +255,9 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
            const bool leads = before.label != none && next.label != none && run.between(before, next);
            const Sight& aside = sights[1 - axis];
            const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-           if (leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m))) {
-             tally.shadow_cells[axis] += cells;
-             tally.shadows[axis] += 1.0f;
+           if (leads) {
+             const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
+             if (run.in_shadow(before, next, across)) tally.shadow[axis].add(cells, run.fall(across));
            }
            if (run.length() > longest_strip) return;
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
@@ -257,7 +281,7 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return Kind::ground;
   const bool steep = no_ramp(plane, view);
-  if (tally.narrow_shadow() || (tally.shadow() && steep)) return Kind::mixture;
+  if (tally.veil(steep)) return Kind::mixture;
   // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   if (!(above_m < 0.5f * laser_m)) return Kind::ground;

@@ -2,6 +2,7 @@
 #include "curbline/ground.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "support/small_map.hpp"
@@ -110,6 +111,19 @@ TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser 
           const double d = x + y;
           return d < 2.0 ? 0.0 : d < 2.35 ? -0.1 - 0.36 * (d - 2.175) : -0.2;
         }) == 2);
+}
+
+//   ___                seen from above: an edge that bends about the laser. Its veil leans this way and that, and is
+//  /  o |              level on the whole
+TEST_CASE("ground: the veil of an edge that bends about the laser is left to both sides, a stair there is ground") {
+  const auto down = [](double slope) {
+    return [=](double x, double y) {
+      const double r = std::hypot(x, y - 1.2);
+      return r < 1.4 ? 0.0 : r < 1.7 ? -0.15 - slope * (r - 1.55) : -0.3;
+    };
+  };
+  CHECK(borne(down(0.5)) == 2);
+  CHECK(borne(down(0.0)) == 3);
 }
 
 //  _____
