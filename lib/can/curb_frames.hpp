@@ -5,7 +5,8 @@
 // Both are standard frames of ids that CANopen (CiA 301) leaves free and that no preset servo uses; all numbers little
 // endian, x ahead and y left of the base frame.
 //
-// CurbAhead, 0x6A0, 8 bytes, one for the nearest curb on the way:
+// CurbAhead, 0x6A0, 8 bytes, one for the nearest step on the way, or, without one, the nearest crease or edge of a
+// ramp:
 //   bits 0-15   distance_m     u16, 1 mm: x of the point of the curb that is nearest to the robot, 0 to 65.534 m
 //   bits 16-31  lateral_m      i16, 1 mm: y of that point, +-32.767 m
 //   bits 32-47  height_m       i16, 1 mm: far side less near side, above 0 is a step up
@@ -50,7 +51,7 @@ struct CurbStatus {
 
 /// The curb that a robot at a pose meets first when it drives straight on, curbs being in the map frame: in its base
 /// frame, of those that reach into x >= 0 within half_width_m to either side, the one whose nearest point there has the
-/// lowest x. O(curbs).
+/// lowest x. A step before what is none: the gutter before a kerb does not hide it. O(curbs).
 std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m);
 
 /// The frame for a curb, or, with nothing, for a way without one.

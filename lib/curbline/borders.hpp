@@ -51,10 +51,13 @@ class Borders {
 
   int walk(const Dem<limits>& dem, Index start, int reach);
   Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
-  /// At the window's far ends in the last cell.
+  /// Before the window's ends in the first cell, beyond them in the last.
   int cell_of(const Dem<limits>& dem, const Border& border) const {
-    const int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
-    return dem.slot(i < dem.rows() ? i : dem.rows() - 1, j < dem.cols() ? j : dem.cols() - 1);
+    const auto within = [](float cells, int count) {
+      const int at = static_cast<int>(cells);
+      return at < 0 ? 0 : at < count ? at : count - 1;
+    };
+    return dem.slot(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
   }
 
   std::array<Border, limits.borders> border_;

@@ -126,6 +126,7 @@ class LabelField {
   std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
   float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
   int band_ = 0;                                                        ///< first row to refresh in the next update()
+  int first_row_ = 0;                                                   ///< whose cells may send first in it
   std::array<float, max_link_reach + 1> boost_{};                       ///< exp(J / distance) - 1
   std::array<std::uint8_t, max_link_reach + 1> loudest_{};              ///< message of a cell that is sure
   std::array<Site, Dem<limits>::capacity> sites_{};
@@ -138,7 +139,7 @@ void LabelField<limits>::init(const LabelSettings& settings) {
   sites_.fill(Site{});
   flag_.fill(quiet);
   near_by_.fill({});
-  band_ = 0;
+  band_ = first_row_ = 0;
   for (std::size_t g = 1; g < boost_.size(); ++g) {
     boost_[g] = exp(settings.coupling / static_cast<float>(g)) - 1.0f;
     loudest_[g] =
@@ -170,14 +171,16 @@ void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   });
 }
 
-/// What changed first, from a row that moves on, so that a budget that is too small starves none; then the band of
-/// rows.
+/// What changed first, from a row that moves on, so that a budget that is too small starves none as long as it holds a
+/// row's cells; then the band of rows.
 template <Limits limits>
 void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters) {
   const int rows = dem.rows();
-  const int first = band_ < rows ? band_ : 0;
-  band_ = first + settings_.refresh_rows;
+  const int first = first_row_ < rows ? first_row_ : 0;
+  first_row_ = first + 1;
+  const int band = band_ < rows ? band_ : 0;
+  band_ = band + settings_.refresh_rows;
   int left = scope == FieldScope::line ? settings_.max_messages / directions : capacity;
   /// `visited`, with `renew` or without, or `quiet`.
   const auto wanted = [&](int s) -> std::uint8_t {
@@ -202,7 +205,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
     auto& flag = flag_[static_cast<std::size_t>(s)];
-    if (flag == quiet && i >= first && i < band_ && left > 0) {
+    if (flag == quiet && i >= band && i < band_ && left > 0) {
       flag = visited | renew;
       --left;
     }

@@ -90,9 +90,10 @@ class Pipeline {
   /// Plane of a valid cell (i along x, j along y, from the window's lowest corner, 0 <= i < dem().rows(), 0 <= j <
   /// dem().cols()); no_label<limits> for the others.
   Label<limits> label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label<limits>; }
-  /// Probability of that label.
+  /// Probability of that label; 0 before init().
   float label_probability(int i, int j) const;
-  /// A plane, in the window's frame (origin at its lowest corner, z of the map frame).
+  /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes: not
+  /// no_label<limits>.
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
@@ -356,7 +357,7 @@ void Pipeline<limits>::follow_curbs() {
 
 template <Limits limits>
 float Pipeline<limits>::label_probability(int i, int j) const {
-  return label_field_.belief(dem_, i, j).of(label(i, j));
+  return ready_ ? label_field_.belief(dem_, i, j).of(label(i, j)) : 0.0f;
 }
 
 }  // namespace curbline

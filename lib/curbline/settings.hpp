@@ -11,11 +11,12 @@ namespace curbline {
 /// The rolling window. Cells are dx by dy; the window is rows x cols of them, along the map's axes. Unless it is fixed
 /// its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells.
 struct WindowSettings {
-  int rows = 40;             ///< cells along x, a multiple of 4, at most Limits::rows
-  int cols = 40;             ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;     ///< [0.001, 10]
-  float cell_y_m = 0.1f;     ///< [0.001, 10]
-  float origin_x_m = 0.0f;   ///< lowest corner; of the map frame if fixed, else of the base frame, heading along x
+  int rows = 40;          ///< cells along x, a multiple of 4, at most Limits::rows
+  int cols = 40;          ///< cells along y, a multiple of 4, at most Limits::cols
+  float cell_x_m = 0.1f;  ///< [0.001, 10]
+  float cell_y_m = 0.1f;  ///< [0.001, 10]
+  float origin_x_m =
+      0.0f;  ///< lowest corner, [-1e6, 1e6]; of the map frame if fixed, else of the base frame, heading along x
   float origin_y_m = -2.0f;  ///< the same along y
   bool fixed = false;        ///< true: the window never moves
   float max_height_m =
@@ -87,7 +88,7 @@ struct LabelSettings {
   float coupling = 1.5f;    ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
   int link_reach = 10;      ///< as SegmentationSettings; the coupling falls as 1 / distance
   int refresh_rows = 1;     ///< rows of the window that every line visits in turn, changed or not, >= 0
-  int max_messages = 1600;  ///< a call; what is left over waits for the next, >= 4
+  int max_messages = 1600;  ///< a call, >= 4; what is left over waits for the next, none for ever if 4 cols or more
 };
 
 struct CurbSettings {

@@ -29,8 +29,8 @@ bool good(const MountSettings& m) {
 
 bool good(const WindowSettings& w) {
   return w.rows >= block_side && w.cols >= block_side && w.rows % block_side == 0 && w.cols % block_side == 0 &&
-         within(w.cell_x_m, 0.001f, 10.0f) && within(w.cell_y_m, 0.001f, 10.0f) && is_finite(w.origin_x_m) &&
-         is_finite(w.origin_y_m) && is_finite(w.max_height_m);
+         within(w.cell_x_m, 0.001f, 10.0f) && within(w.cell_y_m, 0.001f, 10.0f) && within(w.origin_x_m, -1e6f, 1e6f) &&
+         within(w.origin_y_m, -1e6f, 1e6f) && is_finite(w.max_height_m);
 }
 
 bool good(const LaserSettings& l) {

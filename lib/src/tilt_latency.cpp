@@ -1,6 +1,7 @@
 #include "curbline/tilt_latency.hpp"
 
 #include "curbline/math.hpp"
+#include "curbline/point.hpp"
 
 namespace curbline {
 namespace {
@@ -113,6 +114,7 @@ void TiltLatency::Sums::add(const Sums& other) {
 /// What even a step does not explain is another surface: the face of a curb, somebody walking.
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
+  if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
   const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + g * g * covariance_[now][now] -
                             2.0f * g * m * covariance_[now][earlier] + m * m * covariance_[earlier][earlier];
   const float above_m2 = square(seen.above_m);

@@ -276,7 +276,10 @@ void SocketCan::follow_link() {
 
 void SocketCan::set_link(LinkState state) {
   if (state == link_) return;
-  if (state == LinkState::up) ++counters_.times_back;
+  if (state == LinkState::up) {
+    ++counters_.times_back;
+    bus_ = BusState::active;  // setting an interface up starts its controller anew
+  }
   if (state == LinkState::down && link_ == LinkState::up) ++counters_.times_down;
   if (state == LinkState::gone) ++counters_.times_gone;
   link_ = state;

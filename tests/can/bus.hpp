@@ -2,7 +2,9 @@
 #pragma once
 
 #include <linux/can.h>
+#include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <unistd.h>
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -40,6 +42,15 @@ inline can::Frame frame_of(std::uint32_t id, bool extended = false, std::vector<
   frame.length = static_cast<std::uint8_t>(data.size());
   std::copy(data.begin(), data.end(), frame.data.begin());
   return frame;
+}
+
+/// What a controller's driver says.
+inline void say_error(SocketCan& by, canid_t what, std::uint8_t controller = 0) {
+  can_frame frame{};
+  frame.can_id = CAN_ERR_FLAG | what;
+  frame.len = CAN_ERR_DLC;
+  frame.data[1] = controller;
+  REQUIRE(::write(by.descriptor(), &frame, sizeof frame) == sizeof frame);
 }
 
 /// Everything that comes until nothing has for 50 ms.

@@ -1,8 +1,5 @@
 // Frames through the kernel: filters, times, CAN FD, error messages, overflow. A virtual interface has no controller:
 // its error messages are written by the tests, bit for bit as a driver does (linux/can/error.h).
-#include <linux/can/error.h>
-#include <unistd.h>
-
 #include <ctime>
 #include <memory>
 
@@ -27,15 +24,6 @@ struct Pair {
   Interface interface;
   SocketCan receiver, sender;
 };
-
-/// What a controller's driver says.
-void say_error(SocketCan& by, canid_t what, std::uint8_t controller = 0) {
-  can_frame frame{};
-  frame.can_id = CAN_ERR_FLAG | what;
-  frame.len = CAN_ERR_DLC;
-  frame.data[1] = controller;
-  REQUIRE(::write(by.descriptor(), &frame, sizeof frame) == sizeof frame);
-}
 
 TEST_CASE("socketcan: the filter of a signal lets its id through and no other, 11 bits or 29", "[frames]") {
   for (const bool extended : {false, true}) {

@@ -39,6 +39,22 @@ TEST_CASE("socketcan: an interface that is taken down and up is seen, counted an
   CHECK(bus.counters().times_gone == 0);
 }
 
+TEST_CASE("socketcan: a bus that was off is not when its interface is up again", "[link]") {
+  const Interface interface;
+  SocketCan bus, other;
+  REQUIRE(bus.open(interface.name(), tilt) == Status::ok);
+  REQUIRE(other.open(interface.name(), {}) == Status::ok);
+  say_error(other, CAN_ERR_BUSOFF);
+  receive_all(bus);
+  REQUIRE(bus.bus() == BusState::off);
+  REQUIRE(vcan::set_link(interface.name(), false) == 0);
+  REQUIRE(reaches(bus, LinkState::down));
+  CHECK(bus.bus() == BusState::off);
+  REQUIRE(vcan::set_link(interface.name(), true) == 0);
+  REQUIRE(reaches(bus, LinkState::up));
+  CHECK(bus.bus() == BusState::active);
+}
+
 TEST_CASE("socketcan: an interface that is removed and made anew is read again, through the same filters", "[link]") {
   SocketCan bus;
   {

@@ -306,5 +306,22 @@ TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
 
+TEST_CASE("borders: one that lies before the window or beyond it is found from its neighbour") {
+  Stages<small_limits> stages(small_settings());
+  Borders<small_limits> borders;
+  const float before = -0.12f, beyond = 2.52f;
+  for (const float x : {before, beyond}) {
+    borders.clear();
+    for (const float y : {0.05f, 0.15f}) {
+      Borders<small_limits>::Border border{};
+      border.x_m = y < 0.1f ? x : x < 0.0f ? 0.02f : 2.38f;
+      border.y_m = y;
+      border.high = 1;
+      REQUIRE(borders.add(stages.dem, border));
+    }
+    CHECK(borders.chain(stages.dem, 0, 5) == 2);
+  }
+}
+
 }  // namespace
 }  // namespace curbline

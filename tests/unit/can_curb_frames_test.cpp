@@ -149,6 +149,23 @@ TEST_CASE("curb ahead: the nearest of those that reach into the way, at the poin
   CHECK(from_behind->distance_m == Approx(0.0f).margin(1e-6));
 }
 
+TEST_CASE("curb ahead: the gutter before a kerb does not hide it, alone it is told") {
+  Curb gutter{}, kerb{}, ramp{};
+  gutter.x0_m = gutter.x1_m = 0.5f, kerb.x0_m = kerb.x1_m = 0.6f, ramp.x0_m = ramp.x1_m = 0.8f;
+  for (Curb* curb : {&gutter, &kerb, &ramp}) curb->y0_m = -1.0f, curb->y1_m = 1.0f;
+  kerb.height_m = 0.12f, kerb.kind = CurbKind::step_up, ramp.kind = CurbKind::ramp_edge;
+  for (const auto& curbs : {std::array{gutter, kerb, ramp}, std::array{ramp, kerb, gutter}}) {
+    const auto ahead = nearest_ahead(curbs, Pose{}, 0.5f);
+    REQUIRE(ahead);
+    CHECK(ahead->kind == CurbKind::step_up);
+    CHECK(ahead->height_m == 0.12f);
+    CHECK(ahead->distance_m == 0.6f);
+  }
+  const auto alone = nearest_ahead(std::array{ramp, gutter}, Pose{}, 0.5f);
+  REQUIRE(alone);
+  CHECK(alone->kind == CurbKind::crease);
+}
+
 TEST_CASE("curb ahead: of a robot that drives it is told in the base frame, curbs being in the map frame") {
   Curb across{};  // 2 m before a robot at (10, 5) that heads along y
   across.x0_m = 8.0f, across.y0_m = 7.0f, across.x1_m = 12.0f, across.y1_m = 7.2f;

@@ -338,6 +338,31 @@ TEST_CASE(
   CHECK(height_m(3) == Approx(0.1 + 0.030).margin(1e-5));
 }
 
+TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, however many have been") {
+  Map dem = make_map(moving());
+  REQUIRE(dem.add(at(0.05, 0.05)));
+  const int slot = dem.slot_at(0.05f, 0.05f);
+  REQUIRE_FALSE(dem.mapped_before(slot));
+  for (int sweep = 1; sweep <= 300; ++sweep) {
+    dem.begin_sweep();
+    INFO(sweep);
+    CHECK(dem.mapped_before(slot));
+  }
+}
+
+TEST_CASE("dem: ground that changes is known again as soon after a day as after a minute") {
+  Map dem = make_map(moving());
+  const auto see = [&](int points, double height_m) {
+    for (int k = 0; k < points; ++k) REQUIRE(dem.add(at(0.05, 0.05, height_m + (k % 2 == 0 ? 0.01 : -0.01))));
+  };
+  const Cell& cell = dem.cell(dem.slot_at(0.05f, 0.05f));
+  see(1'000'000, 0.0);
+  CHECK(cell.height_m == Approx(0.0).margin(1e-4));
+  CHECK(cell.variance_m2({0.0f, 0.0f}) == Approx(0.8e-4).epsilon(0.01));  // each point weighs 0.8
+  see(2'000, 0.05);  // a plank is laid down, less than the spread that makes a cell of two surfaces
+  CHECK(cell.height_m == Approx(0.05).margin(0.002));
+}
+
 TEST_CASE("dem: a cell that comes into the window has no growth left of the one that was in its place") {
   Map dem = make_map(moving());
   Point point = at(0.05, 0.05);

@@ -310,6 +310,24 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end")
   CHECK(without == 0);
 }
 
+TEST_CASE("label field: a row that every line changes does not starve the others, however many rows are refreshed") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = directions * 24;  // those of a row
+  settings.labels.refresh_rows = GENERATE(0, 1, 24);
+  REQUIRE(check(settings) == Status::ok);
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  for (int call = 0; call < 2000; ++call) {
+    for (int j = 0; j < 24; ++j) stages->dem.add({0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
+    stages->infer();
+  }
+  int without = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) without += stages->label_at(i, j) == stages->field.none;
+  }
+  CHECK(without == 0);
+}
+
 TEST_CASE("label field: on a map that no longer changes the kept field comes to where whole passes end") {
   const auto lines = std::make_unique<Stages<>>(small_settings()), whole = std::make_unique<Stages<>>(small_settings());
   Noise noise;

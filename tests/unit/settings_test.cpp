@@ -35,8 +35,8 @@ TEST_CASE("settings: a bad window is named") {
   refuses(bad, [](Settings& s) -> int& { return s.window.cols; }, {0, -4, 3, 6, 41});
   refuses(bad, [](Settings& s) -> float& { return s.window.cell_x_m; }, {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
   refuses(bad, [](Settings& s) -> float& { return s.window.cell_y_m; }, {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.origin_x_m; }, {nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.origin_y_m; }, {nan, -infinity});
+  refuses(bad, [](Settings& s) -> float& { return s.window.origin_x_m; }, {1.1e6f, nan, infinity});
+  refuses(bad, [](Settings& s) -> float& { return s.window.origin_y_m; }, {-1.1e6f, nan, -infinity});
   refuses(bad, [](Settings& s) -> float& { return s.window.max_height_m; }, {nan, infinity});
 }
 

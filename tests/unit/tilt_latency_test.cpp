@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "support/terrain.hpp"
 
@@ -200,6 +201,18 @@ TEST_CASE("tilt latency: it stays within five standard deviations, whatever is s
   for (int k = 0; k < 10; ++k) sweep(latency, k % 2 == 0, latency.offset_s() + 0.02f, noise);
   CHECK(latency.offset_s() == Approx(0.05f));
   CHECK(latency.latest_offset_s() == Approx(0.05f));
+}
+
+TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
+  TiltLatency latency = started();
+  test::Noise noise(8);
+  sweep(latency, true, 0.005f, noise);
+  const float before_s = latency.offset_s();
+  for (const float growth : {190.0f, -190.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    latency.compare({0.01f, point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
+    latency.end_line(rate_rad_s);
+    CHECK(latency.offset_s() == before_s);
+  }
 }
 
 TEST_CASE("tilt latency: the first sweep is no new one, a turn is, a damaged reading is not") {
