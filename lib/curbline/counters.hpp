@@ -1,5 +1,6 @@
-// What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows; a reader compares
-// two snapshots. A healthy robot sees nothing but the first group move.
+// What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows, and
+// begins anew at 2^32, points of 1081 beams after a day; a reader takes the difference of two snapshots. A healthy
+// robot sees nothing but the first group move.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ struct Counters {
   std::uint32_t lines_dropped = 0;       ///< see Status of take()
   std::uint32_t beams_without_tilt = 0;  ///< beyond extrapolation or in a gap between readings
   std::uint32_t beams_extrapolated = 0;  ///< beyond the last tilt reading, within the bound
-  std::uint32_t tilt_dropped = 0;        ///< readings that were not finite or not later than the one before
-  std::uint32_t poses_dropped = 0;       ///< the same of poses
+  std::uint32_t tilt_dropped = 0;        ///< readings not finite, not later than the one before, beyond 1e6 rad
+  std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no attitude, before init()
   // Bounds that were hit.
   std::uint32_t cells_deferred = 0;  ///< labels that waited for a later call (LabelSettings::max_messages)
   std::uint32_t regions_full = 0;    ///< leaves that had no node of their own

@@ -29,8 +29,11 @@
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell
 #include "curbline/curb.hpp"             // out: a curb
+#include "curbline/line_fit.hpp"         // a straight piece of it
+#include "curbline/shadow.hpp"           // of a step down
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
+#include "curbline/math.hpp"             // exp, log, sine: the same bits everywhere
 #include "curbline/pipeline.hpp"         // all of it, on one screen
 // clang-format on

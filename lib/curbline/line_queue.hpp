@@ -3,7 +3,7 @@
 //
 //   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now, offset) after every line and tilt reading
 //
-// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 24) bytes and a little. No clock:
+// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. No clock:
 // times come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each
 // other.
 #pragma once

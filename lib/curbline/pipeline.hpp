@@ -48,19 +48,22 @@ class Pipeline {
   /// dropped.
   bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
 
-  /// A pose of the base in the map frame. False if dropped (not finite, not later than the one before).
+  /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond
+  /// Pose::furthest_m, its quaternion not of unit length; before init().
   bool add_pose(const Pose& pose);
 
   /// Takes a scan line: observe(), then one half of infer(), so that no line costs more than a quarter of what a small
   /// core can do between two: after one line the regions and planes, after the next the labels and curbs of both. Its
   /// tilt readings and poses should be in: beams later than the newest are extrapolated, within
-  /// TiltSettings::max_extrapolation_s. Bounded by the limits.
+  /// TiltSettings::max_extrapolation_s. Bounded by the limits. A line that is refused (not_initialised, line_too_long,
+  /// line_out_of_order, no_pose, no_tilt) changes nothing but counters.
   Status take(const ScanLine& line);
 
   /// Beams to points, points to cells. About 170 operations a beam.
   Status observe(const ScanLine& line);
 
-  /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells. The window follows.
+  /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells, and instead of it:
+  /// the line is taken. The window follows.
   template <typename Take>
   Status project(const ScanLine& line, Take&& take);
 
@@ -74,7 +77,7 @@ class Pipeline {
   /// reached: what a finished map wants. Returns the passes made.
   int settle(int passes = 10);
 
-  /// Curbs in the window, in the map frame. Valid until the next take(), infer() or settle().
+  /// Curbs in the window, in the map frame. Valid until the next take(), infer(), settle() or init().
   std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
   /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or over

@@ -26,16 +26,17 @@ struct WindowSettings {
 /// The range-finder, from its data sheet.
 struct LaserSettings {
   int beams = 1081;                         ///< 1 to Limits::beams
-  float first_bearing_rad = -2.3561945f;    ///< bearing of beam 0, counterclockwise about the laser's z axis
-  float bearing_step_rad = 0.004363323f;    ///< may be negative for a scanner that turns clockwise; not 0
-  float beam_interval_s = 25e-3f / 1440.f;  ///< time between beams, >= 0: a UTM-30LX takes 1440 steps a turn of 25 ms
+  float first_bearing_rad = -2.3561945f;    ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
+  float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0
+  float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
   float min_range_m = 0.1f;                 ///< readings below are no returns, >= 0
   float max_range_m = 60.0f;                ///< readings at or above are no returns
-  float range_sd_m = 0.01f;                 ///< standard deviation of a range
-  float bearing_sd_rad = 0.0005f;           ///< of a bearing
+  float range_sd_m = 0.01f;                 ///< standard deviation of a range, >= 0
+  float bearing_sd_rad = 0.0005f;           ///< of a bearing, >= 0
 };
 
-/// A rigid transform as a builder measures it: rotation R_z(yaw) R_y(pitch) R_x(roll), then translation.
+/// A rigid transform as a builder measures it: rotation R_z(yaw) R_y(pitch) R_x(roll), then translation. Lengths in
+/// [-100, 100], angles in [-2 pi, 2 pi].
 struct MountSettings {
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
   float roll_rad = 0.0f, pitch_rad = 0.0f, yaw_rad = 0.0f;
@@ -45,24 +46,25 @@ struct MountSettings {
 struct TiltSettings {
   MountSettings T_base_tilt{};
   MountSettings T_tilt_laser{};
-  bool fixed = false;                 ///< true: no servo, the angle is fixed_tilt_rad
-  float fixed_tilt_rad = 0.0f;        ///< (-pi, pi)
-  float latency_s = 0.0f;             ///< an angle stamped t was true at t - latency_s; may be negative
-  float latency_sd_s = 0.01f;         ///< how far it may be off, and change from sweep to sweep; 0: it is not estimated
-  float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play
-  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error
-  float max_extrapolation_s = 0.05f;  ///< beams further from the nearest reading are dropped
-  float max_gap_s = 0.2f;             ///< readings further apart are not interpolated across
-  float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin
+  bool fixed = false;           ///< true: no servo, the angle is fixed_tilt_rad
+  float fixed_tilt_rad = 0.0f;  ///< [-pi, pi]
+  float latency_s = 0.0f;       ///< [-10, 10]: an angle stamped t was true at t - latency_s
+  float latency_sd_s =
+      0.01f;  ///< [0, 1]: how far it may be off, and change from sweep to sweep; 0: it is not estimated
+  float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; >= 0
+  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error; >= 0
+  float max_extrapolation_s = 0.05f;  ///< [0, 10]: beams later than the newest reading by more are dropped
+  float max_gap_s = 0.2f;             ///< (0, 10]: readings further apart are not interpolated across
+  float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin, >= 0
   float pitch_sd_rad = 0.0f;          ///< the same about y
 };
 
 /// The robot's pose, T_map_base. A robot that stands gives none.
 struct PoseSettings {
   bool still = true;                 ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;          ///< of z between two poses
-  float attitude_sd_rad = 0.0f;      ///< of roll and pitch
-  float max_extrapolation_s = 0.1f;  ///< lines further from the nearest pose are dropped
+  float height_sd_m = 0.0f;          ///< of z between two poses, >= 0
+  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, >= 0
+  float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 
 /// How cells become regions. The constants and how little depends on them: lib/README.md.
@@ -80,19 +82,19 @@ enum class PlaneUpdate : unsigned char {
 
 struct PlaneSettings {
   PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 8.0f;  ///< regions below are not planes: eight cells are the least that a 2 x 4 strip has
+  float min_cells = 8.0f;  ///< >= 3; regions below are not planes: eight cells are the least that a 2 x 4 strip has
   PlaneUpdate update = PlaneUpdate::regions;
 };
 
 struct LabelSettings {
-  float coupling = 1.5f;    ///< J of the Potts factor exp(J) between like labels, (0, 7.9]
+  float coupling = 1.5f;    ///< J of the Potts factor exp(J) between like labels, [0.01, 7.9]
   int link_reach = 10;      ///< as SegmentationSettings; the coupling falls as 1 / distance
   int refresh_rows = 1;     ///< rows of the window that every line visits in turn, changed or not, >= 0
   int max_messages = 1600;  ///< a call, >= 4; what is left over waits for the next, none for ever if 4 cols or more
 };
 
 struct CurbSettings {
-  int link_reach = 5;  ///< cells; a curb is not drawn in a wider gap
+  int link_reach = 5;  ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
   float max_roughness_m =
       0.03f;  ///< robust sd of a label's cells above which it is clutter: the range-finder's stated accuracy
   float max_step_m = 0.3f;  ///< higher is an obstacle, no curb: kerbs and steps of stairs stay below 0.2 m, and half as

@@ -13,8 +13,8 @@
 // used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full bus at 1 Mbit/s.
 //
 // What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
-// set up anew after Settings::restart_after_ns). open() and self_test() wait for the controller, 100,000 reads of a
-// register at most, some 10 ms; nothing else waits. No heap. All calls of an object come from one context, which may be
+// set up anew after Settings::restart_after_ns). open(), self_test() and a receive() that ends bus-off wait for the
+// controller, 100,000 reads of a register for each of up to three modes, 10 ms as a rule; nothing else waits. No heap. All calls of an object come from one context, which may be
 // an interrupt. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
 #pragma once
 
@@ -61,7 +61,7 @@ inline Filter filter_of(const can::Signal& signal) {
 
 enum class BusState : std::uint8_t { closed, active, warning, passive, off };
 
-/// Everything only grows. A healthy bus sees nothing but `frames` and `sent`.
+/// Everything only grows, and begins anew at 2^32. A healthy bus sees nothing but `frames` and `sent`.
 struct Counters {
   std::uint32_t frames = 0, sent = 0, not_sent = 0;
   std::uint32_t overflows = 0;   ///< times that the FIFO was found to have lost frames

@@ -288,12 +288,6 @@ TEST_CASE("pipeline: a line whose ranges are all bad is taken and does nothing")
   CHECK(pipeline->curbs().empty());
 }
 
-TEST_CASE("pipeline: before init() no cell has a label, nor a probability of it") {
-  const auto pipeline = std::make_unique<FullPipeline>();
-  CHECK(pipeline->label(39, 39) == no_label<Limits{}>);
-  CHECK(pipeline->label_probability(39, 39) == 0.0f);
-}
-
 TEST_CASE("pipeline: points above the ceiling are ignored") {
   Settings settings = NoddingLaser::settings();
   settings.window.max_height_m = 0.5f;
