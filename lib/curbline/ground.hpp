@@ -143,23 +143,18 @@ class Ground {
              ((from < lowest_m && highest_m < to) || (from > highest_m && lowest_m > to));
     }
     /// Of a strip between two planes: does the step lead down as the laser sees it, and is the strip no wider than its
-    /// shadow (shadow.hpp), and a cell for what those at its ends have of the planes?
-    bool in_shadow(const Run& before, const Run& next, const Sight& sight) const {
+    /// shadow (shadow.hpp), and a cell for what those at its ends have of the planes? Then how far it falls.
+    bool in_shadow(const Run& before, const Run& next, const Sight& sight, Fall& fall) const {
       const float ahead_m = static_cast<float>(first) * sight.cell_m - sight.eye_m;
       const float behind_m = sight.eye_m - static_cast<float>(last + 1) * sight.cell_m;
       const bool ahead = ahead_m > 0.0f;
       const float near_m = ahead ? before.last_height_m : next.first_height_m;
       const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
       const float away_m = ahead ? ahead_m : behind_m, above_m = sight.eye_z_m - near_m;
-      return above_m > 0.0f && static_cast<float>(length() - 1) * sight.cell_m * above_m <= away_m * drop_m;
-    }
-    /// Of a strip in a shadow, which lies wholly on one side of the laser.
-    Fall fall(const Sight& sight) const {
-      const float middle_m = 0.5f * static_cast<float>(first + last + 1) * sight.cell_m - sight.eye_m;
-      const float drop_m = first_height_m - last_height_m;
-      const float above_m = sight.eye_z_m - 0.5f * (first_height_m + last_height_m);
-      const float away_m = middle_m > 0.0f ? middle_m : -middle_m;
-      return {middle_m > 0.0f ? drop_m : -drop_m, static_cast<float>(last - first) * sight.cell_m * above_m / away_m};
+      if (!(above_m > 0.0f) || !(away_m > 0.0f)) return false;
+      fall.of_rays_m = static_cast<float>(length() - 1) * sight.cell_m * above_m / away_m;
+      fall.own_m = ahead ? first_height_m - last_height_m : last_height_m - first_height_m;
+      return fall.of_rays_m <= drop_m;
     }
   };
 
@@ -255,9 +250,9 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
            const bool leads = before.label != none && next.label != none && run.between(before, next);
            const Sight& aside = sights[1 - axis];
            const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-           if (leads) {
-             const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
-             if (run.in_shadow(before, next, across)) tally.shadow[axis].add(cells, run.fall(across));
+           if (Fall fall;
+               leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m), fall)) {
+             tally.shadow[axis].add(cells, fall);
            }
            if (run.length() > longest_strip) return;
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
