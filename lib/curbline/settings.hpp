@@ -9,18 +9,17 @@
 namespace curbline {
 
 /// The rolling window. Cells are dx by dy; the window is rows x cols of them, along the map's axes. Unless it is fixed
-/// its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells.
+/// its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells: its corner and
+/// max_height_m are of the base frame of a robot that heads along the map's x axis, else of the map frame.
 struct WindowSettings {
-  int rows = 40;          ///< cells along x, a multiple of 4, at most Limits::rows
-  int cols = 40;          ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;  ///< [0.001, 10]
-  float cell_y_m = 0.1f;  ///< [0.001, 10]
-  float origin_x_m =
-      0.0f;  ///< lowest corner, [-1e6, 1e6]; of the map frame if fixed, else of the base frame, heading along x
-  float origin_y_m = -2.0f;  ///< the same along y
-  bool fixed = false;        ///< true: the window never moves
-  float max_height_m =
-      1e9f;  ///< points above it (z of the map frame; of the base frame if the window moves) are ignored
+  int rows = 40;              ///< cells along x, a multiple of 4, at most Limits::rows
+  int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
+  float cell_x_m = 0.1f;      ///< [0.001, 10]
+  float cell_y_m = 0.1f;      ///< [0.001, 10]
+  float origin_x_m = 0.0f;    ///< lowest corner, [-1e6, 1e6]
+  float origin_y_m = -2.0f;   ///< the same along y
+  bool fixed = false;         ///< true: the window never moves
+  float max_height_m = 1e9f;  ///< points above it are ignored
 };
 
 /// The range-finder, from its data sheet.
@@ -46,11 +45,10 @@ struct MountSettings {
 struct TiltSettings {
   MountSettings T_base_tilt{};
   MountSettings T_tilt_laser{};
-  bool fixed = false;           ///< true: no servo, the angle is fixed_tilt_rad
-  float fixed_tilt_rad = 0.0f;  ///< [-pi, pi]
-  float latency_s = 0.0f;       ///< [-10, 10]: an angle stamped t was true at t - latency_s
-  float latency_sd_s =
-      0.01f;  ///< [0, 1]: how far it may be off, and change from sweep to sweep; 0: it is not estimated
+  bool fixed = false;                 ///< true: no servo, the angle is fixed_tilt_rad
+  float fixed_tilt_rad = 0.0f;        ///< [-pi, pi]
+  float latency_s = 0.0f;             ///< [-10, 10]: an angle stamped t was true at t - latency_s
+  float latency_sd_s = 0.01f;         ///< [0, 1]: how far it may be off, and change by sweeps; 0: it is not estimated
   float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; >= 0
   float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error; >= 0
   float max_extrapolation_s = 0.05f;  ///< [0, 10]: beams later than the newest reading by more are dropped

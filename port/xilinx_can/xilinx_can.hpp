@@ -14,8 +14,9 @@
 //
 // What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
 // set up anew after Settings::restart_after_ns). open(), self_test() and a receive() that ends bus-off wait for the
-// controller, 100,000 reads of a register for each of up to three modes, 10 ms as a rule; nothing else waits. No heap. All calls of an object come from one context, which may be
-// an interrupt. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
+// controller, for each of up to three modes 100,000 reads of a register at most, some 10 ms; nothing else waits. No
+// heap. All calls of an object come from one context, which may be an interrupt. Registers is MemoryRegisters, or what
+// a test has instead. Source: UG1085 and UG1087, see registers.hpp.
 #pragma once
 
 #include <algorithm>
