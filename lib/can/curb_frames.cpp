@@ -84,18 +84,18 @@ std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& 
     return At{ahead.cos * dx + ahead.sin * dy, ahead.cos * dy - ahead.sin * dx};
   };
   std::optional<CurbAhead> nearest;
-  bool is_nearest_step = false;
-  for (const Curb& curb : curbs) {
-    At a = in_base(curb.x0_m, curb.y0_m), b = in_base(curb.x1_m, curb.y1_m);
-    const bool on_the_way = keep_side(a, b, a.x_m, b.x_m) &&
-                            keep_side(a, b, half_width_m - a.y_m, half_width_m - b.y_m) &&
-                            keep_side(a, b, half_width_m + a.y_m, half_width_m + b.y_m);
-    if (!on_the_way) continue;
-    const At& at = a.x_m <= b.x_m ? a : b;
-    const bool step = is_step(curb);
-    if (nearest && (step == is_nearest_step ? nearest->distance_m <= at.x_m : is_nearest_step)) continue;
-    nearest = CurbAhead{at.x_m, at.y_m, curb.height_m, curb.height_sd_m, curb.kind, curb.probability};
-    is_nearest_step = step;
+  for (const bool steps : {true, false}) {
+    for (const Curb& curb : curbs) {
+      if (is_step(curb) != steps) continue;
+      At a = in_base(curb.x0_m, curb.y0_m), b = in_base(curb.x1_m, curb.y1_m);
+      const bool on_the_way = keep_side(a, b, a.x_m, b.x_m) &&
+                              keep_side(a, b, half_width_m - a.y_m, half_width_m - b.y_m) &&
+                              keep_side(a, b, half_width_m + a.y_m, half_width_m + b.y_m);
+      const At& at = a.x_m <= b.x_m ? a : b;
+      if (!on_the_way || (nearest && nearest->distance_m <= at.x_m)) continue;
+      nearest = CurbAhead{at.x_m, at.y_m, curb.height_m, curb.height_sd_m, curb.kind, curb.probability};
+    }
+    if (nearest) break;
   }
   return nearest;
 }

@@ -296,6 +296,14 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   CHECK(bounded->counters.cells_deferred == deferred);
 }
 
+int cells_without_label(const Stages<>& stages) {
+  int without = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) without += stages.label_at(i, j) == stages.field.none;
+  }
+  return without;
+}
+
 TEST_CASE("label field: even the smallest budget reaches every cell in the end") {
   Settings settings = small_settings();
   settings.labels.max_messages = 4;
@@ -303,11 +311,7 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end")
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) stages->infer();
-  int without = 0;
-  for (int i = 0; i < 24; ++i) {
-    for (int j = 0; j < 24; ++j) without += stages->label_at(i, j) == stages->field.none;
-  }
-  CHECK(without == 0);
+  CHECK(cells_without_label(*stages) == 0);
 }
 
 TEST_CASE("label field: a row that every line changes does not starve the others, however many rows are refreshed") {
@@ -321,11 +325,7 @@ TEST_CASE("label field: a row that every line changes does not starve the others
     for (int j = 0; j < 24; ++j) stages->dem.add({0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
     stages->infer();
   }
-  int without = 0;
-  for (int i = 0; i < 24; ++i) {
-    for (int j = 0; j < 24; ++j) without += stages->label_at(i, j) == stages->field.none;
-  }
-  CHECK(without == 0);
+  CHECK(cells_without_label(*stages) == 0);
 }
 
 TEST_CASE("label field: on a map that no longer changes the kept field comes to where whole passes end") {
