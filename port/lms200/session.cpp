@@ -174,8 +174,8 @@ void Session::take_time(Variant variant, std::size_t telegram_bytes, const scann
   const std::uint64_t lost = counters_.bad_checksum + counters_.wrong_length;
   const auto lost_now = static_cast<std::int64_t>(lost - lost_before_);
   lost_before_ = lost;
-  const std::int64_t sent_ns = clock_.sent_ns(now.host_ns, turns * (1 + lost_now));
-  line_.host_ns = sent_ns - wire_ns - (scan_turns - 1) * turn_ns - turn_ns * variant.field_deg / 360;
+  const std::int64_t sent_ns = clock_.sent_ns(now.steady_ns, turns * (1 + lost_now));
+  line_.host_ns = now.to_host(sent_ns - wire_ns - (scan_turns - 1) * turn_ns - turn_ns * variant.field_deg / 360);
 }
 
 }  // namespace curbline::lms200

@@ -11,7 +11,6 @@ void TurnClock::restart() {
 }
 
 std::int64_t TurnClock::sent_ns(std::int64_t arrival_ns, std::int64_t turns) {
-  if (last_ns_ != INT64_MIN && last_ns_ - arrival_ns >= window_ns) restart();
   turns_ += turns;
   if (!offset_.empty()) {
     const std::int64_t late_ns = arrival_ns - (offset_.value_ns() + turns_ * turn_ns);

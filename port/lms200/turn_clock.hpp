@@ -1,6 +1,7 @@
 // The time of scan lines that bear none, from their arrival and the mirror's steady turning. Lines come a whole number
-// of turns after each other; the count of turns is a clock, which the lower envelope of the arrivals ties to the
-// host's. Bytes that wait in a driver, and are then read at once, so do not shift the lines. Pure; O(1) a line.
+// of turns after each other; the count of turns is a clock, which the lower envelope of the arrivals ties to the host's
+// steady one (device_clock.hpp says why that). Bytes that wait in a driver, and are then read at once, so do not shift
+// the lines. Pure; O(1) a line.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ class TurnClock {
   void restart();
 
   /// When the last byte of a line left the scanner. `turns` after the line before, or more if it is late by more than
-  /// eight such lines: then some were lost. Times go up, unless the host's clock is set back by a second or more.
+  /// eight such lines: then some were lost. Times go up.
   std::int64_t sent_ns(std::int64_t arrival_ns, std::int64_t turns);
 
  private:

@@ -28,8 +28,8 @@ std::int64_t StampCounter::nearest_ns(std::int64_t device_ns, std::int64_t near_
 
 void LowerEnvelope::add(std::int64_t value_ns, std::int64_t now_ns) {
   if (empty()) window_start_ns_ = now_ns;
-  const std::int64_t since_ns = now_ns - window_start_ns_;  // below 0: bunches change places, or the clock was set back
-  if (since_ns >= window_ns_ || since_ns <= -window_ns_) {
+  const std::int64_t since_ns = now_ns - window_start_ns_;
+  if (since_ns >= window_ns_) {
     before_ = since_ns < 2 * window_ns_ ? now_ : value_ns;  // none in a whole window: what was is out of date
     now_ = none;
     window_start_ns_ = now_ns;
@@ -47,7 +47,7 @@ void DeviceClock::follow(std::int64_t device_ns, std::int64_t arrival_ns) {
   if (lines_.first_window()) first_lines_ns_ = lines_.value_ns();
 }
 
-std::int64_t DeviceClock::to_host(std::int64_t device_ns) const {
+std::int64_t DeviceClock::to_steady(std::int64_t device_ns) const {
   if (anchors_.empty()) return device_ns + lines_.value_ns() - delay_ns_;
   const std::int64_t drift_ns = lines_.empty() ? 0 : lines_.value_ns() - first_lines_ns_;
   return device_ns + anchors_.value_ns() + drift_ns;

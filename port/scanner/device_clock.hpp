@@ -2,6 +2,10 @@
 // wraps around and drifts; tilt frames bear the host's time. No I/O, heap or clock is used here: times come as
 // arguments, nanoseconds. O(1) a call; not for interrupts.
 //
+// It is the host's steady clock that the scanner's is compared with; Now::to_host() (session.hpp) then gives a line the
+// time to which the host's clock is set. A host's clock that is set forward looks like a line that is late, and until
+// the line after it nothing tells the one from the other; a steady clock is not set.
+//
 // What travels only ever comes late, so the lowest of (arrival - device time) is the nearest to the offset of the
 // clocks: a lower envelope. It is taken over the last 5 to 10 s, which a drift of 50 ppm moves by half a millisecond.
 #pragma once
@@ -39,7 +43,7 @@ class StampCounter {
   int back_ = 0;
 };
 
-/// Lowest value of the last one to two windows.
+/// Lowest value of the last one to two windows. Times never go back.
 class LowerEnvelope {
  public:
   explicit LowerEnvelope(std::int64_t window_ns) : window_ns_(window_ns) {}
@@ -64,13 +68,13 @@ class DeviceClock {
   void restart();
 
   /// A moment that the scanner told as it was: the reply to a question of the time, the time of transmission.
-  void anchor(std::int64_t device_ns, std::int64_t host_ns) { anchors_.add(host_ns - device_ns, host_ns); }
+  void anchor(std::int64_t device_ns, std::int64_t steady_ns) { anchors_.add(steady_ns - device_ns, steady_ns); }
 
   /// A line's stamp and arrival. Their delay is not known, but constant: lines after the first 5 s follow the drift.
   void follow(std::int64_t device_ns, std::int64_t arrival_ns);
 
-  /// Host time of a moment of the scanner. Call anchor() or follow() before.
-  std::int64_t to_host(std::int64_t device_ns) const;
+  /// Steady time of a moment of the scanner. Call anchor() or follow() before.
+  std::int64_t to_steady(std::int64_t device_ns) const;
 
  private:
   std::int64_t delay_ns_;

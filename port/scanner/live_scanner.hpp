@@ -64,7 +64,7 @@ class LiveScanner {
   int baud_ = 0;
 };
 
-/// The host's clocks now.
+/// The host's clocks now: CLOCK_REALTIME, which stamps CAN frames too, and CLOCK_MONOTONIC.
 Now host_now();
 
 }  // namespace curbline::scanner

@@ -14,10 +14,15 @@
 
 namespace curbline::scanner {
 
-/// Moments of the host: `host_ns` is that of tilt frames and poses, `steady_ns` never jumps and serves the time-outs.
+/// One moment on two clocks of the host: `host_ns` on that of tilt frames and poses, which may be set to another time;
+/// `steady_ns` on one that never jumps, which serves the time-outs and is what a scanner's own clock is compared with.
+/// They may be the same clock, if nobody sets it.
 struct Now {
   std::int64_t host_ns = 0;
   std::int64_t steady_ns = 0;
+
+  /// A moment of the steady clock on the host's, as that is set now.
+  std::int64_t to_host(std::int64_t moment_ns) const { return moment_ns + (host_ns - steady_ns); }
 };
 
 /// A whole scan line.

@@ -160,7 +160,8 @@ void Session::take_parameters(const Reply& reply) {
 
 void Session::take_time(const Reply& reply, const scanner::Now& now) {
   if (reply.status == "00" && reply.body.size() == 5) {
-    if (const auto device_ns = stamps_.unwrap(decode(reply.body.substr(0, 4)))) clock_.anchor(*device_ns, now.host_ns);
+    if (const auto device_ns = stamps_.unwrap(decode(reply.body.substr(0, 4))))
+      clock_.anchor(*device_ns, now.steady_ns);
   }
   go_to(++clock_asked_ < clock_questions ? Step::clock_ask : Step::clock_off);
 }
@@ -177,7 +178,7 @@ bool Session::take_scan(const Scan& scan, const scanner::Now& now) {
     if (stamps_.lost()) restart(now);  // it has started anew behind a line that stayed up
     return false;
   }
-  clock_.follow(*device_ns, now.host_ns);
+  clock_.follow(*device_ns, now.steady_ns);
   for (std::size_t i = 0; i < scan.ranges_mm.size(); ++i) {
     const auto range_mm = static_cast<int>(scan.ranges_mm[i]);
     const bool is_return = range_mm >= p.dmin_mm && range_mm <= p.dmax_mm;
@@ -185,7 +186,7 @@ bool Session::take_scan(const Scan& scan, const scanner::Now& now) {
   }
   const double step_rad = 2.0 * std::numbers::pi / p.steps_a_turn;
   ++counters_.lines;
-  line_ = {clock_.to_host(*device_ns),
+  line_ = {now.to_host(clock_.to_steady(*device_ns)),
            *device_ns,
            true,
            static_cast<float>((p.first_step - p.front_step) * step_rad),
