@@ -69,7 +69,8 @@ Daemon::~Daemon() {
 
 void Daemon::open_scans(const tools::Robot& robot, const Options& options) {
   if (tools::is_scanner(options.scans)) {
-    scanner_ = std::make_unique<ScannerThread>(tools::scanner_link(options.scans, robot.laser), robot.laser, inbox_);
+    scanner_ = std::make_unique<ScannerThread>(options.scans, tools::scanner_link(options.scans, robot.laser),
+                                               robot.laser, inbox_);
     return;
   }
   log_.emplace(options.scans, robot.laser);

@@ -6,11 +6,14 @@ namespace curbline::daemon {
 
 using scanner::LiveScanner;
 
-ScannerThread::ScannerThread(tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox)
-    : link_(std::move(link)),
+ScannerThread::ScannerThread(std::string name, tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox)
+    : name_(std::move(name)),
+      link_(std::move(link)),
       scanner_(*link_.session, std::move(link_.stream), {.reconnect = true, .silence = link_.silence}),
       laser_(laser),
-      inbox_(inbox) {}
+      inbox_(inbox) {
+  state_.name = name_;
+}
 
 ScannerThread::~ScannerThread() {
   stop_ = true;

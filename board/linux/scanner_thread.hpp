@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -15,6 +16,7 @@
 namespace curbline::daemon {
 
 struct ScannerState {
+  std::string_view name{};     ///< as --scans has it; lives as long as the thread
   bool connected = false;      ///< and has given a line since
   int error = 0;               ///< errno of what last failed; 0: the scanner closed the connection
   std::string_view problem{};  ///< what the scanner refused or reported; static text
@@ -25,7 +27,7 @@ struct ScannerState {
 
 class ScannerThread {
  public:
-  ScannerThread(tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox);
+  ScannerThread(std::string name, tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox);
   /// Stops the scanner's stream and the thread; within the 2 s that an attempt to connect may take.
   ~ScannerThread();
   ScannerThread(const ScannerThread&) = delete;
@@ -39,6 +41,7 @@ class ScannerThread {
   void take_line();
   bool has_beams_of_laser(const scanner::Line& line) const;
 
+  std::string name_;
   tools::ScannerLink link_;
   scanner::LiveScanner scanner_;
   LaserSettings laser_;

@@ -46,7 +46,7 @@ void Troubles::tell_scanner(const ScannerState& scanner) {
   if (scanner.connected) return say("the scanner gives scan lines");
   scanner_told_ = true;
   const char* const why = scanner.error == 0 ? "it closed the connection" : ::strerrordesc_np(scanner.error);
-  say("no scan lines from the scanner: ", std::string_view(why == nullptr ? "unknown error" : why),
+  say("no scan lines from the scanner ", scanner.name, ": ", std::string_view(why == nullptr ? "unknown error" : why),
       scanner.problem.empty() ? "" : "; ", scanner.problem);
 }
 

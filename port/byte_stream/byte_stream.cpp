@@ -1,16 +1,15 @@
 #include "byte_stream/byte_stream.hpp"
 
 #include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace curbline::port {
@@ -53,9 +52,7 @@ std::optional<ByteStream> ByteStream::tcp(const std::string& host, std::uint16_t
     return std::nullopt;
   }
   ByteStream stream;
-  std::memcpy(&stream.address_, found->ai_addr, found->ai_addrlen);
-  stream.address_size_ = found->ai_addrlen;
-  ::freeaddrinfo(found);
+  stream.addresses_.reset(found);
   return stream;
 }
 
@@ -66,16 +63,12 @@ ByteStream ByteStream::serial(const std::string& path) {
 }
 
 ByteStream::ByteStream(ByteStream&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)),
-      path_(std::move(other.path_)),
-      address_(other.address_),
-      address_size_(other.address_size_) {}
+    : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)), addresses_(std::move(other.addresses_)) {}
 
 ByteStream& ByteStream::operator=(ByteStream&& other) noexcept {
   std::swap(fd_, other.fd_);
   path_.swap(other.path_);
-  std::swap(address_, other.address_);
-  std::swap(address_size_, other.address_size_);
+  addresses_.swap(other.addresses_);
   return *this;
 }
 
@@ -92,11 +85,24 @@ int ByteStream::connect(Milliseconds patience) {
 }
 
 int ByteStream::connect_tcp(Milliseconds patience) {
-  fd_ = ::socket(address_.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const auto give_up = std::chrono::steady_clock::now() + patience;
+  int untried = 0, failed = 0;
+  for (const addrinfo* address = addresses_.get(); address != nullptr; address = address->ai_next) ++untried;
+  for (const addrinfo* address = addresses_.get(); address != nullptr; address = address->ai_next, --untried) {
+    const auto left = std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
+    failed = connect_tcp(*address, left / untried);
+    if (failed == 0) break;
+    close();
+  }
+  return failed;
+}
+
+int ByteStream::connect_tcp(const addrinfo& address, Milliseconds patience) {
+  fd_ = ::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd_ < 0) return errno;
   const int on = 1;
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address_), address_size_) == 0) return 0;
+  if (::connect(fd_, address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
   if (!wait_for(fd_, POLLOUT, patience)) return ETIMEDOUT;
   int failed = 0;

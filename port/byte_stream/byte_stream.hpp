@@ -4,10 +4,11 @@
 // control.
 #pragma once
 
-#include <sys/socket.h>
+#include <netdb.h>
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,7 +19,8 @@ using Milliseconds = std::chrono::milliseconds;
 
 class ByteStream {
  public:
-  /// A TCP server. Nothing if the host's name cannot be looked up; `error` then says why.
+  /// A TCP server. A name may have several addresses, as localhost has ::1 and 127.0.0.1. Nothing if it cannot be
+  /// looked up; `error` then says why.
   static std::optional<ByteStream> tcp(const std::string& host, std::uint16_t port, std::string& error);
 
   /// A serial device or pty.
@@ -28,7 +30,9 @@ class ByteStream {
   ByteStream& operator=(ByteStream&& other) noexcept;
   ~ByteStream() { close(); }
 
-  /// Opens, or opens anew. 0, or the errno of what failed.
+  /// Opens, or opens anew: the first address that answers, in the order of the look-up. One that does not is given up
+  /// when its share is over, an equal part of the time that is left. 0, or the errno of what failed, of the last
+  /// address.
   int connect(Milliseconds patience);
   bool is_open() const { return fd_ >= 0; }
   void close();
@@ -48,14 +52,18 @@ class ByteStream {
   int fd() const { return fd_; }  ///< for poll(); -1 if closed
 
  private:
+  struct FreeAddresses {
+    void operator()(addrinfo* first) const { ::freeaddrinfo(first); }
+  };
+
   ByteStream() = default;
   int connect_tcp(Milliseconds patience);
+  int connect_tcp(const addrinfo& address, Milliseconds patience);
   int connect_serial();
 
   int fd_ = -1;
   std::string path_;  ///< of a serial line; empty: TCP
-  sockaddr_storage address_{};
-  socklen_t address_size_ = 0;
+  std::unique_ptr<addrinfo, FreeAddresses> addresses_;
 };
 
 }  // namespace curbline::port
