@@ -23,7 +23,7 @@ can::TiltDecoder decoder;
 curbline::TiltWatch watch;
 std::int64_t newest_tilt_ns = curbline::TiltWatch::no_reading;
 curbline::Pose pose;  // the newest; of a robot that stands, the map's origin
-std::uint8_t lines_told = 0;
+std::uint8_t curbs_told = 0;
 
 void start() {
   const curbline::Settings settings = robot_settings();
@@ -50,10 +50,12 @@ void take_poses() {
   }
 }
 
-/// To the motors: the curb that the robot meets first.
-void tell() {
-  port.send(can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m)));
-  port.send(can::curb_status_frame({++lines_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
+/// To the motors, after a scan line: the curb that the robot meets first, if the line was taken. They know by the
+/// counter whether it was.
+void tell(bool taken) {
+  const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m));
+  if (taken && port.send(ahead)) ++curbs_told;
+  port.send(can::curb_status_frame({curbs_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
 }
 
 void take_lines() {
@@ -61,7 +63,7 @@ void take_lines() {
   if (const auto line = port.scan_line()) waiting.push(*line, now_ns);
   while (const auto line = waiting.pop(newest_tilt_ns, now_ns, pipeline.tilt_latency().latest_offset_s())) {
     watch.update(newest_tilt_ns, now_ns);
-    if (pipeline.take(*line) == curbline::Status::ok) tell();
+    tell(pipeline.take(*line) == curbline::Status::ok);
   }
 }
 

@@ -208,7 +208,7 @@ void Daemon::take_line(const ScanLine& line) {
   if (status == Status::ok) work_.add(scanner::host_now().steady_ns - before_ns);
   last_line_ns_ = line.time_ns;
   give_curbs(line.time_ns);
-  if (can_out_) send_curbs();
+  if (can_out_) send_curbs(status == Status::ok);
 }
 
 /// To the clients, if they are others than before.
@@ -223,11 +223,13 @@ void Daemon::give_curbs(std::int64_t line_ns) {
   server_.send(text);
 }
 
-/// The base frame is the map's: the robot stands.
-void Daemon::send_curbs() {
-  bus_.send(can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m)));
+/// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows. The base
+/// frame is the map's: the robot stands.
+void Daemon::send_curbs(bool taken) {
+  const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
+  if (taken && bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
-  bus_.send(can::curb_status_frame({sent_counter_++, tilt_watch_.state(), curbs}));
+  bus_.send(can::curb_status_frame({curbs_sent_, tilt_watch_.state(), curbs}));
 }
 
 /// What has happened, for the user; some times a second.

@@ -65,7 +65,7 @@ class Daemon {
   void take_lines();
   void take_line(const ScanLine& line);
   void give_curbs(std::int64_t line_ns);
-  void send_curbs();
+  void send_curbs(bool taken);
   void look_around();
   void give_status();
   Report make_report();
@@ -96,7 +96,7 @@ class Daemon {
 
   std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady
   std::int64_t last_line_ns_ = 0;
-  std::uint8_t sent_counter_ = 0;
+  std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; the first CurbAhead has 0
   std::uint64_t heap_calls_before_ = 0;
   std::uint32_t curbs_left_out_ = 0;
   LatencyHistogram latency_, work_;

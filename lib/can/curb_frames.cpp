@@ -35,7 +35,7 @@ constexpr std::array<CurbField, fields> layout{{
      field(curb_ahead_id, 56, 2, 1.0), 0, 3},
     {"CurbAhead", "Probability", "", "That the ground on both sides is not one plane.",
      field(curb_ahead_id, 58, 6, 0.02), 0, 1},
-    {"CurbStatus", "Counter", "", "One more each time; do not trust CurbAhead while it stands.",
+    {"CurbStatus", "Counter", "", "One more with each CurbAhead, which is not to be trusted while it stands.",
      field(curb_status_id, 0, 8, 1.0), 0, 255},
     {"CurbStatus", "Tilt", "", "The tilt servo: 0 never seen, 1 ok, 2 stale.", field(curb_status_id, 8, 2, 1.0), 0, 2},
     {"CurbStatus", "Curbs", "", "In the window; 255 is that or more.", field(curb_status_id, 16, 8, 1.0), 0, 255},

@@ -1,6 +1,7 @@
 // Curbs for the rest of the robot, as CAN frames: what a motor or brake controller needs of the curb ahead, without
-// JSON and without Linux. Written by the daemon or by firmware, after each scan line; tools/robots/curb_ahead.dbc is
-// their DBC.
+// JSON and without Linux. Written by the daemon or by firmware: after each scan line that was taken a CurbAhead, then a
+// CurbStatus; after one that was dropped (no tilt, say) a CurbStatus alone, since nothing new is known of the way.
+// tools/robots/curb_ahead.dbc is their DBC.
 //
 // Both are standard frames of ids that CANopen (CiA 301) leaves free and that no preset servo uses; all numbers little
 // endian, x ahead and y left of the base frame.
@@ -14,7 +15,8 @@
 //   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp
 //   bits 58-63  probability    u6, 0.02, 0 to 1
 // CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
-//   bits 0-7    counter        u8, one more each time, wraps; a receiver that sees it stand does not trust CurbAhead
+//   bits 0-7    counter        u8, one more with each CurbAhead, wraps; a receiver that sees it stand, or sees no
+//                              CurbStatus, does not trust CurbAhead
 //   bits 8-9    tilt           0 never seen, 1 ok, 2 stale: see curbline/tilt_watch.hpp
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //

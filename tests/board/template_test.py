@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that gives it a drive, tells the motors after each scan
-line of the curbs that the desk's own run over that drive has: as many of them, and the height of the one ahead."""
+line of the curbs that the desk's own run over that drive has: as many of them, and the height of the one ahead. Where the servo is silent
+for a second the counter stands, with each line that is dropped."""
 import os
 import struct
 import subprocess
@@ -15,7 +16,7 @@ import run_drives  # noqa: E402
 
 CURB = struct.Struct("<7f3H")
 COUNTERS = 17 * 4
-AHEAD, STATUS = 0x6A0, 0x6A1  # of lib/can/curb_frames.hpp
+AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # of lib/can/curb_frames.hpp
 HALF_WIDTH = 0.5  # of template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # in a record of a frame
 
@@ -50,19 +51,61 @@ def told_by_results(path):
             yield count, None if ahead is None else ahead[1] * 1000
 
 
+def lines_told(path):
+    """(AHEAD or None, STATUS) after each scan line, of the frames that the robot sent."""
+    ahead = None
+    for _, record in run_bus.records(path):
+        frame_id, data = struct.unpack_from("<I", record, FRAME_ID)[0], record[FRAME_DATA:]
+        if frame_id == AHEAD:
+            assert ahead is None
+            ahead = data
+        else:
+            assert frame_id == STATUS
+            yield ahead, data
+            ahead = None
+
+
 def told_by_frames(path):
-    """The same of the frames that the robot sent: an AHEAD and a STATUS after each line."""
-    frames = [(struct.unpack_from("<I", r, FRAME_ID)[0], r[FRAME_DATA:]) for _, r in run_bus.records(path)]
-    for (ahead_id, ahead), (status_id, status) in zip(frames[::2], frames[1::2], strict=True):
-        assert (ahead_id, status_id) == (AHEAD, STATUS)
-        yield status[2], struct.unpack_from("<h", ahead, 4)[0] if ahead[7] & 3 else None
+    """The same as told_by_results() of the frames that the robot sent."""
+    for ahead, status in lines_told(path):
+        if ahead is not None:
+            yield status[2], struct.unpack_from("<h", ahead, 4)[0] if ahead[7] & 3 else None
+
+
+def run(program, drive, sent):
+    subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
+
+
+def silence_servo(drive, out):
+    """Writes the drive without the CAN frames of its second second."""
+    start_ns = next(run_bus.frame_time(record) for kind, record in run_bus.records(drive) if kind == run_bus.CAN_FRAME)
+    with out.open("wb") as file:
+        for kind, record in run_bus.records(drive):
+            if kind != run_bus.CAN_FRAME or not 1e9 < run_bus.frame_time(record) - start_ns < 2e9:
+                file.write(record)
+
+
+def check_silence(program, drive, folder):
+    """A line that is dropped is told too, by a counter that stands; one that is taken by an AHEAD and a counter that is one more."""
+    silent, sent = folder / "silent.drive", folder / "silent.sent"
+    silence_servo(drive, silent)
+    run(program, silent, sent)
+    told = list(lines_told(sent))
+    for line, ((_, before), (ahead, status)) in enumerate(zip(told, told[1:]), 1):
+        if status[0] != (before[0] + (ahead is not None)) % 256:
+            sys.exit(f"line {line}: the counter goes from {before[0]} to {status[0]} with{'out' if ahead is None else ''} a curb ahead")
+    dropped = [status[1] & 3 for ahead, status in told if ahead is None]
+    if len(dropped) < 20 or STALE not in dropped or told[-1][0] is None:
+        sys.exit(f"a servo that is silent for a second: {len(dropped)} lines are told as dropped, their tilt as {sorted(set(dropped))}")
+    print(f"{len(dropped)} lines dropped while the servo was silent")
 
 
 def main(build, program):
     folder = run_drives.results_folder(build, "template")
     folder.mkdir(parents=True, exist_ok=True)
     drive, sent = drives.folder(build) / "street.drive", folder / "street.sent"
-    subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
+    run(program, drive, sent)
+    check_silence(program, drive, folder)
     ours = list(told_by_frames(sent))
     theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "street.results"))
     for line, (a, b) in enumerate(zip(ours, theirs)):

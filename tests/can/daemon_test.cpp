@@ -158,7 +158,7 @@ TEST_CASE(
 TEST_CASE("daemon: a servo that falls silent is an error state, told once, on the socket and on CAN, until it reports",
           "[daemon]") {
   SocketCan receiver;
-  const std::array ids{socketcan::Filter{can::curb_status_id, 0x7FF, false}};
+  const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
   REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
   Service service(daemon_words({"--can-out"}));
   const auto state_is = [](const char* state) {
@@ -183,11 +183,25 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   CHECK(times_said(outcome.err, "the tilt servo is silent") == 1);
   CHECK(times_said(outcome.err, "the tilt servo reports again") == 1);
   std::set<TiltState> sent;
+  std::optional<can::CurbAhead> ahead;
+  std::uint8_t counter = 255;
+  int taken = 0, dropped = 0;
+  bool renewed = false;
   for (const can::Frame& frame : socketcan::testing::receive_all(receiver)) {
+    if (can::read_curb_ahead(frame, ahead)) {
+      renewed = true;
+      continue;
+    }
     can::CurbStatus read;
     REQUIRE(can::read_curb_status(frame, read));
     sent.insert(read.tilt);
+    ++(renewed ? taken : dropped);
+    counter = static_cast<std::uint8_t>(counter + renewed);
+    CHECK(read.counter == counter);  // it stands with a line that was dropped
+    renewed = false;
   }
+  CHECK(status.at("pipeline").at("lines") == taken);
+  CHECK(status.at("pipeline").at("lines_dropped") == dropped);
   CHECK(sent.count(TiltState::stale) == 1);
   check_alike(last_curbs(service.lines()), undisturbed_end());
 }

@@ -2,6 +2,7 @@
 // order, and time is theirs. What the robot sends is written to a file, as records.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -46,6 +47,7 @@ class Port {
     curbline::drive_log::ScanLineHead head;
     const std::span<float> ranges_m = std::span(ranges_m_).first((header_.bytes - sizeof head) / sizeof(float));
     if (std::fread(&head, sizeof head, 1, drive_) != 1) stop("the drive is cut");
+    now_ns_ = std::max(now_ns_, head.time_ns);
     if (std::fread(ranges_m.data(), sizeof(float), ranges_m.size(), drive_) != ranges_m.size())
       stop("the drive is cut");
     next();
