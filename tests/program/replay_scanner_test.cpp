@@ -1,6 +1,7 @@
 // replay from simulated scanners on this machine, against replay of the log that they play.
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <thread>
 
@@ -122,14 +123,17 @@ TEST_CASE("program: lines of an LMS200 on a pty give the log's map") {
 
 TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {
   const Recording logs("street", "utm30lx");
-  const Playing scanner(Protocol::scip2, logs.path("scans.carmen"), {.speed = 1});
-  std::string line = "timeout --preserve-status -s INT 2 " CURBLINE_PROGRAM;
+  const std::string pid = logs.path("pid"), out = logs.path("summary.json");
+  const auto press_ctrl_c = [&](auto&, long sent) {
+    if (sent == 80) ::kill(std::stoi(read_file(pid)), SIGINT);
+  };
+  const Playing scanner(Protocol::scip2, logs.path("scans.carmen"), {.speed = 1, .damage = press_ctrl_c});
+  std::string line = "echo $$ > '" + pid + "'; exec " CURBLINE_PROGRAM;
   for (const std::string& word : logs.replay("scans", scanner.address()) + Words{"--json"}) line += " '" + word + "'";
-  const std::string out = logs.path("summary.json");
-  CHECK(std::system((line + " > " + out).c_str()) == 0);
+  CHECK(std::system((line + " > '" + out + "'").c_str()) == 0);
   const auto summary = nlohmann::json::parse(read_file(out));
-  CHECK(summary.at("lines") > 20);
-  CHECK(summary.at("lines") < 120);
+  CHECK(summary.at("lines") > 0);
+  CHECK(summary.at("lines") <= 81);
 }
 
 TEST_CASE("program: a scanner that is not there, or has other beams than the robot, is refused") {

@@ -149,10 +149,10 @@ TEST_CASE("line queue: under any traffic lines stay in order, whole, and every o
   std::int64_t now = t0, tilt = none, last = none;
   for (int k = 0; k < 20'000; ++k) {
     now += static_cast<std::int64_t>(random() % 30) * ms;
-    const Line line(k, random() % 13);
+    const Line line(k, static_cast<unsigned>(random() % 13));
     q.push(line.line(), now);
     if (k % 1000 < 500 && random() % 3 != 0) tilt = t0 + 25 * ms * k + static_cast<std::int64_t>(random() % 60) * ms;
-    for (unsigned n = random() % 3; n > 0; --n) {
+    for (auto n = random() % 3; n > 0; --n) {
       const auto out = q.pop(tilt, now, 0.0f);
       if (!out) break;
       REQUIRE(out->time_ns > last);

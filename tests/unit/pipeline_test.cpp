@@ -91,7 +91,8 @@ TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatev
 /// A front of 0.6 m, a metre wide, before the step of a street.
 float with_front(float range_m, int beam, int line) {
   const double bearing = -0.5 * pi + pi / 360.0 * beam;
-  const double tilt = NoddingLaser::tilt_rad(NoddingLaser::line_time_s(line) + LaserSettings{}.beam_interval_s * beam);
+  const double tilt = NoddingLaser::tilt_rad(NoddingLaser::line_time_s(line) +
+                                             static_cast<double>(LaserSettings{}.beam_interval_s) * beam);
   const double to_front_m = 1.4 / (std::cos(bearing) * std::cos(tilt));
   const double y_m = to_front_m * std::sin(bearing), z_m = 1.0 - to_front_m * std::cos(bearing) * std::sin(tilt);
   const bool hit = std::abs(y_m) < 0.5 && z_m > 0.0 && z_m < 0.6 && to_front_m > 0.0;
