@@ -5,7 +5,7 @@
 //     as well as the face; what lies beyond is flatter than the rays.
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils) follow the ground, away from
 //     the laser, and lie below it. They fall as far as is seen of the step.
-// Cost: two passes over the window and a look at each cell of a gap, a face and a veil.
+// Cost: a pass over the window and a look at each cell of a gap, a face and a veil.
 #pragma once
 
 #include <array>
@@ -79,7 +79,6 @@ class BorderFinder {
     int last_of_veil;  ///< place along the line
   };
 
-  bool find_ground();
   Border border_of(const Gap& gap) const;
   End find_face_end(const Gap& gap, int toward) const;
   Border border_of_face(const End& end) const;
@@ -121,53 +120,20 @@ class BorderFinder {
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
   const Viewpoint& view_;
-  std::array<bool, limits.planes> ground_{}, veil_{};
 };
 
-/// Which labels are planes of the ground, and not clutter: labels most of whose cells lie off their plane, so that its
-/// robust standard deviation (1.4826 times the median residual) exceeds the bound. Cells that were left to a plane by
-/// what is no ground do not speak for it; a label may outlive its plane by a line. Those that fall away as rays do are
-/// taken for veils. False if there is nothing for a curb to lie between: two planes, or one and what may be a veil.
-template <Limits limits>
-bool BorderFinder<limits>::find_ground() {
-  std::array<int, limits.planes> cells{}, off{};
-  bool any_veil = false;
-  const float bound = settings_.max_roughness_m / 1.4826f;
-  dem_.for_each_valid([&](int i, int j, int s) {
-    if (!mixture_.on_ground(s)) {
-      any_veil |= !mixture_.covered(s);
-      return;
-    }
-    const LabelType label = field_.label(s);
-    if (label == none) return;
-    const Cell& cell = dem_.cell(s);
-    const float residual = dem_.above_m(i, j, cell, mixture_.plane(label));
-    ++cells[label];
-    off[label] += residual > bound || residual < -bound;
-  });
-  int ground = 0;
-  for (std::size_t l = 0; l < ground_.size(); ++l) {
-    const auto label = static_cast<int>(l);
-    const bool smooth = mixture_.plane(label).alive() && cells[l] > 0 && 2 * off[l] <= cells[l];
-    veil_[l] = smooth && mixture_.falls_as_rays(label);
-    ground_[l] = smooth && !veil_[l];
-    ground += ground_[l];
-    any_veil |= veil_[l];
-  }
-  return ground > 1 || (ground == 1 && any_veil);
-}
-
+/// Does a cell bear a plane that a curb may have for a side? A label may outlive its plane by a line.
 template <Limits limits>
 bool BorderFinder<limits>::bears_ground(int slot) const {
   const LabelType label = field_.label(slot);
-  return label != none && ground_[label] && mixture_.on_ground(slot);
+  return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.falls_as_rays(label);
 }
 
-/// Does a cell mix two sides, or may it?
+/// Does a cell mix two sides, or may it, since its plane falls away as the rays do?
 template <Limits limits>
 bool BorderFinder<limits>::is_veil(int slot) const {
   const LabelType label = field_.label(slot);
-  return mixture_.on_ground(slot) ? label != none && veil_[label] : !mixture_.covered(slot);
+  return mixture_.on_ground(slot) ? label != none && mixture_.falls_as_rays(label) : !mixture_.covered(slot);
 }
 
 /// Within three standard deviations.
@@ -180,7 +146,6 @@ bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& 
 /// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
 template <Limits limits>
 void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
-  if (!find_ground()) return;
   const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
   const auto pass = [&](Place& before, const Place& here, const Line& line) {
     const Gap gap{line, before, here};

@@ -92,9 +92,7 @@ struct LabelSettings {
 };
 
 struct CurbSettings {
-  int link_reach = 5;  ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
-  float max_roughness_m =
-      0.03f;  ///< robust sd of a label's cells above which it is clutter: the range-finder's stated accuracy
+  int link_reach = 5;       ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
   float max_step_m = 0.3f;  ///< higher is an obstacle, no curb: kerbs and steps of stairs stay below 0.2 m, and half as
                             ///< much again for the unusual
 };

@@ -39,7 +39,6 @@ void read_labels(TomlTable table, LabelSettings& labels) {
 
 void read_curbs(TomlTable table, CurbSettings& curbs) {
   table.read_whole("link_reach", curbs.link_reach, 1, max_link_reach);
-  table.read("max_roughness_m", curbs.max_roughness_m, {1e-3, 1.0});
   table.read("max_step_m", curbs.max_step_m, {1e-3, 10.0});
   table.done();
 }
