@@ -53,8 +53,10 @@ void take_poses() {
 /// To the motors, after a scan line: the curb that the robot meets first, if the line was taken. They know by the
 /// counter whether it was.
 void tell(bool taken) {
-  const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m));
-  if (taken && port.send(ahead)) ++curbs_told;
+  if (taken) {
+    const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m));
+    if (port.send(ahead)) ++curbs_told;
+  }
   port.send(can::curb_status_frame({curbs_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
 }
 

@@ -169,7 +169,7 @@ void Daemon::take_frame(can::Frame frame) {
   if (!reading || !pipeline_->add_tilt(*reading)) return;
   newest_tilt_ns_ = reading->time_ns;
   newest_frame_ns_ = received_ns;
-  newest_arrival_ns_ = scanner::host_now().steady_ns;
+  newest_arrival_ns_ = scanner::steady_now_ns();
   by_frame_ = true;
   take_lines();
   by_frame_ = false;
@@ -195,7 +195,7 @@ void Daemon::take_lines() {
   for (;;) {
     bool covered = false;
     const float offset_s = pipeline_->tilt_latency().latest_offset_s();
-    const auto line = inbox_.pop(newest_tilt_ns_, scanner::host_now().steady_ns, offset_s, covered);
+    const auto line = inbox_.pop(newest_tilt_ns_, scanner::steady_now_ns(), offset_s, covered);
     if (!line) return;
     take_line(*line);
     if (covered && by_frame_) latency_.add(scanner::host_now().host_ns - newest_frame_ns_);
@@ -203,9 +203,9 @@ void Daemon::take_lines() {
 }
 
 void Daemon::take_line(const ScanLine& line) {
-  const std::int64_t before_ns = scanner::host_now().steady_ns;
+  const std::int64_t before_ns = scanner::steady_now_ns();
   const Status status = pipeline_->take(line);
-  if (status == Status::ok) work_.add(scanner::host_now().steady_ns - before_ns);
+  if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
   last_line_ns_ = line.time_ns;
   give_curbs(line.time_ns);
   if (can_out_) send_curbs(status == Status::ok);
@@ -226,15 +226,17 @@ void Daemon::give_curbs(std::int64_t line_ns) {
 /// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows. The base
 /// frame is the map's: the robot stands.
 void Daemon::send_curbs(bool taken) {
-  const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
-  if (taken && bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
+  if (taken) {
+    const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
+    if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
+  }
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
   bus_.send(can::curb_status_frame({curbs_sent_, tilt_watch_.state(), curbs}));
 }
 
 /// What has happened, for the user; some times a second.
 void Daemon::look_around() {
-  const std::int64_t now_ns = scanner::host_now().steady_ns;
+  const std::int64_t now_ns = scanner::steady_now_ns();
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
   const TiltEvent tilt = tilt_settings_.fixed ? TiltEvent::none : tilt_watch_.update(newest_arrival_ns_, now_ns);

@@ -47,7 +47,7 @@ void ScannerThread::run() {
 void ScannerThread::take_line() {
   const scanner::Line& line = link_.session->line();
   if (has_beams_of_laser(line)) {
-    inbox_.push({line.host_ns, line.ranges_m}, scanner::host_now().steady_ns);
+    inbox_.push({line.host_ns, line.ranges_m}, scanner::steady_now_ns());
     return;
   }
   const std::lock_guard lock(mutex_);

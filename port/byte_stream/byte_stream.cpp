@@ -34,6 +34,11 @@ speed_t speed_of(int baud) {
   }
 }
 
+/// Below 0 when it is over.
+Milliseconds left_until(std::chrono::steady_clock::time_point give_up) {
+  return std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
+}
+
 /// True when the descriptor is ready in time. False: not, or a signal came.
 bool wait_for(int fd, short events, Milliseconds patience) {
   pollfd poll_fd{fd, events, 0};
@@ -89,7 +94,7 @@ int ByteStream::connect_tcp(Milliseconds patience) {
   int untried = 0, failed = 0;
   for (const addrinfo* address = addresses_.get(); address != nullptr; address = address->ai_next) ++untried;
   for (const addrinfo* address = addresses_.get(); address != nullptr; address = address->ai_next, --untried) {
-    const auto left = std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
+    const Milliseconds left = left_until(give_up);
     failed = connect_tcp(*address, left / untried);
     if (failed == 0) break;
     close();
@@ -155,7 +160,7 @@ bool ByteStream::write(std::span<const std::uint8_t> bytes, Milliseconds patienc
       bytes = bytes.subspan(static_cast<std::size_t>(put));
       continue;
     }
-    const auto left = std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
+    const Milliseconds left = left_until(give_up);
     const bool try_again = put < 0 && (errno == EAGAIN || errno == EINTR) && left.count() > 0;
     if (!try_again) break;
     wait_for(fd_, POLLOUT, left);

@@ -16,19 +16,24 @@ std::int64_t nanoseconds(port::Milliseconds time) {
   return std::chrono::nanoseconds(time).count();
 }
 
+std::int64_t read_clock(clockid_t clock) {
+  timespec t{};
+  ::clock_gettime(clock, &t);
+  return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec;
+}
+
 }  // namespace
 
+std::int64_t steady_now_ns() {
+  return read_clock(CLOCK_MONOTONIC);
+}
+
 Now host_now() {
-  const auto read_clock = [](clockid_t clock) {
-    timespec t{};
-    ::clock_gettime(clock, &t);
-    return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec;
-  };
   Now now;
   std::int64_t least_ns = INT64_MAX;
   for (int i = 0; i < 2; ++i) {  // interrupted between the clocks once, hardly twice in a row
-    const std::int64_t before_ns = read_clock(CLOCK_MONOTONIC), host_ns = read_clock(CLOCK_REALTIME);
-    const std::int64_t took_ns = read_clock(CLOCK_MONOTONIC) - before_ns;
+    const std::int64_t before_ns = steady_now_ns(), host_ns = read_clock(CLOCK_REALTIME);
+    const std::int64_t took_ns = steady_now_ns() - before_ns;
     if (took_ns >= least_ns) continue;
     least_ns = took_ns;
     now = {host_ns, before_ns};
@@ -55,7 +60,7 @@ int LiveScanner::open() {
 }
 
 LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
-  const std::int64_t until_ns = host_now().steady_ns + nanoseconds(patience);
+  const std::int64_t until_ns = steady_now_ns() + nanoseconds(patience);
   while (true) {
     if (!stream_.is_open()) return reopen(patience);
     if (more_) {
@@ -66,10 +71,9 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
       }
     }
     if (!send_what_is_due()) return lose(last_error_);
-    const Now now = host_now();
-    if (now.steady_ns - last_line_ns_ > nanoseconds(options_.silence)) return lose(ETIMEDOUT);
-    const auto rest =
-        std::chrono::duration_cast<port::Milliseconds>(std::chrono::nanoseconds(until_ns - now.steady_ns));
+    const std::int64_t now_ns = steady_now_ns();
+    if (now_ns - last_line_ns_ > nanoseconds(options_.silence)) return lose(ETIMEDOUT);
+    const auto rest = std::chrono::duration_cast<port::Milliseconds>(std::chrono::nanoseconds(until_ns - now_ns));
     std::size_t count = 0;
     const auto got = stream_.read(buffer_, count, std::clamp(rest, port::Milliseconds{0}, look_again));
     if (got == port::ByteStream::Read::closed) return lose(0);
@@ -77,8 +81,7 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
       received_ = host_now();
       left_ = std::span(buffer_).first(count);
       more_ = true;
-    } else if (rest.count() <= 0 ||
-               (rest > look_again && host_now().steady_ns - now.steady_ns < nanoseconds(look_again) / 2)) {
+    } else if (rest.count() <= 0 || (rest > look_again && steady_now_ns() - now_ns < nanoseconds(look_again) / 2)) {
       return Event::nothing;  // the time is over, or a signal cut the wait short
     }
   }
@@ -99,7 +102,7 @@ bool LiveScanner::send_what_is_due() {
 
 LiveScanner::Event LiveScanner::reopen(port::Milliseconds patience) {
   if (!options_.reconnect && connections_ > 0) return Event::lost;
-  const std::int64_t wait_ns = next_attempt_ns_ - host_now().steady_ns;
+  const std::int64_t wait_ns = next_attempt_ns_ - steady_now_ns();
   if (wait_ns > 0) {
     std::this_thread::sleep_for(std::min(std::chrono::nanoseconds(wait_ns), std::chrono::nanoseconds(patience)));
     return Event::nothing;
@@ -112,7 +115,7 @@ LiveScanner::Event LiveScanner::lose(int error) {
   left_ = {};
   more_ = false;
   last_error_ = error;
-  next_attempt_ns_ = host_now().steady_ns;
+  next_attempt_ns_ = steady_now_ns();
   return Event::lost;
 }
 

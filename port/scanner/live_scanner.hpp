@@ -67,4 +67,7 @@ class LiveScanner {
 /// The host's clocks now: CLOCK_REALTIME, which stamps CAN frames too, and CLOCK_MONOTONIC.
 Now host_now();
 
+/// CLOCK_MONOTONIC alone.
+std::int64_t steady_now_ns();
+
 }  // namespace curbline::scanner

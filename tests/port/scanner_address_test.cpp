@@ -1,5 +1,4 @@
 // A scanner by a name that has several addresses, as "localhost" has ::1 and 127.0.0.1.
-#include <arpa/inet.h>
 #include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -8,6 +7,7 @@
 #include <cstring>
 
 #include "byte_stream/byte_stream.hpp"
+#include "scanner_support.hpp"
 
 extern "C" {
 int __real_getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found);
@@ -26,42 +26,28 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Listens on an address of this machine. A silent one answers no more: its queue of connections is full.
-class Listener {
+/// Answers no more: its queue of connections is full.
+class SilentListener {
  public:
-  enum class Kind { answers, silent };
-
-  Listener(const char* host, std::uint16_t at_port, Kind kind) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(at_port);
-    REQUIRE(::inet_pton(AF_INET, host, &address.sin_addr) == 1);
+  SilentListener(const char* host, std::uint16_t at_port) : listener_(host, at_port, 0) {
+    sockaddr_storage address{};
     socklen_t size = sizeof address;
     auto* any = reinterpret_cast<sockaddr*>(&address);
-    REQUIRE(::bind(socket_, any, size) == 0);
-    REQUIRE(::listen(socket_, kind == Kind::silent ? 0 : 4) == 0);
-    REQUIRE(::getsockname(socket_, any, &size) == 0);
-    port = ntohs(address.sin_port);
+    REQUIRE(::getsockname(listener_.fd(), any, &size) == 0);
     for (int& waiting : waiting_) {
-      if (kind == Kind::answers) break;
       waiting = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
       ::connect(waiting, any, size);
     }
   }
-  ~Listener() {
-    for (const int waiting : waiting_) {
-      if (waiting >= 0) ::close(waiting);
-    }
-    ::close(socket_);
+  ~SilentListener() {
+    for (const int waiting : waiting_) ::close(waiting);
   }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  std::uint16_t port = 0;
+  SilentListener(const SilentListener&) = delete;
+  SilentListener& operator=(const SilentListener&) = delete;
 
  private:
-  int socket_;
-  std::array<int, 4> waiting_{-1, -1, -1, -1};
+  Listener listener_;
+  std::array<int, 4> waiting_{};
 };
 
 port::ByteStream two_addresses(std::uint16_t port) {
@@ -72,31 +58,31 @@ port::ByteStream two_addresses(std::uint16_t port) {
 }
 
 TEST_CASE("address: a scanner that listens on the second address of its name is found there, each time anew") {
-  const Listener listener("127.0.0.1", 0, Listener::Kind::answers);
-  port::ByteStream stream = two_addresses(listener.port);
+  const Listener listener;
+  port::ByteStream stream = two_addresses(listener.port());
   CHECK(stream.connect(2s) == 0);
   CHECK(stream.connect(2s) == 0);
   CHECK(stream.is_open());
 }
 
 TEST_CASE("address: one that does not answer leaves time for the next") {
-  const Listener listener("127.0.0.1", 0, Listener::Kind::answers);
-  const Listener silent("127.0.0.2", listener.port, Listener::Kind::silent);
-  port::ByteStream stream = two_addresses(listener.port);
+  const Listener listener;
+  const SilentListener silent("127.0.0.2", listener.port());
+  port::ByteStream stream = two_addresses(listener.port());
   CHECK(stream.connect(200ms) == 0);
 }
 
 TEST_CASE("address: where none answers the last error is told, within the time given") {
   std::uint16_t free_port = 0;
   {
-    const Listener gone("127.0.0.1", 0, Listener::Kind::answers);
-    free_port = gone.port;
+    const Listener gone;
+    free_port = gone.port();
   }
-  const Listener first("127.0.0.2", free_port, Listener::Kind::silent);
+  const SilentListener first("127.0.0.2", free_port);
   port::ByteStream stream = two_addresses(free_port);
   CHECK(stream.connect(200ms) == ECONNREFUSED);
   CHECK_FALSE(stream.is_open());
-  const Listener second("127.0.0.1", free_port, Listener::Kind::silent);
+  const SilentListener second("127.0.0.1", free_port);
   const auto before = std::chrono::steady_clock::now();
   CHECK(stream.connect(200ms) == ETIMEDOUT);
   const auto took = std::chrono::steady_clock::now() - before;

@@ -1,5 +1,4 @@
 // Scanners over real TCP connections and ptys on this machine: set-up, restarts, closing, time.
-#include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <catch2/catch.hpp>
@@ -162,32 +161,19 @@ TEST_CASE("live: what is not there cannot be opened, and why is told") {
 /// A server of one telegram, over and over; it closes after every fifth. It asks the heap for nothing.
 class FiveAndOut {
  public:
-  explicit FiveAndOut(Bytes telegram) : telegram_(std::move(telegram)) {
-    listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    auto* any = reinterpret_cast<sockaddr*>(&address);
-    REQUIRE(::bind(listener_, any, size) == 0);
-    REQUIRE(::listen(listener_, 4) == 0);
-    REQUIRE(::getsockname(listener_, any, &size) == 0);
-    port = ntohs(address.sin_port);
-    thread_ = std::thread([this] { run(); });
-  }
+  explicit FiveAndOut(Bytes telegram) : telegram_(std::move(telegram)), thread_([this] { run(); }) {}
   ~FiveAndOut() {
     stop_ = true;
-    ::shutdown(listener_, SHUT_RDWR);
+    ::shutdown(listener_.fd(), SHUT_RDWR);
     thread_.join();
-    ::close(listener_);
   }
 
-  std::uint16_t port = 0;
+  std::uint16_t port() const { return listener_.port(); }
 
  private:
   void run() {
     while (!stop_) {
-      const int reader = ::accept(listener_, nullptr, nullptr);
+      const int reader = ::accept(listener_.fd(), nullptr, nullptr);
       if (reader < 0) return;
       std::array<std::uint8_t, 64> command{};
       if (::recv(reader, command.data(), command.size(), 0) > 0) {
@@ -198,7 +184,7 @@ class FiveAndOut {
   }
 
   Bytes telegram_;
-  int listener_ = -1;
+  Listener listener_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };
@@ -208,7 +194,7 @@ TEST_CASE("live: connecting, reading and connecting again ask the heap for nothi
   start(s);
   const FiveAndOut server(telegrams_of(s, 1)[0]);
   std::string error;
-  auto stream = port::ByteStream::tcp("127.0.0.1", server.port, error);
+  auto stream = port::ByteStream::tcp("127.0.0.1", server.port(), error);
   REQUIRE(stream);
   cola::Session session;
   LiveScanner live(session, std::move(*stream), {.retry_after = 1ms});
@@ -222,25 +208,16 @@ TEST_CASE("live: connecting, reading and connecting again ask the heap for nothi
 }
 
 TEST_CASE("live: a scanner that falls silent is connected anew") {
-  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* any = reinterpret_cast<sockaddr*>(&address);
-  REQUIRE(::bind(listener, any, size) == 0);
-  REQUIRE(::listen(listener, 4) == 0);  // nobody accepts, the kernel connects all the same
-  REQUIRE(::getsockname(listener, any, &size) == 0);
+  const Listener listener;
   std::string error;
   cola::Session session;
-  LiveScanner live(session, *port::ByteStream::tcp("127.0.0.1", ntohs(address.sin_port), error),
+  LiveScanner live(session, *port::ByteStream::tcp("127.0.0.1", listener.port(), error),
                    {.retry_after = 10ms, .silence = 200ms});
   int lost = 0;
   for (int i = 0; i < 40 && lost < 2; ++i) lost += live.read(50ms) == LiveScanner::Event::lost;
   CHECK(lost == 2);
   CHECK(live.connections() >= 2);
   CHECK(live.last_error() == ETIMEDOUT);
-  ::close(listener);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {
   for (const std::string& word : logs.replay("scans", scanner.address()) + Words{"--json"}) line += " '" + word + "'";
   CHECK(std::system((line + " > '" + out + "'").c_str()) == 0);
   const auto summary = nlohmann::json::parse(read_file(out));
-  CHECK(summary.at("lines") > 0);
+  CHECK(summary.at("lines") > 20);
   CHECK(summary.at("lines") <= 81);
 }
 
