@@ -27,10 +27,11 @@ class TiltLatency {
 
   enum class Turn : std::uint8_t {
     none,
-    back,  ///< of a damaged reading, or play: the sweep goes on
+    back,  ///< by play: the sweep goes on
     new_sweep,
   };
-  /// The angle and its rate at the beginning of a line: has the servo turned round since the last?
+  /// The angle and its rate at the beginning of a line: has the servo turned round? Known from two lines on end: one
+  /// alone may go by a damaged reading.
   Turn follow(float angle_rad, float rate_rad_s);
 
   /// A point of the line on ground that an earlier sweep has mapped.
@@ -93,6 +94,7 @@ class TiltLatency {
 
   bool drives_ = false, begun_ = false, turned_ = false;
   bool downward_ = false;           ///< the angle grows
+  bool turns_ = false;              ///< it seems to grow no more, or again, by the last line
   float turned_at_rad_ = 0.0f;      ///< where the sweep began
   float prior_variance_s2_ = 0.0f;  ///< of an offset of which nothing has been seen
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;

@@ -52,7 +52,10 @@ TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
     downward_ = downward;
     turned_at_rad_ = angle_rad;
   }
-  if (downward == downward_) return Turn::none;
+  const bool turned_before = turns_;
+  turns_ = downward != downward_;
+  if (!turns_ || !turned_before) return Turn::none;
+  turns_ = false;
   downward_ = downward;
   if (!drives_) take_up_other_direction();
   const float swept = angle_rad - turned_at_rad_;

@@ -215,15 +215,35 @@ TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
   }
 }
 
-TEST_CASE("tilt latency: the first sweep is no new one, a turn is, a damaged reading is not") {
+TEST_CASE("tilt latency: the first sweep is no new one; a turn is, when a second line on end tells of it") {
   TiltLatency latency = started();
   CHECK(latency.follow(0.20f, rate_rad_s) == Turn::none);
   CHECK(latency.follow(0.60f, rate_rad_s) == Turn::none);
-  CHECK(latency.follow(0.61f, -rate_rad_s) == Turn::new_sweep);
-  CHECK(latency.follow(0.60f, rate_rad_s) == Turn::back);
-  CHECK(latency.follow(0.59f, -rate_rad_s) == Turn::back);
+  CHECK(latency.follow(0.61f, -rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.60f, -rate_rad_s) == Turn::new_sweep);
   CHECK(latency.follow(0.30f, -rate_rad_s) == Turn::none);
-  CHECK(latency.follow(0.30f, rate_rad_s) == Turn::new_sweep);
+  CHECK(latency.follow(0.30f, rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.31f, rate_rad_s) == Turn::new_sweep);
+}
+
+TEST_CASE("tilt latency: a damaged reading, by which one line goes the other way, turns nothing round") {
+  TiltLatency latency = started();
+  for (int line = 0; line < 40; ++line) {
+    const float angle_rad = 0.2f + 0.02f * static_cast<float>(line);
+    const bool damaged = line % 4 == 2;
+    CHECK(latency.follow(damaged ? angle_rad + 0.5f : angle_rad, damaged ? -50.0f : rate_rad_s) == Turn::none);
+  }
+}
+
+TEST_CASE("tilt latency: play of a servo where a sweep begins is no sweep") {
+  TiltLatency latency = started();
+  latency.follow(0.20f, rate_rad_s);
+  latency.follow(0.60f, -rate_rad_s);
+  REQUIRE(latency.follow(0.60f, -rate_rad_s) == Turn::new_sweep);
+  CHECK(latency.follow(0.60f, rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.61f, rate_rad_s) == Turn::back);
+  CHECK(latency.follow(0.61f, -rate_rad_s) == Turn::none);
+  CHECK(latency.follow(0.60f, -rate_rad_s) == Turn::back);
 }
 
 TEST_CASE("tilt latency: a servo that stands still turns nowhere") {
