@@ -23,6 +23,7 @@
 #include "curbline/region_graph.hpp"     // merging by evidence
 #include "curbline/plane.hpp"            // moments, evidence, fit
 #include "curbline/plane_mixture.hpp"    // labels that live on
+#include "curbline/common_noise.hpp"     // what their cells err alike
 #include "curbline/ground.hpp"           // which planes are ground
 #include "curbline/label_field.hpp"      // belief propagation
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits

@@ -59,6 +59,10 @@ class Dem {
   /// what a cell of more than one surface has of earlier ones fade. O(1).
   bool add(const Point& point);
 
+  /// What is known before any point; PlanePrior::common_share as it was set last.
+  const PlanePrior& prior() const { return prior_; }
+  void set_common_share(float share) { prior_.common_share = share; }
+
   int rows() const { return settings_.rows; }
   int cols() const { return settings_.cols; }
   float cell_x_m() const { return settings_.cell_x_m; }

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/common_noise.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/curb_tracer.hpp"
 #include "curbline/dem.hpp"
@@ -112,6 +113,7 @@ class Pipeline {
   void follow_regions();
   int follow_labels(FieldScope scope);
   void follow_curbs();
+  void follow_noise();
   Eigen::Vector3f p_base_tilt() const {
     const MountSettings& mount = settings_.tilt.T_base_tilt;
     return {mount.x_m, mount.y_m, mount.z_m};
@@ -123,6 +125,7 @@ class Pipeline {
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;  ///< which half of the inference is due
+  bool noise_next_ = false;
   RisingTimes line_times_{};
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
@@ -150,6 +153,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   settings_ = settings;
   counters_ = Counters{};
   planes_next_ = true;
+  noise_next_ = false;
   line_times_ = RisingTimes{};
   p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
@@ -183,6 +187,7 @@ Status Pipeline<limits>::take(const ScanLine& line) {
   } else {
     follow_labels(FieldScope::line);
     follow_curbs();
+    follow_noise();
   }
   planes_next_ = !planes_next_;
   return status;
@@ -312,6 +317,7 @@ void Pipeline<limits>::infer() {
   follow_regions();
   follow_labels(FieldScope::line);
   follow_curbs();
+  follow_noise();
 }
 
 template <Limits limits>
@@ -356,6 +362,15 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
   curb_tracer_.trace(dem_, plane_mixture_, label_field_, view(), workspace_.curbs(), counters_);
+}
+
+/// It changes slowly: after every second inference.
+template <Limits limits>
+void Pipeline<limits>::follow_noise() {
+  noise_next_ = !noise_next_;
+  if (noise_next_) return;
+  const CommonNoise<limits> noise(dem_, plane_mixture_);
+  dem_.set_common_share(noise.share(settings_.planes.prior, tilt_latency_.sd_s()));
 }
 
 template <Limits limits>

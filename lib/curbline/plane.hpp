@@ -31,10 +31,12 @@ struct PlanePrior {
   float texture_m2 =
       0.005f * 0.005f;   ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
   float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
-  float common_share =
-      0.5f;  ///< of that variance, common to all points of a cell: tilt timing, mount, texture; [0.01, 1]
+  /// Of that variance, common to all points of a cell: tilt timing, mount, texture; [least_common_share, 1]. The most
+  /// that is thought of: the pipeline finds what it is.
+  float common_share = 0.5f;
   float curvature_1_m = 0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre
 
+  static constexpr float least_common_share = 0.01f;
   /// Variance that the points of a cell have in common: averaging over them does not help against it.
   float common_m2() const { return common_share * noise_m2; }
 };
@@ -55,6 +57,8 @@ class PlaneEvidence {
  public:
   PlaneEvidence() : PlaneEvidence(PlanePrior{}) {}
   explicit PlaneEvidence(const PlanePrior& prior);
+
+  void set_common_share(float share) { prior_.common_share = share; }
 
   /// ln p(points | one plane) of the marginal likelihood, up to terms linear in the points that cancel between
   /// partitions of the same points. About 60 operations and 2 logarithms.

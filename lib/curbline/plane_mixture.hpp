@@ -161,7 +161,7 @@ void PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking, R
   for (std::size_t r = 0; r < ranking.regions; ++r) {
     Plane& plane = planes_[ranking.label[r]];
     if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[ranking.label[r]]) continue;
-    plane = fit_plane(*ranking.region[r].moments, ranking.region[r].moments->cells, settings_.prior);
+    plane = fit_plane(*ranking.region[r].moments, ranking.region[r].moments->cells, dem.prior());
     fitted[r] = true;
   }
   std::array<PlaneMoments, limits.planes> clean{};
@@ -175,7 +175,7 @@ void PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking, R
     if (clean[r].cells < least_clean_cells) continue;
     Plane& plane = planes_[ranking.label[r]];
     const float of_region_m2 = plane.variance_m2;
-    plane = fit_plane(clean[r], clean[r].cells, settings_.prior);
+    plane = fit_plane(clean[r], clean[r].cells, dem.prior());
     plane.variance_m2 = of_region_m2;
   }
 }
@@ -266,7 +266,7 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
     if (!planes_[l].alive() || cells[l] < 3.0f) continue;
-    planes_[l] = fit_plane(moments[l], cells[l], settings_.prior);
+    planes_[l] = fit_plane(moments[l], cells[l], dem.prior());
   }
 }
 

@@ -93,6 +93,7 @@ class Segmentation {
 template <Limits limits>
 void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, Counters& counters) {
   if (!dem.any_touched()) return;
+  evidence_.set_common_share(dem.prior().common_share);
   cut_touched_blocks(dem);
   dissolve_neighbours(dem);
   build_graph(dem, work, counters);

@@ -444,6 +444,19 @@ TEST_CASE("pipeline: a finished map settles, and then nothing changes any more")
   CHECK_FALSE(settled.empty());
 }
 
+TEST_CASE("pipeline: on ground that turns out to be even a step of 15 mm is found") {
+  const auto pipeline = started();
+  CHECK(pipeline->dem().prior().common_share == PlanePrior{}.common_share);
+  NoddingLaser laser;
+  stand(*pipeline, laser, {2.0, 0.015}, 0, 400);
+  CHECK(pipeline->dem().prior().common_share < 0.3f);
+  const Curb& curb = longest(pipeline->curbs());
+  CHECK(curb.kind == CurbKind::step_up);
+  CHECK(curb.height_m == Approx(0.015).margin(0.003));
+  REQUIRE(pipeline->init(NoddingLaser::settings()) == Status::ok);
+  CHECK(pipeline->dem().prior().common_share == PlanePrior{}.common_share);
+}
+
 TEST_CASE("pipeline: cells tell their plane and how sure it is") {
   const auto pipeline = started();
   NoddingLaser laser;

@@ -1,0 +1,138 @@
+// The share of a cell's noise that is common to its points, found again from fields of known variance and correlation.
+#include "curbline/common_noise.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::Stages;
+
+constexpr Limits limits{};
+constexpr std::size_t side = 40;
+
+Settings map_settings() {
+  return test::small_settings(side, side);
+}
+
+/// How far each cell lies off its plane: a first-order autoregression along both axes.
+class Unevenness {
+ public:
+  Unevenness(double sd_m, double r_x, double r_y, std::uint32_t seed = 1) {
+    test::Noise noise(seed);
+    const double fresh_x = std::sqrt(1.0 - r_x * r_x), fresh_y = std::sqrt(1.0 - r_y * r_y);
+    std::array<std::array<double, side>, side> along_y{};
+    for (std::size_t i = 0; i < side; ++i) {
+      for (std::size_t j = 0; j < side; ++j) {
+        const double fresh = noise.normal();
+        along_y[i][j] = j == 0 ? fresh : r_y * along_y[i][j - 1] + fresh_y * fresh;
+        at_[i][j] = i == 0 ? along_y[0][j] : r_x * at_[i - 1][j] + fresh_x * along_y[i][j];
+      }
+    }
+    for (auto& row : at_) {
+      for (double& off : row) off *= sd_m;
+    }
+  }
+  double operator()(double x_m, double y_m) const {
+    return at_[static_cast<std::size_t>(x_m * 10.0)][static_cast<std::size_t>(y_m * 10.0)];
+  }
+
+ private:
+  std::array<std::array<double, side>, side> at_{};
+};
+
+/// Share found on a map of such heights, where it may be anything.
+template <typename Height>
+float share_of(Height&& height_m) {
+  Stages<limits> stages(map_settings());
+  test::fill(stages.dem, height_m);
+  stages.infer(true);
+  PlanePrior prior;
+  prior.texture_m2 = 0.0f;
+  prior.common_share = 100.0f;
+  return CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f);
+}
+
+TEST_CASE("common noise: of cells that err each on its own it is their variance") {
+  CHECK(share_of(Unevenness(0.004, 0.0, 0.0)) == Approx(0.16).epsilon(0.15));
+  CHECK(share_of(Unevenness(0.008, 0.0, 0.0)) == Approx(0.64).epsilon(0.15));
+}
+
+TEST_CASE("common noise: of stripes it is more by (1 + r) / (1 - r), of patches by its square") {
+  const auto of_several = [](double r_x, double r_y) {
+    float sum = 0.0f;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) sum += share_of(Unevenness(0.004, r_x, r_y, seed));
+    return sum / 8.0f;
+  };
+  CHECK(of_several(0.5, 0.0) == Approx(0.48).epsilon(0.15));
+  CHECK(of_several(0.0, 0.5) == Approx(0.48).epsilon(0.15));
+  CHECK(of_several(0.5, 0.5) == Approx(1.44).epsilon(0.25));
+}
+
+TEST_CASE("common noise: cells that are no neighbours do not tell how alike neighbours are") {
+  const Unevenness stripes(0.004, 0.5, 0.0);
+  Stages<limits> stages(map_settings());
+  for (std::size_t i = 0; i < side; i += 2) {
+    for (std::size_t j = 0; j < side; ++j) {
+      const double x_m = 0.1 * static_cast<double>(i) + 0.05, y_m = 0.1 * static_cast<double>(j) + 0.05;
+      const auto z_m = static_cast<float>(stripes(x_m, y_m));
+      for (int k = 0; k < 4; ++k) stages.dem.add({static_cast<float>(x_m), static_cast<float>(y_m), z_m, 1e-4f});
+    }
+  }
+  stages.infer(true);
+  PlanePrior prior;
+  prior.texture_m2 = 0.0f;
+  CHECK(CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f) == Approx(0.16).epsilon(0.15));
+}
+
+TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
+  Stages<limits> stages(map_settings());
+  for (std::size_t i = 0; i < side; ++i) {
+    for (std::size_t j = 0; j < side; ++j) {
+      Point point{0.1f * static_cast<float>(i) + 0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f};
+      point.growth_m_s = 0.8f;
+      stages.dem.add(point);
+    }
+  }
+  stages.infer(true);
+  const CommonNoise<limits> noise(stages.dem, stages.mixture);
+  PlanePrior prior;
+  prior.common_share = 1.0f;
+  CHECK(noise.share(prior, 0.01f) == Approx(0.64).epsilon(0.01));
+  CHECK(noise.share(prior, 0.001f) == prior.texture_m2 / prior.noise_m2);
+}
+
+TEST_CASE("common noise: a plane that is a smaller part of the cells has no say") {
+  const Unevenness even(0.003, 0.0, 0.0), uneven(0.01, 0.5, 0.5);
+  const auto most = [](float at_m) { return [=](double x_m, double) { return x_m < static_cast<double>(at_m); }; };
+  const auto ground = [&](auto&& on_even) {
+    return
+        [&, on_even](double x_m, double y_m) { return on_even(x_m, y_m) ? even(x_m, y_m) : 0.25 + uneven(x_m, y_m); };
+  };
+  CHECK(share_of(ground(most(2.4f))) < 0.15f);
+  CHECK(share_of(ground(most(1.6f))) > 1.0f);
+}
+
+TEST_CASE("common noise: it lies between the texture's share and that of the settings, which holds where no plane is") {
+  Stages<limits> stages(map_settings());
+  const PlanePrior prior;
+  const auto share = [&] { return CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f); };
+  CHECK(share() == prior.common_share);
+  test::fill(stages.dem, Unevenness(0.001, 0.0, 0.0));
+  stages.infer(true);
+  CHECK(share() == prior.texture_m2 / prior.noise_m2);
+  PlanePrior without_texture;
+  without_texture.texture_m2 = 0.0f;
+  CHECK(CommonNoise<limits>(stages.dem, stages.mixture).share(without_texture, 0.0f) >= PlanePrior::least_common_share);
+  Stages<limits> rough(map_settings());
+  test::fill(rough.dem, Unevenness(0.01, 0.5, 0.5));
+  rough.infer(true);
+  CHECK(CommonNoise<limits>(rough.dem, rough.mixture).share(prior, 0.0f) == prior.common_share);
+}
+
+}  // namespace
+}  // namespace curbline
