@@ -18,8 +18,9 @@ enum class CurbKind : std::uint8_t {
 };
 const char* to_string(CurbKind kind);
 
-/// A straight piece of curb line, in the map frame. Near is the side of the robot. It ends half a cell beyond where
-/// both sides are seen; up to half of CurbSettings::link_reach farther if one is hidden there.
+/// A straight piece of curb line, in the map frame. Near is the side of the robot, and lies to the right of the way
+/// from (x0, y0) to (x1, y1). It ends half a cell beyond where both sides are seen; up to half of
+/// CurbSettings::link_reach farther if one is hidden there.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
   float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them and of the piece, along

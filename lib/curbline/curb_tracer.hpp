@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "curbline/border_finder.hpp"
 #include "curbline/borders.hpp"
@@ -64,6 +65,7 @@ class CurbTracer {
     float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
     float gap_m = 0.0f, cell_m = 0.0f;  ///< across it: between the cells' centres; of one cell
     bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
+    bool low_is_right = false;          ///< of the line, from its first end to its second
   };
 
   /// The other plane of a border. Where no ground is seen beyond the near one stands for it: no step but the drop, no
@@ -216,6 +218,8 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   piece.line = first == last ? LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m)
                              : fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
+  const float dx_m = piece.line.x1_m - piece.line.x0_m, dy_m = piece.line.y1_m - piece.line.y0_m;
+  piece.low_is_right = dx_m * toward_y - dy_m * toward_x >= 0.0f;
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
@@ -314,6 +318,10 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   }
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;
+  if (piece.low_is_right != piece.low_is_near) {
+    std::swap(piece.line.x0_m, piece.line.x1_m);
+    std::swap(piece.line.y0_m, piece.line.y1_m);
+  }
   curb.x0_m = dem.origin_x_m() + piece.line.x0_m;
   curb.y0_m = dem.origin_y_m() + piece.line.y0_m;
   curb.x1_m = dem.origin_x_m() + piece.line.x1_m;

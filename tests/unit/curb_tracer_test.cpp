@@ -79,6 +79,23 @@ TEST_CASE("curb tracer: seen from above the same step goes down") {
   CHECK(curb.near_label == stages->label_at(23, 0));
 }
 
+TEST_CASE(
+    "curb tracer: from its first end to its second the robot's side lies to the right, whatever way a curb runs") {
+  for (const double turn : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8}) {
+    const double nx = std::cos(turn), ny = std::sin(turn);
+    const auto across = [&](double x, double y) { return (x - 1.2) * nx + (y - 1.2) * ny; };
+    for (const double side : {-1.0, 1.0}) {
+      const auto robot_x = static_cast<float>(1.2 + side * nx), robot_y = static_cast<float>(1.2 + side * ny);
+      const auto stages = traced([&](double x, double y) { return across(x, y) < 0.0 ? 0.0 : 0.12; }, robot_x, robot_y);
+      REQUIRE_FALSE(stages->tracer.curbs().empty());
+      for (const Curb& c : stages->tracer.curbs()) {
+        const float dx = c.x1_m - c.x0_m, dy = c.y1_m - c.y0_m;
+        CHECK(dx * (robot_y - c.y0_m) - dy * (robot_x - c.x0_m) < 0.0f);
+      }
+    }
+  }
+}
+
 TEST_CASE("curb tracer: a step across y is found as well as one across x") {
   const auto stages = traced([](double, double y) { return y < 1.0 ? 0.12 : 0.0; }, 0.0f, 2.3f);
   REQUIRE(stages->tracer.curbs().size() == 1);
