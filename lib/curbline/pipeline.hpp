@@ -125,7 +125,7 @@ class Pipeline {
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;  ///< which half of the inference is due
-  bool noise_next_ = false;
+  bool noise_next_ = false;  ///< whether the next inference follows the noise
   RisingTimes line_times_{};
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
