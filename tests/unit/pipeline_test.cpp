@@ -280,7 +280,7 @@ TEST_CASE("pipeline: bad data leave no trace: the curbs are the same to the bit"
 TEST_CASE("pipeline: tilt readings that are damaged in the first sweep leave no wrong latency behind") {
   const auto pipeline = started();
   NoddingLaser laser;
-  // The reading before every eighth line of the first 2.5 s runs ahead by 0.1 s: from it to the next the servo goes
+  // The reading before every eighth line of the first 2.5 s runs ahead by 0.3 s: from it to the next the servo goes
   // back.
   const auto lag_s = [](double time_s) {
     const double line = (time_s + 0.005) / NoddingLaser::line_s;
