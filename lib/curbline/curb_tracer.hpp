@@ -214,12 +214,13 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   }
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
-  piece.low_is_near = toward_x * (piece.x_m - stages.view.x_m) + toward_y * (piece.y_m - stages.view.y_m) >= 0.0f;
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   piece.line = first == last ? LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m)
                              : fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
   const float dx_m = piece.line.x1_m - piece.line.x0_m, dy_m = piece.line.y1_m - piece.line.y0_m;
   piece.low_is_right = dx_m * toward_y - dy_m * toward_x >= 0.0f;
+  const bool robot_is_right = dx_m * (stages.view.y_m - piece.line.y0_m) <= dy_m * (stages.view.x_m - piece.line.x0_m);
+  piece.low_is_near = a.high == no_label<limits> || piece.low_is_right == robot_is_right;
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;

@@ -96,6 +96,18 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("curb tracer: near is the side of the line on which the robot stands, also in cells that are long") {
+  Settings settings = small_settings();
+  settings.window.cell_x_m = 0.2f;
+  settings.window.cell_y_m = 0.05f;
+  const auto rises = [](double x, double y) { return 0.4 * (x - 2.4) + (y - 0.6) > 0.0 ? 0.12 : 0.0; };
+  const auto below = traced(rises, 0.4f, 1.2f, settings), above = traced(rises, 0.4f, 1.6f, settings);
+  REQUIRE(below->tracer.curbs().size() == 1);
+  REQUIRE(above->tracer.curbs().size() == 1);
+  CHECK(below->tracer.curbs()[0].kind == CurbKind::step_up);
+  CHECK(above->tracer.curbs()[0].kind == CurbKind::step_down);
+}
+
 TEST_CASE("curb tracer: a step across y is found as well as one across x") {
   const auto stages = traced([](double, double y) { return y < 1.0 ? 0.12 : 0.0; }, 0.0f, 2.3f);
   REQUIRE(stages->tracer.curbs().size() == 1);
