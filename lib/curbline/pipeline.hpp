@@ -266,12 +266,14 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, Ti
   }
   if (settings_.tilt.fixed) return Status::ok;
   tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
-  const TiltAngle first = tilt.at(line.time_ns), last = tilt.at(last_beam_ns);
+  const TiltAngle first = tilt.at(line.time_ns);
+  const std::uint32_t reading = tilt.reading_number();
+  const TiltAngle last = tilt.at(last_beam_ns);
   tilt.rewind();
   if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return Status::no_tilt;
   const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
   tilt_rate_rad_s_ = any.rate_rad_s;
-  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s);
+  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s, reading);
   if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
   if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
   return Status::ok;

@@ -30,9 +30,10 @@ class TiltLatency {
     back,  ///< by play: the sweep goes on
     new_sweep,
   };
-  /// The angle and its rate at the beginning of a line: has the servo turned round? Known from two lines on end: one
-  /// alone may go by a damaged reading.
-  Turn follow(float angle_rad, float rate_rad_s);
+  /// The angle and its rate at the beginning of a line, and the number of the reading after it: has the servo turned
+  /// round? Known from two lines on end that lie between other readings: one damaged reading leads all those before it
+  /// or after it astray.
+  Turn follow(float angle_rad, float rate_rad_s, std::uint32_t reading);
 
   /// A point of the line on ground that an earlier sweep has mapped.
   struct Sighting {
@@ -93,10 +94,11 @@ class TiltLatency {
   bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
   bool drives_ = false, begun_ = false, turned_ = false;
-  bool downward_ = false;           ///< the angle grows
-  bool turns_ = false;              ///< it seems to grow no more, or again, by the last line
-  float turned_at_rad_ = 0.0f;      ///< where the sweep began
-  float prior_variance_s2_ = 0.0f;  ///< of an offset of which nothing has been seen
+  bool downward_ = false;            ///< the angle grows
+  bool turns_ = false;               ///< it seems to grow no more, or again, by the last line ...
+  std::uint32_t turns_reading_ = 0;  ///< ... and this reading
+  float turned_at_rad_ = 0.0f;       ///< where the sweep began
+  float prior_variance_s2_ = 0.0f;   ///< of an offset of which nothing has been seen
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong and not the servo late
   float slow_rad_s_ = 0.0f;        ///< below it a wrong latency is less than the error of an angle

@@ -35,6 +35,8 @@ template <Limits limits>
 class TiltSnapshot {
  public:
   TiltAngle at(std::int64_t time_ns);
+  /// Number of the reading up to which the last answer goes; the same for all times between two readings.
+  std::uint32_t reading_number() const { return written_ - static_cast<std::uint32_t>(size_ - cursor_); }
   /// Lets the next question be an earlier one.
   void rewind() { cursor_ = 0; }
 
@@ -49,7 +51,8 @@ class TiltSnapshot {
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
-  int cursor_ = 0;  ///< readings_[cursor_] is the first later than the last question, or size_
+  std::uint32_t written_ = 0;  ///< readings up to the newest of them, since init()
+  int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
   // Between the two readings that the last question fell between: empty if it did not.
   std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
@@ -139,6 +142,7 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) cons
   while (kept < whole && out.readings_[count - kept - 1].time_ns < out.readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) out.readings_[k] = out.readings_[count - kept + k];
   out.size_ = static_cast<int>(kept);
+  out.written_ = before;
   out.cursor_ = 0;
   out.segment_from_ns_ = out.segment_to_ns_ = 0;
   out.max_gap_ns_ = static_cast<std::int64_t>(settings_.max_gap_s * 1e9f);

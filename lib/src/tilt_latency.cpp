@@ -44,7 +44,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   turn_driving();
 }
 
-TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
+TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s, std::uint32_t reading) {
   const bool slow = rate_rad_s < slow_rad_s_ && rate_rad_s > -slow_rad_s_;
   const bool downward = slow ? downward_ : rate_rad_s > 0.0f;
   if (!begun_) {
@@ -52,7 +52,8 @@ TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s) {
     downward_ = downward;
     turned_at_rad_ = angle_rad;
   }
-  const bool turned_before = turns_;
+  const bool turned_before = turns_ && reading != turns_reading_;
+  if (!turns_) turns_reading_ = reading;
   turns_ = downward != downward_;
   if (!turns_ || !turned_before) return Turn::none;
   turns_ = false;

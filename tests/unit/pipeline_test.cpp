@@ -444,6 +444,23 @@ TEST_CASE("pipeline: a finished map settles, and then nothing changes any more")
   CHECK_FALSE(settled.empty());
 }
 
+TEST_CASE("pipeline: a damaged tilt reading leaves no wrong latency where readings come more slowly than lines") {
+  const auto pipeline = started();
+  NoddingLaser laser;
+  for (int line = 0; line < 500; ++line) {
+    const double time_s = NoddingLaser::line_time_s(line);
+    if (line % 2 == 0) {  // at 20 Hz; lines at 40 Hz
+      for (const double t : {time_s, time_s + 0.05}) {
+        const double ahead_s = line == 100 ? 0.3 : 0.0;
+        pipeline->add_tilt({NoddingLaser::ns(t), static_cast<float>(NoddingLaser::tilt_rad(t + ahead_s))});
+      }
+    }
+    const auto ranges = laser.ranges(Street{}, line, [](double) { return 0.0; });
+    REQUIRE(pipeline->take({NoddingLaser::ns(time_s), ranges}) == Status::ok);
+  }
+  CHECK(std::abs(pipeline->tilt_latency().offset_s()) < 0.002f);
+}
+
 TEST_CASE("pipeline: on ground that turns out to be even a step of 15 mm is found") {
   const auto pipeline = started();
   CHECK(pipeline->dem().prior().common_share == PlanePrior{}.common_share);
