@@ -2,8 +2,9 @@
 // their planes, but what their points share they share with the cells around too: ground is uneven over more than one
 // cell, and errors of the tilt lie in stripes. A field whose neighbours along an axis correlate by r adds up as if each
 // of its cells had (1 + r) / (1 - r) times its variance, along both axes by their product (Bartlett 1935, of a
-// first-order autoregression). What is not known of the tilt's latency moves a whole sweep: the cells of a single one
-// do not show it, and it is added. Cost: a pass over the window, about 25 operations a cell.
+// first-order autoregression). What the points of a cell err each on its own is counted too, the less the more there
+// are. What is not known of the tilt's latency moves a whole sweep: the cells of a single one do not show it, and it is
+// added. Cost: a pass over the window, about 25 operations a cell.
 #pragma once
 
 #include <array>
@@ -17,13 +18,17 @@ namespace curbline {
 template <Limits limits>
 class CommonNoise {
  public:
-  CommonNoise(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
-
   /// Share of the expected noise, no less than the ground's texture makes and no more than PlanePrior::common_share,
   /// which it is too as long as there is no plane: of the planes, each weighed by its cells, the one in the middle.
-  float share(const PlanePrior& prior, float latency_sd_s) const;
+  static float share(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const PlanePrior& prior,
+                     float latency_sd_s) {
+    return CommonNoise(dem, mixture).middle(prior, latency_sd_s);
+  }
 
  private:
+  CommonNoise(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
+  float middle(const PlanePrior& prior, float latency_sd_s);
+
   using LabelType = Label<limits>;
 
   /// Of the cells of a plane that hold nothing else: how far they lie off it.
@@ -82,15 +87,14 @@ CommonNoise<limits>::CommonNoise(const Dem<limits>& dem, const PlaneMixture<limi
 }
 
 template <Limits limits>
-float CommonNoise<limits>::share(const PlanePrior& prior, float latency_sd_s) const {
-  std::array<Residuals, limits.planes> left = of_plane_;
+float CommonNoise<limits>::middle(const PlanePrior& prior, float latency_sd_s) {
   float cells = 0.0f;
-  for (const Residuals& plane : left) cells += plane.cells;
+  for (const Residuals& plane : of_plane_) cells += plane.cells;
   if (!(cells > 0.0f)) return prior.common_share;
   float common_m2 = 0.0f;
-  for (float passed = 0.0f; 2.0f * passed < cells;) {  // the least first
+  for (float passed = 0.0f; 2.0f * passed < cells;) {  // the least first, each once
     Residuals* least = nullptr;
-    for (Residuals& plane : left) {
+    for (Residuals& plane : of_plane_) {
       if (!(plane.cells > 0.0f)) continue;
       const float plane_m2 = plane.common_m2(latency_sd_s);
       if (least != nullptr && plane_m2 >= common_m2) continue;

@@ -371,8 +371,7 @@ template <Limits limits>
 void Pipeline<limits>::follow_noise() {
   noise_next_ = !noise_next_;
   if (noise_next_) return;
-  const CommonNoise<limits> noise(dem_, plane_mixture_);
-  dem_.set_common_share(noise.share(settings_.planes.prior, tilt_latency_.sd_s()));
+  dem_.set_common_share(CommonNoise<limits>::share(dem_, plane_mixture_, settings_.planes.prior, tilt_latency_.sd_s()));
 }
 
 template <Limits limits>

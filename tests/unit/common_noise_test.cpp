@@ -54,7 +54,7 @@ float share_of(Height&& height_m) {
   PlanePrior prior;
   prior.texture_m2 = 0.0f;
   prior.common_share = 100.0f;
-  return CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f);
+  return CommonNoise<limits>::share(stages.dem, stages.mixture, prior, 0.0f);
 }
 
 TEST_CASE("common noise: of cells that err each on its own it is their variance") {
@@ -86,7 +86,7 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
   stages.infer(true);
   PlanePrior prior;
   prior.texture_m2 = 0.0f;
-  CHECK(CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f) == Approx(0.16).epsilon(0.15));
+  CHECK(CommonNoise<limits>::share(stages.dem, stages.mixture, prior, 0.0f) == Approx(0.16).epsilon(0.15));
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
@@ -99,11 +99,13 @@ TEST_CASE("common noise: what is not known of the tilt's latency is common to al
     }
   }
   stages.infer(true);
-  const CommonNoise<limits> noise(stages.dem, stages.mixture);
   PlanePrior prior;
   prior.common_share = 1.0f;
-  CHECK(noise.share(prior, 0.01f) == Approx(0.64).epsilon(0.01));
-  CHECK(noise.share(prior, 0.001f) == prior.texture_m2 / prior.noise_m2);
+  const auto share = [&](float latency_sd_s) {
+    return CommonNoise<limits>::share(stages.dem, stages.mixture, prior, latency_sd_s);
+  };
+  CHECK(share(0.01f) == Approx(0.64).epsilon(0.01));
+  CHECK(share(0.001f) == prior.texture_m2 / prior.noise_m2);
 }
 
 TEST_CASE("common noise: a plane that is a smaller part of the cells has no say") {
@@ -120,18 +122,19 @@ TEST_CASE("common noise: a plane that is a smaller part of the cells has no say"
 TEST_CASE("common noise: it lies between the texture's share and that of the settings, which holds where no plane is") {
   Stages<limits> stages(map_settings());
   const PlanePrior prior;
-  const auto share = [&] { return CommonNoise<limits>(stages.dem, stages.mixture).share(prior, 0.0f); };
+  const auto share = [&] { return CommonNoise<limits>::share(stages.dem, stages.mixture, prior, 0.0f); };
   CHECK(share() == prior.common_share);
   test::fill(stages.dem, Unevenness(0.001, 0.0, 0.0));
   stages.infer(true);
   CHECK(share() == prior.texture_m2 / prior.noise_m2);
   PlanePrior without_texture;
   without_texture.texture_m2 = 0.0f;
-  CHECK(CommonNoise<limits>(stages.dem, stages.mixture).share(without_texture, 0.0f) >= PlanePrior::least_common_share);
+  CHECK(CommonNoise<limits>::share(stages.dem, stages.mixture, without_texture, 0.0f) >=
+        PlanePrior::least_common_share);
   Stages<limits> rough(map_settings());
   test::fill(rough.dem, Unevenness(0.01, 0.5, 0.5));
   rough.infer(true);
-  CHECK(CommonNoise<limits>(rough.dem, rough.mixture).share(prior, 0.0f) == prior.common_share);
+  CHECK(CommonNoise<limits>::share(rough.dem, rough.mixture, prior, 0.0f) == prior.common_share);
 }
 
 }  // namespace
