@@ -84,13 +84,15 @@ TEST_CASE(
   for (const double turn : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8}) {
     const double nx = std::cos(turn), ny = std::sin(turn);
     const auto across = [&](double x, double y) { return (x - 1.2) * nx + (y - 1.2) * ny; };
-    for (const double side : {-1.0, 1.0}) {
-      const auto robot_x = static_cast<float>(1.2 + side * nx), robot_y = static_cast<float>(1.2 + side * ny);
+    for (const auto& [side, along] : {std::pair{-1.0, 0.0}, {1.0, 0.0}, {-0.6, 3.0}, {0.6, 3.0}, {-0.6, -3.0}}) {
+      const auto robot_x = static_cast<float>(1.2 + side * nx - along * ny);
+      const auto robot_y = static_cast<float>(1.2 + side * ny + along * nx);
       const auto stages = traced([&](double x, double y) { return across(x, y) < 0.0 ? 0.0 : 0.12; }, robot_x, robot_y);
       REQUIRE_FALSE(stages->tracer.curbs().empty());
       for (const Curb& c : stages->tracer.curbs()) {
         const float dx = c.x1_m - c.x0_m, dy = c.y1_m - c.y0_m;
         CHECK(dx * (robot_y - c.y0_m) - dy * (robot_x - c.x0_m) < 0.0f);
+        CHECK((c.kind == CurbKind::step_up) == (side < 0.0));
       }
     }
   }
