@@ -1,8 +1,8 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height.
 // Each tells how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the
-// window, 50 look-ups a border point, the square of a chain's length for cutting it, and 20 operations for each pair of
-// a curb and one of the call before.
+// window, 50 look-ups a border point, 60 operations for each border of what is left of a chain and each of its pieces,
+// and 20 for each pair of a curb and one of the call before.
 #pragma once
 
 #include <array>
@@ -79,7 +79,8 @@ class CurbTracer {
   /// range-finder.
   static constexpr float most_change_m = 0.02f;
   static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m);
-  static int farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m);
+  static float weight(const Border& border) { return 1.0f / (border.half_gap_m * border.half_gap_m); }
+  static int bend(const Borders<limits>& borders, int first, int last);
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
   void go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const;
@@ -134,50 +135,50 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   curbs_ = work.curbs;
 }
 
-/// Splits the chain where it leaves the chord by more than a cell (a straight line crossing cells stays within one) and
-/// than what a border's gap leaves open, halves what is straight until its height is one, and gives out the pieces in
-/// order.
+/// Splits the chain where it bends, halves what is straight until its height is one, and gives out the pieces in order.
 template <Limits limits>
 void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Counters& counters) const {
-  const Dem<limits>& dem = stages.dem;
-  const float tolerance_m = dem.cell_x_m() > dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m();
   int first = 0;
   do {
     int end = length - 1;
-    for (int split = end; split >= 0; split = farthest_from_chord(work.borders, first, end, tolerance_m)) end = split;
+    for (int split = end; split >= 0; split = bend(work.borders, first, end)) end = split;
     const auto even_to = [&](const Border& to) {
       const Border& from = work.borders.at(first);
       return even(stages, from, to.x_m - from.x_m, to.y_m - from.y_m);
     };
     while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
     give_out(stages, first, end, length, work, counters);
-    first = end;
-  } while (first < length - 1);
+    first = end + 1;
+  } while (first < length);
 }
 
-/// The border that lies farthest beyond what it may from the chord between two others, -1 if none does: the tolerance,
-/// and by how much half its gap is wider than half a cell.
+/// The last border of the first of two lines that follow the others better than one does, -1 if one is enough: by the
+/// evidence of how far they lie off, in half gaps, normal noise of unknown variance, before it is seen with the weight
+/// of four as if each lay anywhere within its gap. Another line has two parameters and a place to begin, each of which
+/// costs half the logarithm of the number of borders (Schwarz 1978). Two borders always lie on a line: it takes three
+/// to follow one.
 template <Limits limits>
-int CurbTracer<limits>::farthest_from_chord(const Borders<limits>& borders, int first, int last, float tolerance_m) {
-  const Border& a = borders.at(first);
-  const Border& b = borders.at(last);
-  const float dx = b.x_m - a.x_m, dy = b.y_m - a.y_m;
-  const float length2 = dx * dx + dy * dy;
-  float worst_m = 0.0f;
+int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last) {
+  LineFit before, after;
+  for (int k = first; k <= last; ++k) after.add(borders.at(k).x_m, borders.at(k).y_m, weight(borders.at(k)));
+  const float one = after.squares();
+  float two = one;
   int found = -1;
-  for (int k = first + 1; k < last; ++k) {
-    const Border& p = borders.at(k);
-    const float px = p.x_m - a.x_m, py = p.y_m - a.y_m;
-    const float cross = dx * py - dy * px;
-    // Of a closed chain the ends coincide: the distance from them counts.
-    const float distance2 = length2 > 1e-6f ? cross * cross / length2 : px * px + py * py;
-    const float beyond_m = square_root(distance2) - 0.5f * tolerance_m - p.half_gap_m;
-    if (beyond_m > worst_m) {
-      worst_m = beyond_m;
-      found = k;
-    }
+  for (int k = first; k <= last - 3; ++k) {
+    const Border& border = borders.at(k);
+    before.add(border.x_m, border.y_m, weight(border));
+    after.remove(border.x_m, border.y_m, weight(border));
+    if (k < first + 2) continue;
+    const float squares = before.squares() + after.squares();
+    if (squares >= two) continue;
+    two = squares;
+    found = k;
   }
-  return found;
+  if (found < 0) return -1;
+  const auto n = static_cast<float>(last - first + 1);
+  constexpr float prior = 4.0f / 3;  // 2 a0 times the variance of what lies anywhere from -1 to 1
+  const float gain = (2.0f + 0.5f * n) * log((prior + one) / (prior + two)) - 1.5f * log(n);
+  return gain > 0.0f ? found : -1;
 }
 
 /// Is a border's step one height from one place to another, (dx, dy) from it?
@@ -204,7 +205,7 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float x_m = border.x_m, y_m = border.y_m;
-    fit.add(x_m, y_m);
+    fit.add(x_m, y_m, weight(border));
     piece.drop_m += n * border.drop_m;
     piece.variance_m2 += n * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += n * border.probability;

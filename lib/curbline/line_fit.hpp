@@ -10,15 +10,19 @@ class LineFit {
     float normal_x, normal_y;  ///< unit normal
   };
 
-  void add(float x_m, float y_m) {
-    n_ += 1.0f;
+  void add(float x_m, float y_m, float weight = 1.0f) {
+    weight_ += weight;
     const float dx = x_m - x_, dy = y_m - y_;
-    x_ += dx / n_;
-    y_ += dy / n_;
-    xx_ += dx * (x_m - x_);
-    xy_ += dx * (y_m - y_);
-    yy_ += dy * (y_m - y_);
+    x_ += weight / weight_ * dx;
+    y_ += weight / weight_ * dy;
+    xx_ += weight * dx * (x_m - x_);
+    xy_ += weight * dx * (y_m - y_);
+    yy_ += weight * dy * (y_m - y_);
   }
+  /// A point that was added, not the last.
+  void remove(float x_m, float y_m, float weight = 1.0f) { add(x_m, y_m, -weight); }
+  /// Sum of the points' squared distances from the line, by weight.
+  float squares() const;
   /// Mean of the points.
   float x_m() const { return x_; }
   float y_m() const { return y_; }
@@ -33,7 +37,7 @@ class LineFit {
   }
 
  private:
-  float n_ = 0.0f, x_ = 0.0f, y_ = 0.0f, xx_ = 0.0f, xy_ = 0.0f, yy_ = 0.0f;
+  float weight_ = 0.0f, x_ = 0.0f, y_ = 0.0f, xx_ = 0.0f, xy_ = 0.0f, yy_ = 0.0f;
 };
 
 }  // namespace curbline

@@ -4,6 +4,12 @@
 
 namespace curbline {
 
+float LineFit::squares() const {
+  const float half_difference = 0.5f * (xx_ - yy_);
+  const float squares = 0.5f * (xx_ + yy_) - square_root(half_difference * half_difference + xy_ * xy_);
+  return squares > 0.0f ? squares : 0.0f;
+}
+
 LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {
   // Eigenvector of the larger eigenvalue of the scatter, from whichever row keeps more digits.
   const float half_difference = 0.5f * (xx_ - yy_);
