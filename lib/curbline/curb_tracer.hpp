@@ -63,6 +63,7 @@ class CurbTracer {
     float x_m = 0.0f, y_m = 0.0f;             ///< mean of the borders
     float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
     float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
+    float place_variance_m2 = 0.0f;     ///< of the borders, across the line
     float gap_m = 0.0f, cell_m = 0.0f;  ///< across it: between the cells' centres; of one cell
     bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
     bool low_is_right = false;          ///< of the line, from its first end to its second
@@ -79,6 +80,9 @@ class CurbTracer {
   /// range-finder.
   static constexpr float most_change_m = 0.02f;
   static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m);
+  /// Of the sum of the squares of how far borders lie off their line, in half gaps, before one is seen: a0 = 2 for the
+  /// variance of what lies anywhere from -1 to 1, twice.
+  static constexpr float place_prior = 4.0f / 3;
   static float weight(const Border& border) { return 1.0f / (border.half_gap_m * border.half_gap_m); }
   static int bend(const Borders<limits>& borders, int first, int last);
   enum class Side : std::uint8_t { unseen, own, other };
@@ -176,8 +180,7 @@ int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last
   }
   if (found < 0) return -1;
   const auto n = static_cast<float>(last - first + 1);
-  constexpr float prior = 4.0f / 3;  // 2 a0 times the variance of what lies anywhere from -1 to 1
-  const float gain = (2.0f + 0.5f * n) * log((prior + one) / (prior + two)) - 1.5f * log(n);
+  const float gain = (2.0f + 0.5f * n) * log((place_prior + one) / (place_prior + two)) - 1.5f * log(n);
   return gain > 0.0f ? found : -1;
 }
 
@@ -198,7 +201,8 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   const Border& b = borders.at(last);
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = beyond(stages, a);
-  const float n = 1.0f / static_cast<float>(last - first + 1);
+  const auto n = static_cast<float>(last - first + 1);
+  const float each = 1.0f / n;
   Piece piece;
   LineFit fit;
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
@@ -206,13 +210,15 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
     const Border& border = borders.at(k);
     const float x_m = border.x_m, y_m = border.y_m;
     fit.add(x_m, y_m, weight(border));
-    piece.drop_m += n * border.drop_m;
-    piece.variance_m2 += n * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
-    piece.probability += n * border.probability;
-    piece.half_gap_m += n * border.half_gap_m;
-    piece.off_m += n * border.off_m;
+    piece.drop_m += each * border.drop_m;
+    piece.variance_m2 += each * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
+    piece.probability += each * border.probability;
+    piece.half_gap_m += each * border.half_gap_m;
+    piece.off_m += each * border.off_m;
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
   }
+  // Variance in half gaps, as bend() has it, of borders whose errors are alike; the mean square of half a gap.
+  piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f + n) * n / fit.weight();
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
@@ -225,7 +231,7 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
-    const float across = n * (cosine < 0.0f ? -cosine : cosine);
+    const float across = each * (cosine < 0.0f ? -cosine : cosine);
     piece.gap_m += 2.0f * border.half_gap_m * across;
     piece.cell_m += (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m()) * across;
   }
@@ -306,12 +312,15 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   const bool one_sided = border.high == no_label<limits>;
   if (one_sided && is_step(curb) && first == last) return;  // a row's or column's alone is no line
   const float hidden_m = one_sided ? curb.height_m : 0.0f;
-  // The errors of a plane are common to the piece: they do not average out. What the cells beside the border lie off
+  const float slope =
+      (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
+  // The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
+  // the border's place does. What the cells beside the border lie off
   // their planes may be the planes' fault too, not at all or up to the half, the less the likelier, since as a rule
   // they hold points of both sides, and those that show it have no part in the fit: by a density that falls evenly to
   // 0, a sixth of the square of that half. Behind a brink as much again as is seen may be hidden, or less, evenly.
-  curb.height_sd_m =
-      square_root(piece.variance_m2 + piece.off_m * piece.off_m * (1.0f / 24) + hidden_m * hidden_m * (1.0f / 3));
+  curb.height_sd_m = square_root(piece.variance_m2 + slope * slope * piece.place_variance_m2 +
+                                 piece.off_m * piece.off_m * (1.0f / 24) + hidden_m * hidden_m * (1.0f / 3));
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   float shadow_m = 0.0f;
   if (curb.kind == CurbKind::step_down && !one_sided) {

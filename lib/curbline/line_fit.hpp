@@ -21,6 +21,7 @@ class LineFit {
   }
   /// A point that was added, not the last.
   void remove(float x_m, float y_m, float weight = 1.0f) { add(x_m, y_m, -weight); }
+  float weight() const { return weight_; }
   /// Sum of the points' squared distances from the line, by weight.
   float squares() const;
   /// Mean of the points.

@@ -228,6 +228,18 @@ TEST_CASE("curb tracer: cells beside the border that lie off their planes make t
   CHECK(worn->tracer.curbs()[0].height_sd_m > 1.05f * flat->tracer.curbs()[0].height_sd_m);
 }
 
+TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
+  const auto deviation_m = [](double slope) {
+    const auto stages = traced([=](double x, double) { return x < 1.4 ? 0.0 : 0.12 + slope * (x - 1.4); });
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_up);
+    return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
+  };
+  const double level_m = deviation_m(0.0), sloped_m = deviation_m(0.15);
+  // 24 borders on a line, each within half a cell of 5 cm before: 5 cm sqrt(4 / 3 / (2 + 24)).
+  CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.15));
+}
+
 TEST_CASE("curb tracer: a sharp step has no width to tell") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);
