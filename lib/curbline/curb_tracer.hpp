@@ -80,9 +80,10 @@ class CurbTracer {
   /// range-finder.
   static constexpr float most_change_m = 0.02f;
   static bool even(const Stages& stages, const Border& border, float dx_m, float dy_m);
-  /// Of the sum of the squares of how far borders lie off their line, in half gaps, before one is seen: a0 = 2 for the
-  /// variance of what lies anywhere from -1 to 1, twice.
-  static constexpr float place_prior = 4.0f / 3;
+  /// How far borders lie off their line, in half gaps, is normal, of a variance that is inverse gamma before one is
+  /// seen: a0, and b0 as of what lies anywhere from -1 to 1. The prior is 2 b0, to which the sum of the squares is
+  /// added.
+  static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
   static float weight(const Border& border) { return 1.0f / (border.half_gap_m * border.half_gap_m); }
   static int bend(const Borders<limits>& borders, int first, int last);
   enum class Side : std::uint8_t { unseen, own, other };
@@ -170,8 +171,9 @@ int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last
   int found = -1;
   for (int k = first; k <= last - 3; ++k) {
     const Border& border = borders.at(k);
-    before.add(border.x_m, border.y_m, weight(border));
-    after.remove(border.x_m, border.y_m, weight(border));
+    const float border_weight = weight(border);
+    before.add(border.x_m, border.y_m, border_weight);
+    after.remove(border.x_m, border.y_m, border_weight);
     if (k < first + 2) continue;
     const float squares = before.squares() + after.squares();
     if (squares >= two) continue;
@@ -180,7 +182,7 @@ int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last
   }
   if (found < 0) return -1;
   const auto n = static_cast<float>(last - first + 1);
-  const float gain = (2.0f + 0.5f * n) * log((place_prior + one) / (place_prior + two)) - 1.5f * log(n);
+  const float gain = (place_a0 + 0.5f * n) * log((place_prior + one) / (place_prior + two)) - 1.5f * log(n);
   return gain > 0.0f ? found : -1;
 }
 
@@ -217,8 +219,8 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
     piece.off_m += each * border.off_m;
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
   }
-  // Variance in half gaps, as bend() has it, of borders whose errors are alike; the mean square of half a gap.
-  piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f + n) * n / fit.weight();
+  // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
+  piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
@@ -315,10 +317,10 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   const float slope =
       (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
   // The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
-  // the border's place does. What the cells beside the border lie off
-  // their planes may be the planes' fault too, not at all or up to the half, the less the likelier, since as a rule
-  // they hold points of both sides, and those that show it have no part in the fit: by a density that falls evenly to
-  // 0, a sixth of the square of that half. Behind a brink as much again as is seen may be hidden, or less, evenly.
+  // the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, not at
+  // all or up to the half, the less the likelier, since as a rule they hold points of both sides, and those that show
+  // it have no part in the fit: by a density that falls evenly to 0, a sixth of the square of that half. Behind a brink
+  // as much again as is seen may be hidden, or less, evenly.
   curb.height_sd_m = square_root(piece.variance_m2 + slope * slope * piece.place_variance_m2 +
                                  piece.off_m * piece.off_m * (1.0f / 24) + hidden_m * hidden_m * (1.0f / 3));
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
