@@ -2,9 +2,10 @@
 // their planes, but what their points share they share with the cells around too: ground is uneven over more than one
 // cell, and errors of the tilt lie in stripes. A field whose neighbours along an axis correlate by r adds up as if each
 // of its cells had (1 + r) / (1 - r) times its variance, along both axes by their product (Bartlett 1935, of a
-// first-order autoregression). What the points of a cell err each on its own is counted too, the less the more there
-// are. What is not known of the tilt's latency moves a whole sweep: the cells of a single one do not show it, and it is
-// added. Cost: a pass over the window, about 25 operations a cell.
+// first-order autoregression). Each patch of 10 x 10 cells is asked, about a plane of its own: of a step by which no
+// planes are parted yet only the patches that it crosses show anything. What the points of a cell err each on its own
+// is counted too, the less the more there are. What is not known of the tilt's latency moves a whole sweep: the cells
+// of a single one do not show it, and it is added.
 #pragma once
 
 #include <array>
@@ -15,95 +16,120 @@
 
 namespace curbline {
 
+/// How far the cells of a patch lie off their planes: sums over cells at whole numbers (x, y), in cells.
+struct PatchResiduals {
+  static constexpr int side = 10;              ///< cells along x and along y
+  static constexpr float least_cells = 20.0f;  ///< more than one row, so that their scatter is never singular
+
+  float cells = 0.0f, x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+  float off_m = 0.0f, x_off_m = 0.0f, y_off_m = 0.0f, squares_m2 = 0.0f;
+  /// From a cell to its neighbour at the next higher x, or y.
+  struct Rises {
+    float pairs = 0.0f, sum_m = 0.0f, squares_m2 = 0.0f;
+  };
+  std::array<Rises, 2> rises{};
+
+  void add(float x_cells, float y_cells, float above_m);
+  void add_rise(std::size_t axis, float rise_m) {
+    rises[axis].pairs += 1.0f;
+    rises[axis].sum_m += rise_m;
+    rises[axis].squares_m2 += rise_m * rise_m;
+  }
+  /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the plane that fits
+  /// the patch best. Expects least_cells or more.
+  float common_m2() const;
+};
+
 template <Limits limits>
 class CommonNoise {
  public:
+  void init() { *this = CommonNoise{}; }
+
+  /// Looks at the next row of patches; after the last it begins anew with the first. About 45 operations a cell of
+  /// these ten rows.
+  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
+
   /// Share of the expected noise, no less than the ground's texture makes and no more than PlanePrior::common_share,
-  /// which it is too as long as there is no plane: of the planes, each weighed by its cells, the one in the middle.
-  static float share(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const PlanePrior& prior,
-                     float latency_sd_s) {
-    return CommonNoise(dem, mixture).middle(prior, latency_sd_s);
-  }
+  /// which it is too as long as there is no plane: of the patches, each weighed by its cells, the one that a third of
+  /// them lie below. Two curbs side by side may cross half of the patches.
+  float share(const PlanePrior& prior, float latency_sd_s) const;
 
  private:
-  CommonNoise(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
-  float middle(const PlanePrior& prior, float latency_sd_s);
-
+  static constexpr int side = PatchResiduals::side;
+  static constexpr std::size_t patches_in_row = (limits.cols + side - 1) / side;
+  static constexpr std::size_t patch_rows = (limits.rows + side - 1) / side;
   using LabelType = Label<limits>;
 
-  /// Of the cells of a plane that hold nothing else: how far they lie off it.
-  struct Residuals {
-    float cells = 0.0f, squares_m2 = 0.0f;
-    float growth_m2_s2 = 0.0f;                    ///< by latency, its squares
-    std::array<float, 2> pairs{}, products_m2{};  ///< of neighbours along x, y
-
-    float common_m2(float latency_sd_s) const {
-      const float by_latency_m2 = latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
-      const float mean_m2 = squares_m2 / cells;
-      return mean_m2 > 0.0f ? mean_m2 * alike(0, mean_m2) * alike(1, mean_m2) + by_latency_m2 : by_latency_m2;
-    }
-
-   private:
-    float alike(std::size_t axis, float mean_m2) const {
-      if (!(products_m2[axis] > 0.0f)) return 1.0f;
-      constexpr float most = 0.95f;  // 20 cells far: half a window
-      const float r = products_m2[axis] / (pairs[axis] * mean_m2);
-      return r < most ? (1.0f + r) / (1.0f - r) : (1.0f + most) / (1.0f - most);
-    }
-  };
   struct Seen {
     LabelType label = PlaneMixture<limits>::none;
     int i = -2, j = -2;
     float above_m = 0.0f;
   };
+  struct Patch {
+    float cells = 0.0f;  ///< 0: too few to tell
+    float common_m2 = 0.0f;
+    float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
+  };
 
-  std::array<Residuals, limits.planes> of_plane_{};
+  std::array<Patch, patch_rows * patches_in_row> patches_{};
+  int first_row_ = 0;  ///< of those that are next
 };
 
 template <Limits limits>
-CommonNoise<limits>::CommonNoise(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
+void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
+  std::array<PatchResiduals, patches_in_row> residuals{};
+  std::array<float, patches_in_row> growth_m2_s2{};
   std::array<Seen, limits.cols> row_before{};
   Seen before{};
-  dem.for_each_valid([&](int i, int j, int s) {
+  const auto visit = [&](int i, int j, int s) {
     const LabelType label = mixture.region_label(s);
     if (label == PlaneMixture<limits>::none) return;
     const Plane& plane = mixture.plane(label);
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, plane)) return;
     const Seen now{label, i, j, dem.above_m(i, j, cell, plane)};
-    Residuals& residuals = of_plane_[label];
-    const auto pair = [&](std::size_t axis, const Seen& other) {
-      residuals.pairs[axis] += 1.0f;
-      residuals.products_m2[axis] += now.above_m * other.above_m;
-    };
-    residuals.cells += 1.0f;
-    residuals.squares_m2 += now.above_m * now.above_m;
-    residuals.growth_m2_s2 += dem.growth_m_s(s) * dem.growth_m_s(s);
+    const auto k = static_cast<std::size_t>(j / side);
+    residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
+    growth_m2_s2[k] += dem.growth_m_s(s) * dem.growth_m_s(s);
     Seen& below = row_before[static_cast<std::size_t>(j)];
-    if (below.label == label && below.i == i - 1) pair(0, below);
-    if (before.label == label && before.i == i && before.j == j - 1) pair(1, before);
+    if (below.label == label && below.i == i - 1) residuals[k].add_rise(0, now.above_m - below.above_m);
+    if (before.label == label && before.i == i && before.j == j - 1 && j % side != 0) {
+      residuals[k].add_rise(1, now.above_m - before.above_m);
+    }
     before = below = now;
-  });
+  };
+  for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) dem.for_each_valid_in_row(i, visit);
+
+  Patch* patch = &patches_[static_cast<std::size_t>(first_row_ / side) * patches_in_row];
+  for (std::size_t k = 0; k < patches_in_row; ++k, ++patch) {
+    *patch = Patch{};
+    if (residuals[k].cells < PatchResiduals::least_cells) continue;
+    *patch = {residuals[k].cells, residuals[k].common_m2(), growth_m2_s2[k]};
+  }
+  first_row_ += side;
+  if (first_row_ >= dem.rows()) first_row_ = 0;
 }
 
 template <Limits limits>
-float CommonNoise<limits>::middle(const PlanePrior& prior, float latency_sd_s) {
-  float cells = 0.0f;
-  for (const Residuals& plane : of_plane_) cells += plane.cells;
+float CommonNoise<limits>::share(const PlanePrior& prior, float latency_sd_s) const {
+  auto left = patches_;
+  float cells = 0.0f, growth_m2_s2 = 0.0f;
+  for (const Patch& patch : left) {
+    cells += patch.cells;
+    growth_m2_s2 += patch.growth_m2_s2;
+  }
   if (!(cells > 0.0f)) return prior.common_share;
   float common_m2 = 0.0f;
-  for (float passed = 0.0f; 2.0f * passed < cells;) {  // the least first, each once
-    Residuals* least = nullptr;
-    for (Residuals& plane : of_plane_) {
-      if (!(plane.cells > 0.0f)) continue;
-      const float plane_m2 = plane.common_m2(latency_sd_s);
-      if (least != nullptr && plane_m2 >= common_m2) continue;
-      least = &plane;
-      common_m2 = plane_m2;
+  for (float passed = 0.0f; 3.0f * passed < cells;) {  // the least first, each once
+    Patch* least = nullptr;
+    for (Patch& patch : left) {
+      if (patch.cells > 0.0f && (least == nullptr || patch.common_m2 < least->common_m2)) least = &patch;
     }
+    common_m2 = least->common_m2;
     passed += least->cells;
     least->cells = 0.0f;
   }
+  common_m2 += latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
   float share = (common_m2 > prior.texture_m2 ? common_m2 : prior.texture_m2) / prior.noise_m2;
   if (share < PlanePrior::least_common_share) share = PlanePrior::least_common_share;
   return share < prior.common_share ? share : prior.common_share;

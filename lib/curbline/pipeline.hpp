@@ -125,7 +125,6 @@ class Pipeline {
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;  ///< which half of the inference is due
-  bool noise_next_ = false;  ///< whether the next inference follows the noise
   RisingTimes line_times_{};
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
@@ -138,6 +137,7 @@ class Pipeline {
   Dem<limits> dem_{};
   Segmentation<limits> segmentation_{};
   PlaneMixture<limits> plane_mixture_{};
+  CommonNoise<limits> common_noise_{};
   LabelField<limits> label_field_{};
   CurbTracer<limits> curb_tracer_{};
   Workspace<limits> workspace_{};
@@ -153,7 +153,6 @@ Status Pipeline<limits>::init(const Settings& settings) {
   settings_ = settings;
   counters_ = Counters{};
   planes_next_ = true;
-  noise_next_ = false;
   line_times_ = RisingTimes{};
   p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
@@ -164,6 +163,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   dem_.init(window, settings.planes.prior);
   segmentation_.init(settings.segmentation, settings.planes.prior);
   plane_mixture_.init(settings.planes);
+  common_noise_.init();
   label_field_.init(settings.labels);
   curb_tracer_.init(settings.curbs);
   ready_ = true;
@@ -366,12 +366,10 @@ void Pipeline<limits>::follow_curbs() {
   curb_tracer_.trace(dem_, plane_mixture_, label_field_, view(), workspace_.curbs(), counters_);
 }
 
-/// It changes slowly: after every second inference.
 template <Limits limits>
 void Pipeline<limits>::follow_noise() {
-  noise_next_ = !noise_next_;
-  if (noise_next_) return;
-  dem_.set_common_share(CommonNoise<limits>::share(dem_, plane_mixture_, settings_.planes.prior, tilt_latency_.sd_s()));
+  common_noise_.follow(dem_, plane_mixture_);
+  dem_.set_common_share(common_noise_.share(settings_.planes.prior, tilt_latency_.sd_s()));
 }
 
 template <Limits limits>
