@@ -2,7 +2,8 @@
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
-//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees.
+//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees. Or the top of
+//     one: level, less than a square metre, higher above the ground than a kerb or a stair, and no stair that leads on.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
 //     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp, or
 //     falls there at least half as steeply as the rays, as about an edge that is bent, or is so narrow that its slope
@@ -57,6 +58,8 @@ class Ground {
   static constexpr int widest_gap = 2;           ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
   static constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
+  static constexpr float usual_step_m = 0.2f;    ///< few kerbs or stairs are as high
+  static constexpr float way_m = 1.0f;           ///< a square of ground that lies higher is no smaller: stairs lead on
 
   /// How far something falls from its end near the laser to the far one, and how far the rays there do.
   struct Fall {
@@ -78,6 +81,7 @@ class Ground {
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
     float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
+    bool at_edge = false;                                 ///< of the window
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
@@ -177,6 +181,10 @@ class Ground {
     return rise_m * rise_m > steepest_ramp * steepest_ramp * (dx_m * dx_m + dy_m * dy_m);
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
+  static bool stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
+                           const Plane& ground);
+  static void add_tops(const Tallies& tallies, std::span<const Plane> planes, const Plane& ground, float cell_area_m2,
+                       PlaneFlags& obstacle, PlaneFlags& high);
   template <typename LabelType, typename LabelOf, typename EndRun>
   static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelType, typename LabelOf>
@@ -198,6 +206,36 @@ const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneF
     if (found == nullptr || planes[l].cells > found->cells) found = &planes[l];
   }
   return found;
+}
+
+/// Is a plane level and higher above the ground than a step, and next to it none as much higher again as a stair's?
+template <Limits limits>
+bool Ground<limits>::stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
+                                  const Plane& ground) {
+  const auto above_m = [&](const Plane& p) { return p.z_m - ground.height_m(p.x_m, p.y_m); };
+  const float height_m = above_m(plane);
+  const float slope_squared = plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y;
+  if (!(height_m > usual_step_m) || slope_squared > steepest_ramp * steepest_ramp) return false;
+  for (std::size_t l = 0; l < planes.size(); ++l) {
+    if (!planes[l].alive() || obstacle[l] || above_m(planes[l]) < height_m + 0.5f * usual_step_m) continue;
+    const float dx_m = planes[l].x_m - plane.x_m, dy_m = planes[l].y_m - plane.y_m;
+    if (dx_m * dx_m + dy_m * dy_m < way_m * way_m) return false;
+  }
+  return true;
+}
+
+/// Adds the tops of things that stand on the ground: small planes that do not reach the window's edge.
+template <Limits limits>
+void Ground<limits>::add_tops(const Tallies& tallies, std::span<const Plane> planes, const Plane& ground,
+                              float cell_area_m2, PlaneFlags& obstacle, PlaneFlags& high) {
+  PlaneFlags top{};
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    const bool small = planes[l].alive() && tallies[l].cells * cell_area_m2 < way_m * way_m;
+    top[l] = small && !obstacle[l] && !tallies[l].at_edge && stands_alone(planes[l], planes, obstacle, ground);
+  }
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    if (top[l]) obstacle[l] = high[l] = true;
+  }
 }
 
 /// Calls end_run(before, run, next, line) for each run of cells along x (axis 0) or along y (axis 1); the label of a
@@ -288,9 +326,11 @@ template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             LabelType none, LabelOf&& label_of, Changed&& changed) {
   Tallies tallies{};
-  dem.for_each_valid([&](int, int, int s) {
+  dem.for_each_valid([&](int i, int j, int s) {
     const LabelType label = label_of(s);
-    if (label != none) tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
+    if (label == none) return;
+    tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
+    tallies[label].at_edge |= i == 0 || j == 0 || i + 1 == dem.rows() || j + 1 == dem.cols();
   });
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
   PlaneFlags obstacle{}, high{};
@@ -298,8 +338,9 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     obstacle[l] = tallies[l].obstacle(cell_area_m2);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
-  tally_runs(dem, planes, view, none, label_of, high, tallies);
   const Plane* ground = largest(planes, obstacle);
+  if (ground != nullptr) add_tops(tallies, planes, *ground, cell_area_m2, obstacle, high);
+  tally_runs(dem, planes, view, none, label_of, high, tallies);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);
     const Kind before = kind_[l];

@@ -89,6 +89,28 @@ TEST_CASE(
   CHECK(borne(veil, 3.0f) == 3);
 }
 
+//        ___
+//   ____|   |_____     from above, too: 60 cm long and wide
+TEST_CASE("ground: the top of a box is an obstacle; lower than a stair, or at the window's end, it may be a way") {
+  const auto block = [](double height_m, double from_x_m) {
+    return
+        [=](double x, double y) { return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 1.5 ? height_m : 0.0; };
+  };
+  CHECK(borne(block(0.28, 0.9)) == 1);
+  CHECK(borne(block(0.16, 0.9)) == 2);
+  CHECK(borne(block(0.28, 1.8)) == 2);
+}
+
+//             ______
+//          __|         between two walls, 1.2 m apart
+//  _______|
+TEST_CASE("ground: the steps of a stair are as small as boxes, and the next one lies higher") {
+  CHECK(borne([](double x, double y) {
+          if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
+          return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : 0.42;
+        }) == 4);
+}
+
 //  o
 //  ____________
 //              --__       the edge and the road behind, mixed, in the shadow of the step
