@@ -37,6 +37,21 @@ TEST_CASE("scene: a low curb of 3 cm is found") {
   CHECK(pipeline->curbs().size() == 1);
 }
 
+//       ########   a street that falls by 2 %, a kerb of 18 mm askew in it and nothing else: as long as one plane has
+//       it
+//     ##########   all, its cells err alike
+TEST_CASE("scene: a kerb of 2 cm is found where it is all there is") {
+  const auto pipeline = seen([](double x, double y) { return -0.02 * x + (x + y < 2.0 ? 0.0 : 0.018); });
+  double found_m = 0.0;
+  for (const Curb& c : pipeline->curbs()) {
+    if (c.kind != CurbKind::step_up) continue;
+    CHECK(std::abs(c.x0_m + c.y0_m - 2.0) < 2 * half_cell_m);
+    CHECK(c.height_m == Approx(0.018).margin(0.005));  // low: cells that hold both sides do not show it
+    found_m += length_m(c);
+  }
+  CHECK(found_m > 5.0);
+}
+
 //                                  __ 0.30
 //                        _________|
 //              _________| 0.15
