@@ -62,7 +62,7 @@ class CommonNoise {
 
   struct Seen {
     LabelType label = PlaneMixture<limits>::none;
-    int i = -2, j = -2;
+    int i = -2;
     float above_m = 0.0f;
   };
   struct Patch {
@@ -79,24 +79,24 @@ template <Limits limits>
 void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
   std::array<PatchResiduals, patches_in_row> residuals{};
   std::array<float, patches_in_row> growth_m2_s2{};
-  std::array<Seen, limits.cols> row_before{};
-  Seen before{};
+  std::array<Seen, limits.cols> last{};  // of each column
   const auto visit = [&](int i, int j, int s) {
     const LabelType label = mixture.region_label(s);
     if (label == PlaneMixture<limits>::none) return;
     const Plane& plane = mixture.plane(label);
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, plane)) return;
-    const Seen now{label, i, j, dem.above_m(i, j, cell, plane)};
+    const Seen now{label, i, dem.above_m(i, j, cell, plane)};
     const auto k = static_cast<std::size_t>(j / side);
     residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
     growth_m2_s2[k] += dem.growth_m_s(s) * dem.growth_m_s(s);
-    Seen& below = row_before[static_cast<std::size_t>(j)];
-    if (below.label == label && below.i == i - 1) residuals[k].add_rise(0, now.above_m - below.above_m);
-    if (before.label == label && before.i == i && before.j == j - 1 && j % side != 0) {
-      residuals[k].add_rise(1, now.above_m - before.above_m);
-    }
-    before = below = now;
+    const auto column = static_cast<std::size_t>(j);
+    const auto neighbour = [&](std::size_t axis, const Seen& other, int row) {
+      if (other.label == label && other.i == row) residuals[k].add_rise(axis, now.above_m - other.above_m);
+    };
+    neighbour(0, last[column], i - 1);
+    if (j % side != 0) neighbour(1, last[column - 1], i);
+    last[column] = now;
   };
   for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) dem.for_each_valid_in_row(i, visit);
 

@@ -162,10 +162,13 @@ class Ground {
     }
   };
 
+  static float height_above(const Plane& ground, const Plane& plane) {
+    return plane.z_m - ground.height_m(plane.x_m, plane.y_m);
+  }
   /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the more of it they hold the
   /// higher: the strip leans, or all of it is higher than a kerb. A level one below that is a surface.
   static bool stands_out(const Plane& plane, const Plane& ground) {
-    const float above_m = plane.z_m - ground.height_m(plane.x_m, plane.y_m);
+    const float above_m = height_above(ground, plane);
     const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
     return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
   }
@@ -212,12 +215,12 @@ const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneF
 template <Limits limits>
 bool Ground<limits>::stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
                                   const Plane& ground) {
-  const auto above_m = [&](const Plane& p) { return p.z_m - ground.height_m(p.x_m, p.y_m); };
-  const float height_m = above_m(plane);
+  const float above_m = height_above(ground, plane);
   const float slope_squared = plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y;
-  if (!(height_m > usual_step_m) || slope_squared > steepest_ramp * steepest_ramp) return false;
+  if (!(above_m > usual_step_m) || slope_squared > steepest_ramp * steepest_ramp) return false;
   for (std::size_t l = 0; l < planes.size(); ++l) {
-    if (!planes[l].alive() || obstacle[l] || above_m(planes[l]) < height_m + 0.5f * usual_step_m) continue;
+    if (!planes[l].alive() || obstacle[l]) continue;
+    if (height_above(ground, planes[l]) < above_m + 0.5f * usual_step_m) continue;
     const float dx_m = planes[l].x_m - plane.x_m, dy_m = planes[l].y_m - plane.y_m;
     if (dx_m * dx_m + dy_m * dy_m < way_m * way_m) return false;
   }
@@ -326,12 +329,17 @@ template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             LabelType none, LabelOf&& label_of, Changed&& changed) {
   Tallies tallies{};
-  dem.for_each_valid([&](int i, int j, int s) {
+  dem.for_each_valid([&](int, int, int s) {
     const LabelType label = label_of(s);
-    if (label == none) return;
-    tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
-    tallies[label].at_edge |= i == 0 || j == 0 || i + 1 == dem.rows() || j + 1 == dem.cols();
+    if (label != none) tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
   });
+  const auto note_edge = [&](int i, int j) {
+    const int s = dem.slot(i, j);
+    const LabelType label = dem.cell(s).valid() ? label_of(s) : none;
+    if (label != none) tallies[label].at_edge = true;
+  };
+  for (int i = 0; i < dem.rows(); ++i) note_edge(i, 0), note_edge(i, dem.cols() - 1);
+  for (int j = 0; j < dem.cols(); ++j) note_edge(0, j), note_edge(dem.rows() - 1, j);
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
   PlaneFlags obstacle{}, high{};
   for (std::size_t l = 0; l < obstacle.size(); ++l) {

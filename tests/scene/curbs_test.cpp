@@ -37,9 +37,8 @@ TEST_CASE("scene: a low curb of 3 cm is found") {
   CHECK(pipeline->curbs().size() == 1);
 }
 
-//       ########   a street that falls by 2 %, a kerb of 18 mm askew in it and nothing else: as long as one plane has
-//       it
-//     ##########   all, its cells err alike
+//       ########     a street that falls by 2 %, a kerb of 18 mm askew in it and nothing else:
+//     ##########     as long as one plane has it all, its cells err alike
 TEST_CASE("scene: a kerb of 2 cm is found where it is all there is") {
   const auto pipeline = seen([](double x, double y) { return -0.02 * x + (x + y < 2.0 ? 0.0 : 0.018); });
   double found_m = 0.0;
