@@ -85,7 +85,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     if (label == PlaneMixture<limits>::none) return;
     const Plane& plane = mixture.plane(label);
     const Cell& cell = dem.cell(s);
-    if (dem.mixed(cell, plane)) return;
+    if (dem.mixed(cell, dem.slope_m2(plane))) return;
     const Seen now{label, i, dem.above_m(i, j, cell, plane)};
     const auto k = static_cast<std::size_t>(j / side);
     residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);

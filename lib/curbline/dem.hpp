@@ -102,11 +102,14 @@ class Dem {
   /// Do they spread by two standard deviations of that noise? Then it holds more than one surface, or a steep one, or
   /// one after another.
   bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
+  /// Variance of the heights of a plane within a cell.
+  float slope_m2(const Plane& plane) const {
+    const float rise_x_m = plane.slope_x * settings_.cell_x_m, rise_y_m = plane.slope_y * settings_.cell_y_m;
+    return (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
+  }
   /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
   /// its plane make? Then it holds more than the plane.
-  bool mixed(const Cell& cell, const Plane& plane) const {
-    const float rise_x_m = plane.slope_x * settings_.cell_x_m, rise_y_m = plane.slope_y * settings_.cell_y_m;
-    const float slope_m2 = (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
+  bool mixed(const Cell& cell, float slope_m2) const {
     const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
     const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / prior_.noise_m2 - freedom;
     return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;

@@ -23,6 +23,8 @@ struct PlaneMoments {
   void add(const PlaneMoments& other);
   /// The same for one cell, whose points lie at one place: its scatter is that of heights alone.
   void add_cell(const PlaneMoments& cell);
+  /// The same points, each worth a share of what it was.
+  void scale(float share);
 };
 
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
@@ -129,7 +131,7 @@ struct Plane {
 
 /// Posterior mean of the plane, the slopes' standard deviation being that of the steepest ramp: what a row of cells
 /// leaves open is no steeper than ground is. And mean square residual, not below what the points of a cell share of the
-/// expected noise: averaging over a cell does not help against that. `cells`: how many cells the moments span.
-Plane fit_plane(const PlaneMoments& moments, float cells, const PlanePrior& prior);
+/// expected noise: averaging over a cell does not help against that.
+Plane fit_plane(const PlaneMoments& moments, const PlanePrior& prior);
 
 }  // namespace curbline

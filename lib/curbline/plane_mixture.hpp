@@ -99,13 +99,17 @@ class PlaneMixture {
     std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap{};  ///< [rank][label], cells
     std::array<LabelType, limits.planes> label;                                    ///< by rank
   };
+  using Fitted = std::array<bool, limits.planes>;  ///< by label
   /// Below as many nothing is known of a plane beside its three parameters.
   static constexpr float least_clean_cells = 4.0f;
+  /// Of as many one in twenty lies along a side: what is amiss there hardly moves the plane, and is not asked for.
+  static constexpr float wide_cells = 400.0f;
 
   void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
   void match(Ranking& ranking);
-  template <typename RankOf>
-  void fit(const Dem<limits>& dem, const Ranking& ranking, RankOf&& rank_of);
+  Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
+  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted);
+  float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -136,8 +140,6 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   });
 
   match(ranking);
-  fit(dem, ranking, rank_of);
-
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
     const LabelType label = rank == none ? none : ranking.label[rank];
@@ -147,37 +149,84 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     relabelled_.insert(s);
     any_relabelled_ = true;
   });
+
+  const Fitted fitted = fit(dem, ranking);
   ground_.update(
       dem, planes_, view, none, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
+  refine(dem, view, fitted);
 }
 
-/// Fits planes to their regions, then to those of their cells that hold nothing else: what mixes both sides of a step
-/// would tilt the plane of a small region toward the other.
+/// Planes of whole regions. Not of responsibilities: these keep what they are.
 template <Limits limits>
-template <typename RankOf>
-void PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking, RankOf&& rank_of) {
-  std::array<bool, limits.planes> fitted{};
+auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -> Fitted {
+  Fitted fitted{};
   for (std::size_t r = 0; r < ranking.regions; ++r) {
-    Plane& plane = planes_[ranking.label[r]];
-    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[ranking.label[r]]) continue;
-    plane = fit_plane(*ranking.region[r].moments, ranking.region[r].moments->cells, dem.prior());
-    fitted[r] = true;
+    const LabelType label = ranking.label[r];
+    Plane& plane = planes_[label];
+    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label]) continue;
+    plane = fit_plane(*ranking.region[r].moments, dem.prior());
+    fitted[label] = true;
   }
-  std::array<PlaneMoments, limits.planes> clean{};
+  return fitted;
+}
+
+/// Fits planes to those cells of their regions that hold nothing else: what mixes both sides of a step would tilt the
+/// plane of a small region toward the other. Where the step is low the heights within a cell do not show it; but
+/// beside a step down it lies too high, and all cells along the step do alike: together they are one observation, too
+/// high by up to the half of the step, anywhere.
+template <Limits limits>
+void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted) {
+  struct Clean {
+    bool wide = false;
+    float slope_m2 = 0.0f;  ///< Dem::slope_m2() of the region's plane
+    PlaneMoments inner, beside;
+    float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
+  };
+  std::array<Clean, limits.planes> clean{};
+  for (std::size_t l = 0; l < clean.size(); ++l) {
+    clean[l].wide = planes_[l].cells >= wide_cells;
+    clean[l].slope_m2 = dem.slope_m2(planes_[l]);
+  }
   dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType rank = rank_of(s);
-    if (rank == none || !fitted[rank]) return;
+    const LabelType label = region_label(s);
+    if (label == none || !fitted[label] || !ground_.is(label)) return;
+    Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
-    if (!dem.mixed(cell, planes_[ranking.label[rank]])) clean[rank].add_cell(dem.moments(i, j, cell));
+    if (dem.mixed(cell, of_plane.slope_m2)) return;
+    const PlaneMoments moments = dem.moments(i, j, cell);
+    const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
+    if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
+    of_plane.beside.add_cell(moments);
+    of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
   });
-  for (std::size_t r = 0; r < ranking.regions; ++r) {
-    if (clean[r].cells < least_clean_cells) continue;
-    Plane& plane = planes_[ranking.label[r]];
-    const float of_region_m2 = plane.variance_m2;
-    plane = fit_plane(clean[r], clean[r].cells, dem.prior());
-    plane.variance_m2 = of_region_m2;
+  for (std::size_t l = 0; l < clean.size(); ++l) {
+    PlaneMoments& moments = clean[l].inner;
+    PlaneMoments& beside = clean[l].beside;
+    if (moments.cells + beside.cells < least_clean_cells) continue;
+    if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
+    moments.add(beside);
+    const float of_region_m2 = planes_[l].variance_m2;
+    planes_[l] = fit_plane(moments, dem.prior());
+    planes_[l].variance_m2 = of_region_m2;
   }
+}
+
+/// How far a cell lies below those beside it, toward the laser, of other regions; 0 if none is higher.
+template <Limits limits>
+float PlaneMixture<limits>::step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const {
+  const Cell& cell = dem.cell(s);
+  float most_m = 0.0f;
+  for (const int toward :
+       {dem.centroid_x_m(i, cell) < view.x_m ? 0 : 1, dem.centroid_y_m(j, cell) < view.y_m ? 2 : 3}) {
+    if (dem.next_valid(s, toward, 1) == 0) continue;
+    const auto d = static_cast<std::size_t>(toward);
+    const int next = dem.slot(i + step_i[d], j + step_j[d]);
+    if (region_label(next) == region_label(s)) continue;
+    const float step_m = dem.cell(next).height_m - cell.height_m;
+    if (step_m > most_m) most_m = step_m;
+  }
+  return most_m;
 }
 
 template <Limits limits>
@@ -251,22 +300,18 @@ template <Limits limits>
 template <typename ForEachBelief>
 void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief) {
   std::array<PlaneMoments, limits.planes> moments{};
-  std::array<float, limits.planes> cells{};
   dem.for_each_valid([&](int i, int j, int s) {
     const PlaneMoments cell = dem.moments(i, j, dem.cell(s));
     for_each_belief(i, j, [&](int label, float responsibility) {
       PlaneMoments share = cell;
-      share.points *= responsibility;
-      share.weight *= responsibility;
-      share.zz *= responsibility;
+      share.scale(responsibility);
       moments[static_cast<std::size_t>(label)].add_cell(share);
-      cells[static_cast<std::size_t>(label)] += responsibility;
     });
   });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
-    if (!planes_[l].alive() || cells[l] < 3.0f) continue;
-    planes_[l] = fit_plane(moments[l], cells[l], dem.prior());
+    if (!planes_[l].alive() || moments[l].cells < 3.0f) continue;
+    planes_[l] = fit_plane(moments[l], dem.prior());
   }
 }
 

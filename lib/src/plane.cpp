@@ -65,6 +65,18 @@ void PlaneMoments::add_cell(const PlaneMoments& cell) {
   cells += cell.cells;
 }
 
+void PlaneMoments::scale(float share) {
+  points *= share;
+  cells *= share;
+  weight *= share;
+  xx *= share;
+  xy *= share;
+  yy *= share;
+  xz *= share;
+  yz *= share;
+  zz *= share;
+}
+
 PlaneEvidence::PlaneEvidence(const PlanePrior& prior)
     : prior_(prior), constant_(0.918938533f + prior.degrees * log(prior.degrees) - log_gamma(prior.degrees)) {
   for (std::size_t n = 1; n < log_gamma_.size(); ++n) log_gamma_[n] = log_gamma(static_cast<float>(n));
@@ -81,7 +93,7 @@ float PlaneEvidence::log_evidence(const PlaneMoments& m) const {
 }
 
 bool PlaneEvidence::parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const {
-  const Plane first = fit_plane(a, a.cells, prior_), second = fit_plane(b, b.cells, prior_);
+  const Plane first = fit_plane(a, prior_), second = fit_plane(b, prior_);
   return step_between(first, second, border) || crease_between(first, second);
 }
 
@@ -126,11 +138,11 @@ bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) cons
   return square * square > 9.0f * (variance(first) + variance(second) + bend * bend);
 }
 
-Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
+Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {
   const float ridge = prior.noise_m2 / (steepest_ramp * steepest_ramp);
   const Slopes slopes = solve(m, ridge);
   // Positions weigh by points; one cell is one observation.
-  const float per_cell = m.weight / cells / slopes.determinant;
+  const float per_cell = m.weight / m.cells / slopes.determinant;
   Plane plane;
   plane.x_m = m.x;
   plane.y_m = m.y;
@@ -140,7 +152,7 @@ Plane fit_plane(const PlaneMoments& m, float cells, const PlanePrior& prior) {
   const float mean_square = slopes.residual_m2 / m.weight;
   const float floor_m2 = prior.common_m2();
   plane.variance_m2 = plane.fit_variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
-  plane.cells = cells;
+  plane.cells = m.cells;
   plane.pxx = (m.yy + ridge) * per_cell;
   plane.pxy = -m.xy * per_cell;
   plane.pyy = (m.xx + ridge) * per_cell;

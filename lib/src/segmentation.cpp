@@ -12,9 +12,9 @@ struct Edge {
 
 /// KL(a || b) + KL(b || a) of two normals; the logarithms cancel.
 float divergence(const BlockCell& a, const BlockCell& b) {
-  const float d = a.height_m - b.height_m;
-  return 0.5f * (a.variance_m2 / b.variance_m2 + b.variance_m2 / a.variance_m2 - 2.0f +
-                 d * d * (1.0f / a.variance_m2 + 1.0f / b.variance_m2));
+  const float v = a.variance_m2, w = b.variance_m2;
+  const float d = a.height_m - b.height_m, e = v - w;
+  return 0.5f * (e * e + d * d * (v + w)) / (v * w);
 }
 
 /// Edges to the next valid cell along each axis, ascending by weight. Two a cell at most.
@@ -42,7 +42,7 @@ int list_edges(const std::array<BlockCell, cells_in_block>& cells, std::array<Ed
 }  // namespace
 
 BlockLeaves cut_block(const std::array<BlockCell, cells_in_block>& cells, float scale) {
-  BlockLeaves root{};
+  BlockLeaves root{};  // of a component: its first cell, which bears itself; others bear one before them
   std::array<float, cells_in_block> limit{};  // Int(C) + s / |C| of the component of a root
   std::array<float, cells_in_block> size{};
   for (std::size_t k = 0; k < root.size(); ++k) {
@@ -50,18 +50,23 @@ BlockLeaves cut_block(const std::array<BlockCell, cells_in_block>& cells, float 
     limit[k] = scale;
     size[k] = 1.0f;
   }
+  const auto root_of = [&](std::uint8_t k) {
+    while (root[k] != k) k = root[k] = root[root[k]];
+    return k;
+  };
   std::array<Edge, 2 * cells_in_block> edges{};
   const int count = list_edges(cells, edges);
   for (int e = 0; e < count; ++e) {
     const Edge& edge = edges[static_cast<std::size_t>(e)];
-    const std::uint8_t a = root[edge.a], b = root[edge.b];
+    const std::uint8_t a = root_of(edge.a), b = root_of(edge.b);
     if (a == b || edge.weight > limit[a] || edge.weight > limit[b]) continue;
     const std::uint8_t low = a < b ? a : b, high = a < b ? b : a;
-    for (std::uint8_t& r : root) {
-      if (r == high) r = low;
-    }
+    root[high] = low;
     size[low] = size[a] + size[b];
     limit[low] = edge.weight + scale / size[low];
+  }
+  for (std::uint8_t& r : root) {
+    if (r != 255) r = root[r];
   }
   return root;
 }

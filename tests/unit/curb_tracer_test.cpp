@@ -153,6 +153,17 @@ TEST_CASE("curb tracer: a plane and a ramp meet at the edge of a ramp, not a ste
   }
 }
 
+TEST_CASE("curb tracer: a step down to two rows, of which the first holds some of the edge, is no ramp") {
+  for (const double share : {0.2, 0.3}) {
+    const auto stages = traced([=](double x, double) { return x < 2.2 ? 0.06 : x < 2.3 ? 0.06 * share : 0.0; });
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    const Curb& curb = stages->tracer.curbs()[0];
+    CHECK(curb.kind == CurbKind::step_down);
+    CHECK(curb.height_m == Approx(-0.06).margin(0.015));
+    CHECK(std::abs(curb.height_m + 0.06f) < 2.0f * curb.height_sd_m);
+  }
+}
+
 TEST_CASE("curb tracer: one plane has no curb") {
   CHECK(traced([](double x, double y) { return 0.1 * x + 0.05 * y; })->tracer.curbs().empty());
 }

@@ -62,6 +62,25 @@ TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the p
   }
 }
 
+//  o
+//  ____________
+//              |_       the first of two rows behind the edge: too high, by readings that mix it and the road
+//                |__
+TEST_CASE("plane mixture: what lies too high beside a step down does not tilt the strip behind") {
+  const auto strip_seen_from = [](float x_m) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    fill(stages->dem, [](double x, double) { return x < 2.2 ? 0.06 : x < 2.3 ? 0.016 : 0.0; });
+    stages->view.x_m = x_m;
+    stages->infer();
+    return stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(23, 12)));
+  };
+  const Plane behind = strip_seen_from(0.0f), before = strip_seen_from(3.0f);
+  CHECK(before.slope_x == Approx(-0.16).margin(0.01));
+  CHECK(std::abs(behind.slope_x) < 0.08f);
+  CHECK(behind.height_m(2.35f, 1.2f) == Approx(0.0).margin(0.004));
+  CHECK(behind.height_variance_m2(2.25f, 1.2f) > 2.0f * behind.height_variance_m2(2.35f, 1.2f));
+}
+
 TEST_CASE("plane mixture: a face whose cells all spread is fitted all the same") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;

@@ -197,7 +197,7 @@ TEST_CASE("plane fit: recovers level, slopes and noise within their standard dev
   const auto points =
       test::sample({0, 4, -2, 2}, 0.1, sd, noise, [](double x, double y) { return -0.88 + 0.07 * x - 0.02 * y; });
   const auto n = static_cast<float>(points.size());
-  const Plane plane = fit_plane(of_points(points), n, no_floor());
+  const Plane plane = fit_plane(of_points(points), no_floor());
   const double level_sd = sd / std::sqrt(n), slope_sd = level_sd / std::sqrt(16.0 / 12.0);
   CHECK(plane.alive());
   CHECK(plane.height_m(2.0f, 0.0f) == Approx(-0.74).margin(4 * level_sd));
@@ -210,13 +210,13 @@ TEST_CASE("plane fit: no plane is known better than what the points of a cell sh
   Noise noise;
   const auto points = test::sample({0, 1, 0, 1}, 0.1, 0.0, noise, [](double, double) { return 0.0; });
   const PlanePrior prior;
-  CHECK(fit_plane(of_points(points), 100.0f, prior).variance_m2 == prior.common_share * prior.noise_m2);
+  CHECK(fit_plane(of_points(points), prior).variance_m2 == prior.common_share * prior.noise_m2);
 }
 
 TEST_CASE("plane fit: what a row of cells leaves open of its slope is no steeper than a ramp") {
   Noise noise;
   const auto points = test::sample({0, 0.01, 0, 1}, 0.01, 0.01, noise, [](double, double) { return 0.0; });
-  const Plane plane = fit_plane(of_points(points), static_cast<float>(points.size()), PlanePrior{});
+  const Plane plane = fit_plane(of_points(points), PlanePrior{});
   const float beside_m = 0.1f;
   CHECK(std::abs(plane.slope_x) < steepest_ramp);
   CHECK(plane.rise_variance_m2(beside_m, 0.0f) < std::pow(1.1f * steepest_ramp * beside_m, 2.0f));
@@ -226,7 +226,7 @@ TEST_CASE("plane fit: what a row of cells leaves open of its slope is no steeper
 TEST_CASE("plane fit: the height is best known at the centroid and worse the further away") {
   Noise noise;
   const auto points = test::sample({0, 2, 0, 1}, 0.1, 0.01, noise, [](double x, double) { return 0.1 * x; });
-  const Plane plane = fit_plane(of_points(points), 200.0f, no_floor());
+  const Plane plane = fit_plane(of_points(points), no_floor());
   const float centre = plane.height_variance_m2(plane.x_m, plane.y_m);
   CHECK(centre == Approx(plane.variance_m2 / 200.0f));
   CHECK(plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m) > centre);
@@ -242,7 +242,7 @@ TEST_CASE("plane fit: the stated variance of a height is the one that repeated f
   double sum = 0.0, sum2 = 0.0, stated = 0.0;
   for (int k = 0; k < fits; ++k) {
     const auto points = test::sample({0, 1, 0, 1}, 0.1, 0.01, noise, [](double, double) { return 0.0; });
-    const Plane plane = fit_plane(of_points(points), 100.0f, no_floor());
+    const Plane plane = fit_plane(of_points(points), no_floor());
     const double height = plane.height_m(1.5f, 0.5f);
     sum += height;
     sum2 += height * height;
@@ -267,7 +267,7 @@ TEST_CASE("plane fit: far from the origin it keeps its digits") {
   const PlanePrior prior;
   const PlaneMoments a = of_points(near_by), b = of_points(far_away);
   CHECK(PlaneEvidence(prior).log_evidence(b) == Approx(PlaneEvidence(prior).log_evidence(a)).margin(0.5));
-  const Plane p = fit_plane(a, 400.0f, prior), q = fit_plane(b, 400.0f, prior);
+  const Plane p = fit_plane(a, prior), q = fit_plane(b, prior);
   CHECK(q.slope_x == Approx(p.slope_x).margin(1e-4));
   CHECK(q.slope_y == Approx(p.slope_y).margin(1e-4));
   CHECK(q.height_m(1025.0f, -2047.0f) == Approx(p.height_m(1.0f, 1.0f) + 128.0f).margin(1e-4));
@@ -286,7 +286,7 @@ TEST_CASE(
       cell.cells = 1;
       moments.add_cell(cell);
     }
-    const Plane plane = fit_plane(moments, 40, {});
+    const Plane plane = fit_plane(moments, {});
     for (float x = -1; x < 5; x += 0.1f) {
       for (float y = 0; y < 4; y += 0.1f) CHECK(plane.height_variance_m2(x, y) >= plane.variance_m2 / 40);
     }
