@@ -3,8 +3,8 @@
 // between the cells of the one and of the other the edge lies. Two edges are found although no ground is seen beyond:
 //   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
 //     as well as the face; what lies beyond is flatter than the rays.
-//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils) follow the ground, away from
-//     the laser, and lie below it. They fall as far as is seen of the step.
+//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
+//     follow the ground, away from the laser, and lie below it. They fall as far as is seen of the step.
 // Cost: a pass over the window and a look at each cell of a gap, a face and a veil.
 #pragma once
 
@@ -129,9 +129,11 @@ bool BorderFinder<limits>::bears_ground(int slot) const {
   return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.falls_as_rays(label);
 }
 
-/// Does a cell mix two sides, or may it, since its plane falls away as the rays do?
+/// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of a
+/// region too small for a plane, or of a plane that falls away as the rays do.
 template <Limits limits>
 bool BorderFinder<limits>::is_veil(int slot) const {
+  if (mixture_.region_label(slot) == none) return true;
   const LabelType label = field_.label(slot);
   return mixture_.on_ground(slot) ? label != none && mixture_.falls_as_rays(label) : !mixture_.covered(slot);
 }
@@ -164,12 +166,11 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   Place before_in_row;
   int row = -1;
   dem_.for_each_valid([&](int i, int j, int s) {
-    if (!bears_ground(s)) {
+    const LabelType label = field_.label(s);
+    if (!bears_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) {
       if (is_veil(s)) end_before({0, j}, i), end_before({1, i}, j);
       return;
     }
-    const LabelType label = field_.label(s);
-    if (!lies_on(i, j, dem_.cell(s), mixture_.plane(label))) return;
     if (i != row) before_in_row = {};
     row = i;
     pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
@@ -266,18 +267,19 @@ auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const
   const int before = dem_.next_valid(slot(line, first_of_veil), direction(line, -toward), settings_.link_reach);
   const int edge = first_of_veil - toward * before;
   if (before == 0 || !bears_ground(slot(line, edge))) return {};
+  const auto on_plane = [&](int along, LabelType label) {
+    return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
+  };
   int last = first_of_veil;
   while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
     const int next = last + toward * g;
-    if (bears_ground(slot(line, next))) return {};
-    if (!is_veil(slot(line, next))) break;
+    const int s = slot(line, next);
+    if (bears_ground(s) && (mixture_.region_label(s) != none || on_plane(next, field_.label(s)))) return {};
+    if (!is_veil(s)) break;
     last = next;
   }
   const LabelType label = field_.label(slot(line, edge));
-  const auto on_plane = [&](int along) {
-    return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
-  };
-  if (!on_plane(edge) || on_plane(last) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
+  if (!on_plane(edge, label) || on_plane(last, label) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
   return {{line, {label, static_cast<std::int16_t>(edge)}, toward}, last};
 }
 

@@ -293,6 +293,38 @@ TEST_CASE("border finder: where a veil follows the ground and nothing is seen be
   }
 }
 
+//  o
+//  _________   ____
+//           . .         as the veil, but of six cells, in the middle of the way; or a drain, behind which it goes on
+TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain does not") {
+  const auto curbs = [](double to_m) {
+    Stages<small_limits> stages(small_settings());
+    for (const double x : {0.3, 0.7}) {
+      for (const double y : {0.3, 0.7}) {
+        for (int i = 0; i < 24; ++i) {
+          for (int j = 0; j < 24; ++j) {
+            const bool drain = (i == 14 || i == 15) && j >= 10 && j < 13;
+            const double at_x = 0.1 * (i + x), at_y = 0.1 * (j + y);
+            if (i >= 14 && !drain && at_x < to_m) continue;
+            stages.dem.add({static_cast<float>(at_x), static_cast<float>(at_y), drain ? -0.1f : 0.0f, 1e-4f});
+          }
+        }
+      }
+    }
+    stages.view.y_m = 1.2f;
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(0.0f, 1.2f);
+    return std::vector<Curb>(stages.tracer.curbs().begin(), stages.tracer.curbs().end());
+  };
+  const std::vector<Curb> brinks = curbs(9.0);
+  REQUIRE(brinks.size() == 1);
+  CHECK(brinks[0].kind == CurbKind::step_down);
+  CHECK(brinks[0].far_label == no_label<small_limits>);
+  CHECK(brinks[0].x0_m == Approx(1.4).margin(0.03));
+  CHECK(brinks[0].height_m == Approx(-0.12).margin(0.03));
+  CHECK(curbs(1.4).empty());
+}
+
 TEST_CASE("border finder: a veil at the window's end hides a step all the same") {
   CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
 }
