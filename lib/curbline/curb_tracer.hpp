@@ -317,12 +317,11 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   const float slope =
       (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
   // The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
-  // the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, not at
-  // all or up to the half, the less the likelier, since as a rule they hold points of both sides, and those that show
-  // it have no part in the fit: by a density that falls evenly to 0, a sixth of the square of that half. Behind a brink
-  // as much again as is seen may be hidden, or less, evenly.
+  // the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to
+  // a quarter of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane,
+  // have no part in the fit. Behind a brink as much again as is seen may be hidden, or less, evenly.
   curb.height_sd_m = square_root(piece.variance_m2 + slope * slope * piece.place_variance_m2 +
-                                 piece.off_m * piece.off_m * (1.0f / 24) + hidden_m * hidden_m * (1.0f / 3));
+                                 piece.off_m * piece.off_m * (1.0f / 48) + hidden_m * hidden_m * (1.0f / 3));
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   float shadow_m = 0.0f;
   if (curb.kind == CurbKind::step_down && !one_sided) {

@@ -108,7 +108,9 @@ class PlaneMixture {
   void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
   void match(Ranking& ranking);
   Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
-  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted);
+  template <typename LabelOf>
+  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, LabelOf&& label_of);
+  static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Plane& one, const Plane& other);
   float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
 
   PlaneSettings settings_{};
@@ -154,7 +156,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   ground_.update(
       dem, planes_, view, none, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
-  refine(dem, view, fitted);
+  refine(dem, view, fitted, label_of);
 }
 
 /// Planes of whole regions. Not of responsibilities: these keep what they are.
@@ -171,29 +173,34 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -
   return fitted;
 }
 
-/// Fits planes to those cells of their regions that hold nothing else: what mixes both sides of a step would tilt the
-/// plane of a small region toward the other. Where the step is low the heights within a cell do not show it; but
-/// beside a step down it lies too high, and all cells along the step do alike: together they are one observation, too
-/// high by up to the half of the step, anywhere.
+/// Fits planes that are ground to those cells of their regions that hold nothing else, and do not bear another plane on
+/// which they lie better: what mixes both sides of a step would tilt the plane of a small region toward the other.
+/// Where the step is low the heights within a cell do not show it; but beside a step down it lies too high, and all
+/// cells along the step do alike: together they are one observation, too high by up to the half of the step, anywhere.
 template <Limits limits>
-void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted) {
+template <typename LabelOf>
+void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
+                                  LabelOf&& label_of) {
   struct Clean {
-    bool wide = false;
+    bool wanted = false, wide = false;
     float slope_m2 = 0.0f;  ///< Dem::slope_m2() of the region's plane
     PlaneMoments inner, beside;
     float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
   };
   std::array<Clean, limits.planes> clean{};
   for (std::size_t l = 0; l < clean.size(); ++l) {
+    clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
     clean[l].wide = planes_[l].cells >= wide_cells;
     clean[l].slope_m2 = dem.slope_m2(planes_[l]);
   }
   dem.for_each_valid([&](int i, int j, int s) {
     const LabelType label = region_label(s);
-    if (label == none || !fitted[label] || !ground_.is(label)) return;
+    if (label == none || !clean[label].wanted) return;
     Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, of_plane.slope_m2)) return;
+    const LabelType borne = label_of(s);
+    if (borne != label && borne != none && lies_nearer(dem, i, j, planes_[borne], planes_[label])) return;
     const PlaneMoments moments = dem.moments(i, j, cell);
     const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
@@ -210,6 +217,14 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     planes_[l] = fit_plane(moments, dem.prior());
     planes_[l].variance_m2 = of_region_m2;
   }
+}
+
+/// Does a cell lie nearer to one plane than to another?
+template <Limits limits>
+bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, const Plane& one, const Plane& other) {
+  const Cell& cell = dem.cell(dem.slot(i, j));
+  const float above_one_m = dem.above_m(i, j, cell, one), above_other_m = dem.above_m(i, j, cell, other);
+  return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
 }
 
 /// How far a cell lies below those beside it, toward the laser, of other regions; 0 if none is higher.

@@ -233,7 +233,7 @@ TEST_CASE("curb tracer: a curb's face is looked through, the full step and the w
 
 TEST_CASE("curb tracer: cells beside the border that lie off their planes make the height less certain") {
   const auto flat = traced(up),
-             worn = traced([](double x, double y) { return up(x, y) - (x > 1.4 && x < 1.6 ? 0.008 : 0.0); });
+             worn = traced([](double x, double y) { return up(x, y) - (x > 1.4 && x < 1.5 ? 0.008 : 0.0); });
   REQUIRE(flat->tracer.curbs().size() == 1);
   REQUIRE(worn->tracer.curbs().size() == 1);
   CHECK(worn->tracer.curbs()[0].height_sd_m > 1.05f * flat->tracer.curbs()[0].height_sd_m);

@@ -81,6 +81,29 @@ TEST_CASE("plane mixture: what lies too high beside a step down does not tilt th
   CHECK(behind.height_variance_m2(2.25f, 1.2f) > 2.0f * behind.height_variance_m2(2.35f, 1.2f));
 }
 
+TEST_CASE("plane mixture: cells that bear another plane do not tilt their region's if they lie nearer to that one") {
+  const auto tilt_where_the_last_row_lies = [](double z_m) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    fill(
+        stages->dem, [=](double x, double) { return x < 1.1   ? 0.0
+                                                    : x < 1.2 ? z_m
+                                                              : 0.025; }, 0.008);
+    stages->infer(true);
+    const auto low = stages->mixture.region_label(stages->dem.slot(4, 12)),
+               high = stages->mixture.region_label(stages->dem.slot(20, 12));
+    REQUIRE(low != high);
+    REQUIRE(stages->mixture.region_label(stages->dem.slot(11, 12)) == low);
+    stages->dem.add({0.05f, 0.05f, 0.0f, 1e-4f});
+    stages->segment();
+    stages->mixture.update(
+        stages->dem, *stages->segmented, stages->view,
+        [&](int slot) { return slot / small_settings().window.cols < 11 ? low : high; }, stages->counters);
+    return stages->mixture.plane(low).slope_x;
+  };
+  CHECK(tilt_where_the_last_row_lies(0.014) < 0.001f);
+  CHECK(tilt_where_the_last_row_lies(0.011) > 0.003f);  // nearer to its region's: the label is yet to follow
+}
+
 TEST_CASE("plane mixture: a face whose cells all spread is fitted all the same") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
