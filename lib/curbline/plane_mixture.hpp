@@ -1,6 +1,7 @@
 // The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become
 // planes again and take the label with which their cells overlap most, so that a plane keeps its label while it grows,
-// is cut and merged; a label that no region took dies. Cost: three passes over the window, K^3 for the matching.
+// is cut and merged; a label that no region took dies. Planes that are ground are then fitted to the cells that hold
+// nothing else. Cost: three passes over the window, K^3 for the matching, and ground.hpp.
 #pragma once
 
 #include <array>
