@@ -95,8 +95,6 @@ class BorderFinder {
   static int row(const Line& line, int along) { return line.axis == 0 ? along : line.across; }
   static int col(const Line& line, int along) { return line.axis == 0 ? line.across : along; }
   int slot(const Line& line, int along) const { return dem_.slot(row(line, along), col(line, along)); }
-  /// Of dem.next_valid(), along the line (toward 1) or against it (-1).
-  static int direction(const Line& line, int toward) { return 2 * line.axis + (toward < 0); }
   /// 1 if the cell lies farther along the line than the laser, else -1.
   int away(const Line& line, int along) const {
     return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
@@ -239,7 +237,7 @@ auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> En
 
   const int widest = static_cast<int>(widest_face_m / pitch_m(line) + 1.5f);  // touched, when it lies across cells
   int last = first.along;
-  while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
+  while (const int g = dem_.next_valid(slot(line, last), direction(line.axis, toward), settings_.link_reach)) {
     last += toward * g;
     if (field_.label(slot(line, last)) != first.label || toward * (last - first.along) >= widest) return {};
   }
@@ -264,14 +262,14 @@ auto BorderFinder<limits>::border_of_face(const End& end) const -> Border {
 template <Limits limits>
 auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const -> Brink {
   const int toward = away(line, first_of_veil);
-  const int before = dem_.next_valid(slot(line, first_of_veil), direction(line, -toward), settings_.link_reach);
+  const int before = dem_.next_valid(slot(line, first_of_veil), direction(line.axis, -toward), settings_.link_reach);
   const int edge = first_of_veil - toward * before;
   if (before == 0 || !bears_ground(slot(line, edge))) return {};
   const auto on_plane = [&](int along, LabelType label) {
     return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
   };
   int last = first_of_veil;
-  while (const int g = dem_.next_valid(slot(line, last), direction(line, toward), settings_.link_reach)) {
+  while (const int g = dem_.next_valid(slot(line, last), direction(line.axis, toward), settings_.link_reach)) {
     const int next = last + toward * g;
     const int s = slot(line, next);
     if (bears_ground(s) && (mixture_.region_label(s) != none || on_plane(next, field_.label(s)))) return {};

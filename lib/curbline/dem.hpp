@@ -22,6 +22,10 @@ inline constexpr int block_side = 4;
 /// Directions along the axes: +x, -x, +y, -y. d ^ 1 is opposite to d.
 inline constexpr int directions = 4;
 inline constexpr std::array<int, directions> step_i{1, -1, 0, 0}, step_j{0, 0, 1, -1};
+/// Along x (axis 0) or y (1): to higher places (toward 1) or to lower ones (-1).
+constexpr int direction(int axis, int toward) {
+  return 2 * axis + (toward < 0);
+}
 
 /// Cells further apart than this know nothing of each other: what four bits hold.
 inline constexpr int max_link_reach = 15;

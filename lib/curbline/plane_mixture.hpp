@@ -111,7 +111,7 @@ class PlaneMixture {
   Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
   template <typename LabelOf>
   void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, LabelOf&& label_of);
-  static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Plane& one, const Plane& other);
+  static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
   float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
 
   PlaneSettings settings_{};
@@ -201,7 +201,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, of_plane.slope_m2)) return;
     const LabelType borne = label_of(s);
-    if (borne != label && borne != none && lies_nearer(dem, i, j, planes_[borne], planes_[label])) return;
+    if (borne != label && borne != none && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     const PlaneMoments moments = dem.moments(i, j, cell);
     const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
@@ -222,8 +222,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
 
 /// Does a cell lie nearer to one plane than to another?
 template <Limits limits>
-bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, const Plane& one, const Plane& other) {
-  const Cell& cell = dem.cell(dem.slot(i, j));
+bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one,
+                                       const Plane& other) {
   const float above_one_m = dem.above_m(i, j, cell, one), above_other_m = dem.above_m(i, j, cell, other);
   return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
 }
@@ -233,8 +233,9 @@ template <Limits limits>
 float PlaneMixture<limits>::step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const {
   const Cell& cell = dem.cell(s);
   float most_m = 0.0f;
-  for (const int toward :
-       {dem.centroid_x_m(i, cell) < view.x_m ? 0 : 1, dem.centroid_y_m(j, cell) < view.y_m ? 2 : 3}) {
+  const int along_x = direction(0, dem.centroid_x_m(i, cell) < view.x_m ? 1 : -1);
+  const int along_y = direction(1, dem.centroid_y_m(j, cell) < view.y_m ? 1 : -1);
+  for (const int toward : {along_x, along_y}) {
     if (dem.next_valid(s, toward, 1) == 0) continue;
     const auto d = static_cast<std::size_t>(toward);
     const int next = dem.slot(i + step_i[d], j + step_j[d]);

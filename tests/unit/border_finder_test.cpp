@@ -299,17 +299,12 @@ TEST_CASE("border finder: where a veil follows the ground and nothing is seen be
 TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain does not") {
   const auto curbs = [](double to_m) {
     Stages<small_limits> stages(small_settings());
-    for (const double x : {0.3, 0.7}) {
-      for (const double y : {0.3, 0.7}) {
-        for (int i = 0; i < 24; ++i) {
-          for (int j = 0; j < 24; ++j) {
-            const bool drain = (i == 14 || i == 15) && j >= 10 && j < 13;
-            const double at_x = 0.1 * (i + x), at_y = 0.1 * (j + y);
-            if (i >= 14 && !drain && at_x < to_m) continue;
-            stages.dem.add({static_cast<float>(at_x), static_cast<float>(at_y), drain ? -0.1f : 0.0f, 1e-4f});
-          }
-        }
-      }
+    test::Noise noise;
+    const auto in_drain = [](double x, double y) { return x >= 1.4 && x < 1.6 && y >= 1.0 && y < 1.3; };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, 0.0, noise,
+                                       [&](double x, double y) { return in_drain(x, y) ? -0.1 : 0.0; })) {
+      const double x = static_cast<double>(p.x_m), y = static_cast<double>(p.y_m);
+      if (x < 1.4 || x > to_m || in_drain(x, y)) stages.dem.add(p);
     }
     stages.view.y_m = 1.2f;
     for (int pass = 0; pass < 3; ++pass) stages.infer(true);

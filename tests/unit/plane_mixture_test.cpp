@@ -84,10 +84,8 @@ TEST_CASE("plane mixture: what lies too high beside a step down does not tilt th
 TEST_CASE("plane mixture: cells that bear another plane do not tilt their region's if they lie nearer to that one") {
   const auto tilt_where_the_last_row_lies = [](double z_m) {
     const auto stages = std::make_unique<Stages<>>(small_settings());
-    fill(
-        stages->dem, [=](double x, double) { return x < 1.1   ? 0.0
-                                                    : x < 1.2 ? z_m
-                                                              : 0.025; }, 0.008);
+    const auto ground = [=](double x, double) { return x < 1.1 ? 0.0 : x < 1.2 ? z_m : 0.025; };
+    fill(stages->dem, ground, 0.008);
     stages->infer(true);
     const auto low = stages->mixture.region_label(stages->dem.slot(4, 12)),
                high = stages->mixture.region_label(stages->dem.slot(20, 12));
