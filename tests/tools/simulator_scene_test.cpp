@@ -298,18 +298,45 @@ TEST_CASE("truth: in regions.gt the first polygon that holds a point is its regi
 }
 
 TEST_CASE(
-    "motion: the robot drives the legs at its speed, turns between them and goes up a curb within its wheelbase") {
+    "motion: the robot drives the legs at its speed, turns between them and goes up a curb one axle after the other") {
   const Scene scene = scene_of(bump + "[robot]\npath = [[0, 0], [3, 0], [3, 5]]\nspeed = 0.5\nturn_rate_deg_s = 45\n");
   const RobotMotion motion(scene);
   CHECK(motion.duration_s() == Approx(6 + 2 + 10).margin(0.03));
   CHECK(motion.T_map_base(2).translation().x() == Approx(1));
   CHECK(motion.T_map_base(2.001).translation().x() == Approx(1.0005));
-  CHECK(motion.T_map_base(3.4).translation().z() == Approx(0).margin(1e-9));  // 0.3 m before the bump
-  CHECK(motion.T_map_base(4).translation().z() == Approx(0.06).margin(0.01));
-  CHECK(motion.T_map_base(4.6).translation().z() == Approx(0.12));
+  const auto z_m = [&](double time_s) { return motion.T_map_base(time_s).translation().z(); };
+  CHECK(z_m(3.18) == Approx(0).margin(1e-9));  // 0.41 m before the bump: its wheels reach 0.4 m ahead
+  CHECK(z_m(3.5) == Approx(0.06));             // the front wheels are on it
+  CHECK(z_m(4.18) == Approx(0.06));
+  CHECK(z_m(4.5) == Approx(0.12));
   CHECK(motion.T_map_base(7).linear().col(0).y() == Approx(std::sqrt(0.5)).margin(0.01));
   CHECK(motion.T_map_base(100).translation().y() == Approx(5));
   CHECK(motion.T_map_base(4).linear().col(2).z() == Approx(1));  // level
+}
+
+TEST_CASE("motion: a wheel rolls up a curb as its rim does over the edge, and the base leans") {
+  const RobotMotion motion(scene_of(bump + "[robot]\npath = [[0, 0], [3, 0]]\nspeed = 0.5\nattitude = 'terrain'\n"));
+  for (double to_edge_m = 0.16; to_edge_m >= 0; to_edge_m -= 0.005) {
+    const Eigen::Isometry3d T = motion.T_map_base((2 - 0.25 - to_edge_m) / 0.5);
+    const double inside = std::max(0.0, 0.15 * 0.15 - to_edge_m * to_edge_m);
+    const double wheel_m = std::max(0.0, 0.12 - 0.15 + std::sqrt(inside));  // 0.15 m in radius, 12 cm high
+    INFO(to_edge_m);
+    CHECK(T.translation().z() == Approx(wheel_m / 2).margin(0.012));  // felt every cm, where it is steepest
+    CHECK(T.linear()(2, 0) == Approx(wheel_m / 0.5).margin(0.05));
+  }
+}
+
+TEST_CASE("scene: a street that a robot drives through is the one where it stands, but for what is in its way") {
+  for (const std::string seed : {"1", "9", "44"}) {
+    const Scene stands = find_scene("random:" + seed), drives = find_scene("random-drive:" + seed);
+    REQUIRE(drives.regions.size() == stands.regions.size());
+    for (std::size_t r = 0; r < stands.regions.size(); ++r) CHECK(drives.regions[r].plane.z0_m == stands.regions[r].plane.z0_m);
+    CHECK(drives.path.follows_terrain);
+    CHECK(drives.path.waypoints.back().x - drives.path.waypoints.front().x == 6);
+    for (const Obstacle& obstacle : drives.obstacles) {
+      for (const Point2 p : obstacle.outline) CHECK(std::hypot(p.x - std::clamp(p.x, -3.0, 3.0), p.y) > 0.85);
+    }
+  }
 }
 
 TEST_CASE("motion: with the attitude of the terrain the base leans as the ground does") {

@@ -309,6 +309,24 @@ TEST_CASE("simulation: poses between which one interpolates are those of the dri
   CHECK(std::sqrt(attitude / n) == Approx(0.002).epsilon(0.2));
 }
 
+TEST_CASE("simulation: a localisation that thinks better of itself does so every so often, up or down") {
+  Robot robot = plain_robot();
+  robot.simulated.pose_jump_every_s = 2.0;
+  robot.simulated.pose_jump_height_m = 0.02;
+  robot.simulated.pose_jump_attitude_rad = 0.01;
+  double last_z_m = 0, jumps = 0;
+  for (const SimulatedPose& pose : run(scene_of(flat + drive), robot, 9.0).poses) {
+    const double z_m = pose.T_map_base.translation().z();
+    if (seconds_of(pose.time_ns) < 2) CHECK((z_m == 0 && pose.T_map_base.linear().isIdentity()));
+    if (std::abs(z_m - last_z_m) < 1e-9) continue;
+    CHECK(std::abs(z_m - last_z_m) == Approx(0.02));
+    CHECK(std::fmod(seconds_of(pose.time_ns), 2.0) < 0.06);  // the next pose
+    last_z_m = z_m;
+    ++jumps;
+  }
+  CHECK(jumps == 4);
+}
+
 TEST_CASE("simulation: a robot that stands gives no poses unless its description says that it has some") {
   Robot robot = plain_robot();
   CHECK(run(scene_of(flat), robot, 0.1).poses.empty());

@@ -78,6 +78,9 @@ void read_simulated(TomlTable table, SimulatedErrors& errors) {
   table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, 10'000.0});
   table.read("pose_position_sd_m", errors.pose_position_sd_m, {0.0, 1.0});
   table.read("pose_attitude_sd_rad", errors.pose_attitude_sd_rad, {0.0, 0.1});
+  table.read("pose_jump_every_s", errors.pose_jump_every_s, {0.0, 86'400.0});
+  table.read("pose_jump_height_m", errors.pose_jump_height_m, {0.0, 1.0});
+  table.read("pose_jump_attitude_rad", errors.pose_jump_attitude_rad, {0.0, 0.1});
   table.done();
 }
 

@@ -26,6 +26,9 @@ struct SimulatedErrors {
   double pose_rate_hz = 20.0;
   double pose_position_sd_m = 0.0;
   double pose_attitude_sd_rad = 0.0;
+  double pose_jump_every_s = 0.0;  ///< so often the localisation thinks better, by as much up or down ...
+  double pose_jump_height_m = 0.0;
+  double pose_jump_attitude_rad = 0.0;  ///< ... of roll and of pitch; 0: never
 };
 
 /// How the servo nods, for the simulator.

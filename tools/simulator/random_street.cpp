@@ -33,7 +33,7 @@ Surface through(const Point2 (&p)[3], const double (&z)[3]) {
 
 class Street {
  public:
-  explicit Street(std::uint64_t seed) : random_(seed) {}
+  Street(std::uint64_t seed, StreetRobot robot) : random_(seed), half_way_m_(robot == StreetRobot::drives ? 3 : 0) {}
 
   std::string text(std::uint64_t seed) {
     stand_beside_the_curb();
@@ -50,6 +50,10 @@ class Street {
       draw_side_road();
     }
     draw_obstacles();
+    if (half_way_m_ > 0) {
+      text_ += "\n[robot]\npath = [[" + decimals(-half_way_m_, 1) + ", 0], [" + decimals(half_way_m_, 1) +
+               ", 0]]\nspeed = 1\nattitude = \"terrain\"\n";
+    }
     return "about = \"Random street " + std::to_string(seed) + ": " + about + ".\"\n" + text_;
   }
 
@@ -217,8 +221,10 @@ class Street {
     }
   }
 
+  /// Of the robot's place, or its way.
   bool clear(Point2 p, double radius_m) const {
-    return std::hypot(p.x - robot().x, p.y - robot().y) > robot_room_m + radius_m;
+    const Point2 q = in_scene(p);
+    return std::hypot(q.x - std::clamp(q.x, -half_way_m_, half_way_m_), q.y) > robot_room_m + radius_m;
   }
 
   void draw_obstacles() {
@@ -250,6 +256,7 @@ class Street {
   }
 
   Random random_;
+  double half_way_m_;  // along x, on either side of the scene's origin; 0 of a robot that stands
   double turn_rad_ = 0;
   Point2 origin_;
   Surface base_;
@@ -258,8 +265,8 @@ class Street {
 
 }  // namespace
 
-std::string random_street(std::uint64_t seed) {
-  return Street(seed).text(seed);
+std::string random_street(std::uint64_t seed, StreetRobot robot) {
+  return Street(seed, robot).text(seed);
 }
 
 }  // namespace curbline::tools

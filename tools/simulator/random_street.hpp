@@ -13,7 +13,11 @@
 
 namespace curbline::tools {
 
+/// Does the robot stand, or does it drive through the street at 1 m/s, from 3 m behind that place to 3 m before it?
+/// Then it goes over what curbs there are, and what stands about is no nearer than 0.9 m to its way.
+enum class StreetRobot { stands, drives };
+
 /// A scene file.
-std::string random_street(std::uint64_t seed);
+std::string random_street(std::uint64_t seed, StreetRobot robot);
 
 }  // namespace curbline::tools

@@ -3,44 +3,94 @@
 #include "formats/bad_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace curbline::tools {
 namespace {
 
 constexpr double step_s = 0.01;
-constexpr double wheelbase_m = 0.5, track_m = 0.4;
-constexpr int feet = 11;  // points of the wheelbase at which the ground is felt, on either side
+constexpr double wheelbase_m = 0.5, track_m = 0.4, wheel_radius_m = 0.15;
+constexpr double tread_step_m = 0.01;  // from one place of the ground that a wheel feels to the next
 
-struct Footing {
-  double z_m, along, across;  // height under the middle, slope ahead, slope to the left
-};
+constexpr double abyss_m = -std::numeric_limits<double>::infinity();  // height of the void
 
-/// Mean height and slopes of the ground under the wheels; points in the void are left out.
-Footing footing(const Scene& scene, Point2 at, double yaw_rad) {
-  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
-  double n[2] = {}, z[2] = {}, n_all = 0, u = 0, uu = 0, uz = 0;
-  for (int side = 0; side < 2; ++side) {
-    for (int i = 0; i < feet; ++i) {
-      const double ahead = wheelbase_m * (i / (feet - 1.0) - 0.5), left = track_m * (side - 0.5);
-      const Point2 foot{at.x + c * ahead - s * left, at.y + s * ahead + c * left};
-      const int region = region_at(scene.regions, foot);
-      if (region >= 0) {
-        const double height = scene.regions[static_cast<std::size_t>(region)].plane.height_m(foot);
-        ++n[side], ++n_all, z[side] += height, u += ahead, uu += ahead * ahead, uz += ahead * height;
-      }
+double height_m(const Scene& scene, Point2 at) {
+  const int region = region_at(scene.regions, at);
+  return region < 0 ? abyss_m : scene.regions[static_cast<std::size_t>(region)].plane.height_m(at);
+}
+
+/// The ground under the wheels of one side of a robot that goes straight on for length_m.
+class Tread {
+ public:
+  Tread(const Scene& scene, Point2 from, double yaw_rad, double left_m, double length_m) {
+    const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+    const auto places = static_cast<int>(std::ceil((length_m + 2 * reach_m) / tread_step_m)) + 1;
+    for (int i = 0; i < places; ++i) {
+      const double ahead = tread_step_m * i - reach_m;
+      ground_m_.push_back(height_m(scene, {from.x + c * ahead - s * left_m, from.y + s * ahead + c * left_m}));
     }
   }
-  if (n[0] == 0 || n[1] == 0) {
+
+  /// How high a wheel stands whose hub is `ahead_m` along the way: its rim lies nowhere below the ground.
+  double wheel_m(double ahead_m) const {
+    const double hub_m = ahead_m + reach_m;
+    double highest_m = abyss_m;
+    for (auto i = static_cast<std::size_t>(std::ceil((hub_m - wheel_radius_m) / tread_step_m)); i < ground_m_.size();
+         ++i) {
+      const double before_hub_m = tread_step_m * static_cast<double>(i) - hub_m;
+      if (before_hub_m > wheel_radius_m) break;
+      const double rim_m = wheel_radius_m - std::sqrt(wheel_radius_m * wheel_radius_m - before_hub_m * before_hub_m);
+      highest_m = std::max(highest_m, ground_m_[i] - rim_m);
+    }
+    return highest_m;
+  }
+
+ private:
+  static constexpr double reach_m = wheelbase_m / 2 + wheel_radius_m + tread_step_m;  // beyond the robot's middle
+  std::vector<double> ground_m_;
+};
+
+/// Straight on from a place.
+class Way {
+ public:
+  Way(const Scene& scene, Point2 from, double yaw_rad, double length_m)
+      : scene_(scene),
+        from_(from),
+        yaw_rad_(yaw_rad),
+        sides_{Tread(scene, from, yaw_rad, track_m / 2, length_m),
+               Tread(scene, from, yaw_rad, -track_m / 2, length_m)} {}
+
+  /// Of the four wheels; one over the void is carried by the other of its side.
+  Footing footing(double ahead_m) const {
+    std::array<double, 2> height{}, along{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      double front_m = sides_[side].wheel_m(ahead_m + wheelbase_m / 2);
+      double rear_m = sides_[side].wheel_m(ahead_m - wheelbase_m / 2);
+      if (front_m == abyss_m) front_m = rear_m;
+      if (rear_m == abyss_m) rear_m = front_m;
+      if (front_m == abyss_m) stands_on_nothing(ahead_m);
+      height[side] = (front_m + rear_m) / 2;
+      along[side] = (front_m - rear_m) / wheelbase_m;
+    }
+    return {(height[0] + height[1]) / 2, (along[0] + along[1]) / 2, (height[0] - height[1]) / track_m};
+  }
+
+ private:
+  [[noreturn]] void stands_on_nothing(double ahead_m) const {
     std::ostringstream what;
-    what << scene.file << ": the robot stands on nothing at x " << at.x << " y " << at.y
-         << "; expected [ground] or a [[region]] there";
+    what << scene_.file << ": the robot stands on nothing at x " << from_.x + std::cos(yaw_rad_) * ahead_m << " y "
+         << from_.y + std::sin(yaw_rad_) * ahead_m << "; expected [ground] or a [[region]] there";
     throw BadInput(what.str());
   }
-  const double mean = (z[0] + z[1]) / n_all;
-  return {mean, (uz - u * mean) / (uu - u * u / n_all), (z[1] / n[1] - z[0] / n[0]) / track_m};
-}
+
+  const Scene& scene_;
+  Point2 from_;
+  double yaw_rad_;
+  std::array<Tread, 2> sides_;  ///< left, right
+};
 
 }  // namespace
 
@@ -50,7 +100,7 @@ Scene in_map_frame(const Scene& scene) {
   }
   const Point2 at = scene.path.waypoints.front();
   const double c = std::cos(scene.path.yaw_rad), s = std::sin(scene.path.yaw_rad);
-  const double z = footing(scene, at, scene.path.yaw_rad).z_m;
+  const double z = Way(scene, at, scene.path.yaw_rad, 0).footing(0).z_m;
   const auto turn_back = [&](Point2 p) { return Point2{c * p.x + s * p.y, -s * p.x + c * p.y}; };
   Scene out = scene;
   for (GroundRegion& region : out.regions) {
@@ -69,16 +119,16 @@ Scene in_map_frame(const Scene& scene) {
 
 RobotMotion::RobotMotion(const Scene& scene, double until_s) : until_s_(until_s) {
   const std::vector<Leg> way = legs(scene.path);
+  const Point2 begin = scene.path.waypoints.front();
   const double yaw_rad = way.empty() ? scene.path.yaw_rad : way.front().from_rad;
-  samples_.push_back(on_ground(scene, scene.path.waypoints.front(), yaw_rad));
+  samples_.push_back(sample(scene, begin, yaw_rad, Way(scene, begin, yaw_rad, 0).footing(0)));
   for (const Leg& leg : way) {
     turn(scene, leg);
     drive(scene, leg);
   }
 }
 
-RobotMotion::Sample RobotMotion::on_ground(const Scene& scene, Point2 at, double yaw_rad) const {
-  const Footing ground = footing(scene, at, yaw_rad);
+RobotMotion::Sample RobotMotion::sample(const Scene& scene, Point2 at, double yaw_rad, const Footing& ground) {
   if (!scene.path.follows_terrain) {
     return {at.x, at.y, ground.z_m, 0, 0, yaw_rad};
   }
@@ -89,16 +139,20 @@ void RobotMotion::turn(const Scene& scene, const Leg& leg) {
   const double whole_rad = leg.to_rad - leg.from_rad;
   const double steps = std::ceil(std::abs(whole_rad) / (scene.path.turn_rate_rad_s * step_s));
   for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
-    samples_.push_back(on_ground(scene, leg.from, leg.from_rad + whole_rad * i / steps));
+    const double yaw_rad = leg.from_rad + whole_rad * i / steps;
+    samples_.push_back(sample(scene, leg.from, yaw_rad, Way(scene, leg.from, yaw_rad, 0).footing(0)));
   }
 }
 
 void RobotMotion::drive(const Scene& scene, const Leg& leg) {
-  const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y;
-  const double steps = std::ceil(std::hypot(dx, dy) / (scene.path.speed_m_s * step_s));
-  for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
+  const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y, length_m = std::hypot(dx, dy);
+  const double steps = std::ceil(length_m / (scene.path.speed_m_s * step_s));
+  const double end = std::min(steps, std::ceil((until_s_ - duration_s()) / step_s) + 1);
+  const Way way(scene, leg.from, leg.to_rad, length_m * std::max(0.0, end / steps));
+  for (double i = 1; i <= end && duration_s() < until_s_; ++i) {
     const double t = i / steps;
-    samples_.push_back(on_ground(scene, {leg.from.x + t * dx, leg.from.y + t * dy}, leg.to_rad));
+    samples_.push_back(
+        sample(scene, {leg.from.x + t * dx, leg.from.y + t * dy}, leg.to_rad, way.footing(t * length_m)));
   }
 }
 

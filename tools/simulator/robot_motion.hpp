@@ -14,9 +14,16 @@ namespace curbline::tools {
 /// BadInput if the robot stands on nothing.
 Scene in_map_frame(const Scene& scene);
 
-/// The way of a scene in its map frame. The base's origin lies at the mean height of the ground under 0.5 m of
-/// wheelbase, so it goes up a curb within that length; pitch and roll are those of this ground, or 0 for a level base.
-/// The truth is the polyline between poses 10 ms apart: O(1) a call.
+/// How four wheels stand on the ground.
+struct Footing {
+  double z_m;            ///< mean of their heights
+  double along, across;  ///< slopes ahead and to the left
+};
+
+/// The way of a scene in its map frame. The base's origin lies at the mean height of four wheels, 0.15 m in radius, 0.5
+/// m from axle to axle and 0.4 m across, that roll over what the ground has: up a curb of 12 cm, one axle after the
+/// other, each within 0.15 m. Pitch and roll are theirs, or 0 for a level base. The truth is the polyline between poses
+/// 10 ms apart: O(1) a call.
 class RobotMotion {
  public:
   /// Up to `until_s`: the robot stays there. Throws BadInput if it would leave the ground before.
@@ -29,7 +36,7 @@ class RobotMotion {
   struct Sample {
     double x, y, z, roll, pitch, yaw;
   };
-  Sample on_ground(const Scene& scene, Point2 at, double yaw_rad) const;
+  static Sample sample(const Scene& scene, Point2 at, double yaw_rad, const Footing& ground);
   void turn(const Scene& scene, const Leg& leg);
   void drive(const Scene& scene, const Leg& leg);
 

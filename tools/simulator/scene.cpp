@@ -17,16 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view random_prefix = "random:";
+constexpr std::string_view random_prefix = "random:", drive_prefix = "random-drive:";
 
-Scene random_scene(const std::string& name) {
-  const std::string_view digits = std::string_view(name).substr(random_prefix.size());
+Scene random_scene(const std::string& name, std::string_view prefix) {
+  const std::string_view digits = std::string_view(name).substr(prefix.size());
   std::uint64_t seed = 0;
   const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
   if (problem != std::errc{} || end != digits.data() + digits.size()) {
-    throw BadInput("no scene '" + name + "'; expected random: and a whole number, the seed");
+    throw BadInput("no scene '" + name + "'; expected " + std::string(prefix) + " and a whole number, the seed");
   }
-  return parse_scene(random_street(seed), name);
+  return parse_scene(random_street(seed, prefix == drive_prefix ? StreetRobot::drives : StreetRobot::stands), name);
 }
 
 }  // namespace
@@ -48,8 +48,10 @@ Scene find_scene(const std::string& name_or_path) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
     return read_scene(name_or_path);
   }
-  if (name_or_path.starts_with(random_prefix)) {
-    return random_scene(name_or_path);
+  for (const std::string_view prefix : {random_prefix, drive_prefix}) {
+    if (name_or_path.starts_with(prefix)) {
+      return random_scene(name_or_path, prefix);
+    }
   }
   if (const std::string file = shipped_file("scenes", name_or_path); !file.empty()) {
     return read_scene(file);
@@ -58,7 +60,7 @@ Scene find_scene(const std::string& name_or_path) {
   for (const std::string& name : shipped_scenes()) {
     known += " " + name;
   }
-  throw BadInput("no scene '" + name_or_path + "'; expected a file, random:SEED or one of:" + known);
+  throw BadInput("no scene '" + name_or_path + "'; expected a file, random:SEED, random-drive:SEED or one of:" + known);
 }
 
 std::vector<Leg> legs(const RobotPath& path) {

@@ -85,6 +85,7 @@ Simulation::Simulation(const Scene& scene, const Robot& robot, std::uint64_t see
       tilt_random_(3 * seed + 1),
       pose_random_(3 * seed + 2),
       sweep_random_(~seed),
+      jump_random_(~seed - 1),
       T_base_tilt_(transform(robot.tilt.T_base_tilt)),
       T_tilt_laser_(transform(robot.tilt.T_tilt_laser)),
       duration_s_(duration_s.value_or(default_duration_s(robot, motion_))),
@@ -179,8 +180,21 @@ SimulatedPose Simulation::take_pose() {
   const double dx = noise(position), dy = noise(position), dz = noise(position);
   pose.T_map_base.translation() += Eigen::Vector3d(dx, dy, dz);
   const double roll = noise(attitude), pitch = noise(attitude), yaw = noise(attitude);
-  pose.T_map_base = pose.T_map_base * rotation(roll, pitch, yaw);
+  draw_jumps(t);
+  pose.T_map_base.translation().z() += jumped_.z_m;
+  pose.T_map_base = pose.T_map_base * rotation(roll + jumped_.roll_rad, pitch + jumped_.pitch_rad, yaw);
   return pose;
+}
+
+void Simulation::draw_jumps(double time_s) {
+  const SimulatedErrors& errors = robot_.simulated;
+  if (errors.pose_jump_every_s == 0) return;
+  const auto up_or_down = [this](double by) { return jump_random_.uniform() < 0.5 ? -by : by; };
+  for (; time_s >= static_cast<double>(jumped_.times + 1) * errors.pose_jump_every_s; ++jumped_.times) {
+    jumped_.z_m += up_or_down(errors.pose_jump_height_m);
+    jumped_.roll_rad += up_or_down(errors.pose_jump_attitude_rad);
+    jumped_.pitch_rad += up_or_down(errors.pose_jump_attitude_rad);
+  }
 }
 
 }  // namespace curbline::tools

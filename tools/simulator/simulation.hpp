@@ -57,6 +57,7 @@ class Simulation {
   can::Frame take_position();
   SimulatedPose take_pose();
   void stamp_next_frame();
+  void draw_jumps(double time_s);             // times that never go back
   double draw_tilt_latency_s(double time_s);  // times that never go back; anew at each turn
 
   Robot robot_;
@@ -64,13 +65,17 @@ class Simulation {
   RobotMotion motion_;
   RayCaster world_;
   SimulatedLaser laser_;
-  Random tilt_random_, pose_random_, sweep_random_;
+  Random tilt_random_, pose_random_, sweep_random_, jump_random_;
   Eigen::Isometry3d T_base_tilt_, T_tilt_laser_;
   double duration_s_;
   std::int64_t lines_ = 0, frames_ = 0, poses_ = 0;  // given out
   double frame_stamp_s_;
   double sweep_ = 0.0, sweep_latency_s_ = 0.0;  ///< of the last frame: its number, and what its latency differs by
   bool synced_ = false;                         ///< the position whose SYNC has been given out comes next
+  struct {
+    std::int64_t times = 0;
+    double z_m = 0, roll_rad = 0, pitch_rad = 0;
+  } jumped_;  ///< the localisation, up to the last pose
   std::vector<float> ranges_m_;
 };
 
