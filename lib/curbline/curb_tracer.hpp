@@ -37,6 +37,8 @@ class CurbTracer {
   /// Working memory of one trace().
   struct Work {
     Borders<limits> borders;
+    std::array<typename Borders<limits>::Index, limits.borders / 3 + 1>
+        ends;  ///< of straight parts of a chain: three borders each
     std::array<Curb, limits.curbs> curb;
     int curbs;
   };
@@ -144,17 +146,26 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
 template <Limits limits>
 void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Counters& counters) const {
   int first = 0;
-  do {
-    int end = length - 1;
-    for (int split = end; split >= 0; split = bend(work.borders, first, end)) end = split;
-    const auto even_to = [&](const Border& to) {
-      const Border& from = work.borders.at(first);
-      return even(stages, from, to.x_m - from.x_m, to.y_m - from.y_m);
-    };
-    while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
-    give_out(stages, first, end, length, work, counters);
-    first = end + 1;
-  } while (first < length);
+  const auto even_to = [&](const Border& to) {
+    const Border& from = work.borders.at(first);
+    return even(stages, from, to.x_m - from.x_m, to.y_m - from.y_m);
+  };
+  std::size_t parts = 0;  // whose ends are known; the next one's last
+  work.ends[parts++] = static_cast<typename Borders<limits>::Index>(length - 1);
+  while (parts > 0) {
+    const int last = work.ends[parts - 1], split = bend(work.borders, first, last);
+    if (split >= 0) {
+      work.ends[parts++] = static_cast<typename Borders<limits>::Index>(split);
+      continue;
+    }
+    --parts;
+    while (first <= last) {
+      int end = last;
+      while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
+      give_out(stages, first, end, length, work, counters);
+      first = end + 1;
+    }
+  }
 }
 
 /// The last border of the first of two lines that follow the others better than one does, -1 if one is enough: by the
