@@ -26,6 +26,14 @@ namespace curbline {
 struct LineMotion {
   Transform T_map_base_first{}, T_map_base_last{};
   bool still = true;  ///< both are the identity
+  PoseJumps jumps{};  ///< of the poses around the line
+
+  /// Variance of a point's height by these: in between, the robot has jumped at any time, so the pose that is
+  /// interpolated is off by half of the jump at most.
+  float blur_m2(float x_m, float y_m) const {
+    const float dx_m = x_m - T_map_base_first.translation.x(), dy_m = y_m - T_map_base_first.translation.y();
+    return 0.25f * (jumps.height_m2 + jumps.attitude_rad2 * (dx_m * dx_m + dy_m * dy_m));
+  }
 };
 
 /// The points of a line, in the order of the beams; those that did not return are left out.
@@ -127,15 +135,16 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;
     const Eigen::Vector3f p_axis = along * range + tilted(s, T_tilt_laser_.translation);
     const Eigen::Vector3f p_base = T_base_tilt_ * p_axis;
+    const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
+    const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
+    float variance_m2 =
+        height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
     Eigen::Vector3f p_map = p_base;
     if (!motion.still) {
       const Eigen::Vector3f first = motion.T_map_base_first * p_base, last = motion.T_map_base_last * p_base;
       p_map = first + (static_cast<float>(i) * step) * (last - first);
+      variance_m2 += motion.blur_m2(p_map.x(), p_map.y());
     }
-    const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
-    const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();
-    const float variance_m2 =
-        height_variance_m2(range, dot(up_axis, along), dot(up_axis, across), by_tilt, p_base, angle.rate_rad_s);
     const bool within = i > 0 && i + 1 < beams;
     const float beside = within ? beside_m(line.ranges_m[i - 1], range, line.ranges_m[i + 1], three_sd_m2) : 0.0f;
     out.add({p_map.x(), p_map.y(), p_map.z(), variance_m2, by_tilt * angle.rate_rad_s, beside * dot(x_axis, along),

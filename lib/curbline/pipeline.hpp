@@ -106,8 +106,8 @@ class Pipeline {
 
  private:
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
-  void compare_with_map(const ProjectedLine<limits>& line);
-  void compare_with_cell(const Point& p, const typename Dem<limits>::Place& place);
+  void compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion);
+  void compare_with_cell(const Point& p, const typename Dem<limits>::Place& place, const LineMotion& motion);
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -218,16 +218,16 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     move_window(T_map_base);
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
-  if (!settings_.tilt.fixed) compare_with_map(work.projected);
+  if (!settings_.tilt.fixed) compare_with_map(work.projected, motion);
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }
 
 /// The points that the line has where an earlier sweep has been, and this one not yet.
 template <Limits limits>
-void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
+void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion) {
   for (const Point& p : line.points()) {
-    if (p.z_m <= ceiling_m_) compare_with_cell(p, dem_.place_at(p.place_x_m(), p.place_y_m()));
+    if (p.z_m <= ceiling_m_) compare_with_cell(p, dem_.place_at(p.place_x_m(), p.place_y_m()), motion);
   }
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
@@ -235,7 +235,8 @@ void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line) {
 
 /// By the slope of the cell's plane from its centroid to the point.
 template <Limits limits>
-void Pipeline<limits>::compare_with_cell(const Point& p, const typename Dem<limits>::Place& place) {
+void Pipeline<limits>::compare_with_cell(const Point& p, const typename Dem<limits>::Place& place,
+                                         const LineMotion& motion) {
   if (!place.inside()) return;
   const int slot = dem_.slot(place.i, place.j);
   if (!dem_.mapped_before(slot)) return;
@@ -244,12 +245,13 @@ void Pipeline<limits>::compare_with_cell(const Point& p, const typename Dem<limi
   const Cell& cell = dem_.cell(slot);
   if (dem_.several_surfaces(cell)) return;
   const Plane& plane = plane_mixture_.plane(label);
-  const float x = p.x_m - dem_.origin_x_m(), y = p.y_m - dem_.origin_y_m();
+  const float x = place.u * dem_.cell_x_m() - p.shift_x_m, y = place.v * dem_.cell_y_m() - p.shift_y_m;
   const float dx = x - dem_.centroid_x_m(place.i, cell), dy = y - dem_.centroid_y_m(place.j, cell);
   const float rise = plane.slope_x * dx + plane.slope_y * dy;
-  const float variance_m2 = p.variance_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
-  tilt_latency_.compare(
-      {p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy), p.growth_m_s, dem_.growth_m_s(slot)});
+  const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
+  const float variance_m2 = p.variance_m2 - blur_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
+  tilt_latency_.compare({p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy) + blur_m2,
+                         p.growth_m_s, dem_.growth_m_s(slot)});
 }
 
 /// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.
@@ -262,7 +264,7 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, Ti
   if (!settings_.pose.still) {
     Pose first, last;
     if (!pose_track_.at(line.time_ns, first) || !pose_track_.at(last_beam_ns, last)) return Status::no_pose;
-    motion = {make_transform(first), make_transform(last), false};
+    motion = {make_transform(first), make_transform(last), false, pose_track_.jumps(line.time_ns, last_beam_ns)};
   }
   if (settings_.tilt.fixed) return Status::ok;
   tilt_track_.snapshot(tilt, tilt_latency_.offset_s());

@@ -24,6 +24,13 @@ struct Pose {
   float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;
 };
 
+/// How far poses lie off where those before them led, by three standard deviations or more: a wheel has met a kerb, or
+/// a localisation has thought better of it. Sums of squares.
+struct PoseJumps {
+  float height_m2 = 0.0f;      ///< of z
+  float attitude_rad2 = 0.0f;  ///< of roll and pitch together
+};
+
 /// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
 Transform make_transform(const Pose& pose);
 
@@ -44,6 +51,9 @@ class PoseTrack {
   /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
   bool at(std::int64_t time_ns, Pose& out) const;
 
+  /// Jumps of the poses later than a line's first beam, up to the first that is not before its last. O(poses).
+  PoseJumps jumps(std::int64_t first_ns, std::int64_t last_ns) const;
+
   bool empty() const { return size_ == 0; }
   const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
 
@@ -53,6 +63,8 @@ class PoseTrack {
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
+  /// Where a robot is led is told by the way of as many poses: less than a tenth of a second at 50 Hz.
+  static constexpr int poses_of_a_way = 4;
 
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
@@ -65,6 +77,8 @@ bool acceptable(const Pose& pose);
 /// Of the map: within Pose::furthest_m.
 bool near_origin(const Pose& pose);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
+/// How far `now` lies off where the way from `first` to `last` leads.
+PoseJumps jump_of(const Pose& first, const Pose& last, const Pose& now, const PoseSettings& settings);
 }  // namespace detail
 
 template <Limits limits>
@@ -89,6 +103,19 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
   if (time_ns - back(age).time_ns > bound && back(age - 1).time_ns - time_ns > bound) return false;
   out = detail::interpolate(back(age), back(age - 1), time_ns);
   return true;
+}
+
+template <Limits limits>
+PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) const {
+  PoseJumps jumps;
+  for (int age = 0; age + 2 < size_ && back(age).time_ns > first_ns; ++age) {
+    if (back(age + 1).time_ns >= last_ns) continue;
+    const int begin = age + 1 + poses_of_a_way < size_ ? age + 1 + poses_of_a_way : size_ - 1;
+    const PoseJumps jump = detail::jump_of(back(begin), back(age + 1), back(age), settings_);
+    jumps.height_m2 += jump.height_m2;
+    jumps.attitude_rad2 += jump.attitude_rad2;
+  }
+  return jumps;
 }
 
 /// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it

@@ -3,6 +3,12 @@
 #include <cmath>
 
 namespace curbline {
+namespace {
+
+/// Three standard deviations, squared.
+constexpr float gate = 9.0f;
+
+}  // namespace
 
 Transform make_transform(const Pose& pose) {
   // Summed here, in one order: Eigen's norm of four numbers adds them in another one where it has vectors.
@@ -45,6 +51,33 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
           mix(a.qy, sign * b.qy),
           mix(a.qz, sign * b.qz),
           mix(a.qw, sign * b.qw)};
+}
+
+namespace {
+
+/// Roll and pitch by which the robot has turned, if that is little; in its own frame.
+struct Turn {
+  float roll_rad, pitch_rad;
+};
+
+Turn turn(const Pose& from, const Pose& to) {
+  const float sign = from.qx * to.qx + from.qy * to.qy + from.qz * to.qz + from.qw * to.qw < 0.0f ? -2.0f : 2.0f;
+  return {sign * (from.qw * to.qx - from.qx * to.qw - from.qy * to.qz + from.qz * to.qy),
+          sign * (from.qw * to.qy - from.qy * to.qw - from.qz * to.qx + from.qx * to.qz)};
+}
+
+}  // namespace
+
+/// The variance of an independent error of each of the three poses comes in by 1, (1 + f)^2 and f^2.
+PoseJumps jump_of(const Pose& first, const Pose& last, const Pose& now, const PoseSettings& settings) {
+  const float f = static_cast<float>(now.time_ns - last.time_ns) / static_cast<float>(last.time_ns - first.time_ns);
+  const float noise = gate * (1.0f + (1.0f + f) * (1.0f + f) + f * f);
+  const float height_m = now.z_m - last.z_m - f * (last.z_m - first.z_m);
+  const Turn led = turn(first, last), went = turn(last, now);
+  const float roll_rad = went.roll_rad - f * led.roll_rad, pitch_rad = went.pitch_rad - f * led.pitch_rad;
+  const float height_m2 = height_m * height_m, attitude_rad2 = roll_rad * roll_rad + pitch_rad * pitch_rad;
+  return {height_m2 > noise * settings.height_sd_m * settings.height_sd_m ? height_m2 : 0.0f,
+          attitude_rad2 > noise * settings.attitude_sd_rad * settings.attitude_sd_rad ? attitude_rad2 : 0.0f};
 }
 
 }  // namespace detail

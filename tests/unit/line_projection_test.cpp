@@ -317,5 +317,24 @@ TEST_CASE("line projection: the mount's errors turn about the robot's base, its 
   }
 }
 
+TEST_CASE("line projection: within a jump of the poses heights are off by half of it, the more the further away") {
+  Settings settings = base_settings();
+  settings.tilt.fixed = true;
+  settings.tilt.fixed_tilt_rad = 0.5f;
+  Bench bench(settings);
+  bench.motion.still = false;
+  const std::vector<float> ranges(361, 2.0f);
+  const std::vector<Point> calm = bench.project(ranges);
+  bench.motion.jumps = {0.04f * 0.04f, 0.03f * 0.03f};
+  const std::vector<Point> blurred = bench.project(ranges);
+  REQUIRE(blurred.size() == calm.size());
+  for (std::size_t i = 0; i < calm.size(); ++i) {
+    const Point& p = blurred[i];
+    const double away_m2 = std::pow(p.x_m, 2) + std::pow(p.y_m, 2);
+    CHECK(p.z_m == calm[i].z_m);
+    CHECK(p.variance_m2 - calm[i].variance_m2 == Approx(0.02 * 0.02 + 0.015 * 0.015 * away_m2).epsilon(1e-3));
+  }
+}
+
 }  // namespace
 }  // namespace curbline

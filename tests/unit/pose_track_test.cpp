@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/terrain.hpp"
+
 namespace curbline {
 namespace {
 
@@ -183,6 +185,57 @@ TEST_CASE("pose track: a pose turns and moves points as its quaternion says") {
   const Eigen::Vector3d truth = q * Eigen::Vector3d(0.5, 1.5, -0.8) + Eigen::Vector3d(1.0, -2.0, 0.3);
   const Eigen::Vector3f p = make_transform(pose) * Eigen::Vector3f(0.5f, 1.5f, -0.8f);
   CHECK((p.cast<double>() - truth).norm() < 1e-6);
+}
+
+/// Poses of 50 Hz on a ramp of 8 %, `changed(pose, k)` each.
+template <typename Changed>
+Track on_ramp(int poses, const PoseSettings& settings, Changed&& changed) {
+  Track track;
+  track.init(settings);
+  for (int k = 0; k < poses; ++k) {
+    Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
+    pose.qy = -0.04f;
+    changed(pose, k);
+    REQUIRE(track.push(pose));
+  }
+  return track;
+}
+
+PoseSettings noisy() {
+  PoseSettings settings;
+  settings.still = false;
+  settings.height_sd_m = 0.003f;
+  settings.attitude_sd_rad = 0.001f;
+  return settings;
+}
+
+TEST_CASE("pose track: poses that jump say by how much, those around them do not") {
+  const Track track = on_ramp(8, noisy(), [](Pose& pose, int k) {
+    if (k < 5) return;
+    pose.z_m += 0.03f;
+    pose.qx += 0.0075f;  // by 15 mrad
+  });
+  const PoseJumps there = track.jumps(t0 + 95 * ms, t0 + 97 * ms);  // of a line between the fourth pose and the fifth
+  CHECK(there.height_m2 == Approx(0.03 * 0.03).epsilon(0.01));
+  CHECK(there.attitude_rad2 == Approx(0.015 * 0.015).epsilon(0.01));
+  const PoseJumps before = track.jumps(t0, t0 + 80 * ms), after = track.jumps(t0 + 100 * ms, t0 + 140 * ms);
+  CHECK(before.height_m2 + before.attitude_rad2 + after.height_m2 + after.attitude_rad2 == 0.0f);
+}
+
+TEST_CASE("pose track: a drive, its turns and the noise that is told of are no jumps") {
+  test::Noise lot(3);
+  int jumps = 0;
+  for (int run = 0; run < 1000; ++run) {
+    const Track track = on_ramp(8, noisy(), [&](Pose& pose, int k) {
+      pose.z_m += static_cast<float>(0.003 * lot.normal());
+      pose.qx += static_cast<float>(0.0005 * lot.normal());
+      pose.qy += static_cast<float>(0.0005 * lot.normal());
+      pose.qz = 0.006f * static_cast<float>(k);
+    });
+    const PoseJumps last = track.jumps(t0 + 120 * ms, t0 + 140 * ms);
+    jumps += last.height_m2 + last.attitude_rad2 > 0.0f;
+  }
+  CHECK(jumps < 25);  // by chance, 3 in 1000 each of height and, of two angles, 11
 }
 
 }  // namespace
