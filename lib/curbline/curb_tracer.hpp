@@ -37,8 +37,7 @@ class CurbTracer {
   /// Working memory of one trace().
   struct Work {
     Borders<limits> borders;
-    std::array<typename Borders<limits>::Index, limits.borders / 3 + 1>
-        ends;  ///< of straight parts of a chain: three borders each
+    std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of three borders at least
     std::array<Curb, limits.curbs> curb;
     int curbs;
   };
@@ -151,11 +150,11 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
     return even(stages, from, to.x_m - from.x_m, to.y_m - from.y_m);
   };
   std::size_t parts = 0;  // whose ends are known; the next one's last
-  work.ends[parts++] = static_cast<typename Borders<limits>::Index>(length - 1);
+  work.ends[parts++] = length - 1;
   while (parts > 0) {
     const int last = work.ends[parts - 1], split = bend(work.borders, first, last);
     if (split >= 0) {
-      work.ends[parts++] = static_cast<typename Borders<limits>::Index>(split);
+      work.ends[parts++] = split;
       continue;
     }
     --parts;

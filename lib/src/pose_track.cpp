@@ -8,6 +8,22 @@ namespace {
 /// Three standard deviations, squared.
 constexpr float gate = 9.0f;
 
+/// q and -q are one attitude: the sign by which b's lies nearer to a's.
+float nearer_sign(const Pose& a, const Pose& b) {
+  return a.qx * b.qx + a.qy * b.qy + a.qz * b.qz + a.qw * b.qw < 0.0f ? -1.0f : 1.0f;
+}
+
+/// Roll and pitch by which the robot has turned, if that is little; in its own frame.
+struct Turn {
+  float roll_rad, pitch_rad;
+};
+
+Turn turn(const Pose& from, const Pose& to) {
+  const float twice = 2.0f * nearer_sign(from, to);
+  return {twice * (from.qw * to.qx - from.qx * to.qw - from.qy * to.qz + from.qz * to.qy),
+          twice * (from.qw * to.qy - from.qy * to.qw - from.qz * to.qx + from.qx * to.qz)};
+}
+
 }  // namespace
 
 Transform make_transform(const Pose& pose) {
@@ -40,8 +56,7 @@ bool near_origin(const Pose& pose) {
 
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
   const float s = static_cast<float>(time_ns - a.time_ns) / static_cast<float>(b.time_ns - a.time_ns);
-  const float dot = a.qx * b.qx + a.qy * b.qy + a.qz * b.qz + a.qw * b.qw;
-  const float sign = dot < 0.0f ? -1.0f : 1.0f;  // q and -q are one attitude: take the nearer
+  const float sign = nearer_sign(a, b);
   const auto mix = [s](float from, float to) { return from + s * (to - from); };
   return {time_ns,
           mix(a.x_m, b.x_m),
@@ -52,21 +67,6 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
           mix(a.qz, sign * b.qz),
           mix(a.qw, sign * b.qw)};
 }
-
-namespace {
-
-/// Roll and pitch by which the robot has turned, if that is little; in its own frame.
-struct Turn {
-  float roll_rad, pitch_rad;
-};
-
-Turn turn(const Pose& from, const Pose& to) {
-  const float sign = from.qx * to.qx + from.qy * to.qy + from.qz * to.qz + from.qw * to.qw < 0.0f ? -2.0f : 2.0f;
-  return {sign * (from.qw * to.qx - from.qx * to.qw - from.qy * to.qz + from.qz * to.qy),
-          sign * (from.qw * to.qy - from.qy * to.qw - from.qz * to.qx + from.qx * to.qz)};
-}
-
-}  // namespace
 
 /// The variance of an independent error of each of the three poses comes in by 1, (1 + f)^2 and f^2.
 PoseJumps jump_of(const Pose& first, const Pose& last, const Pose& now, const PoseSettings& settings) {

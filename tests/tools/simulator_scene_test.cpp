@@ -330,7 +330,8 @@ TEST_CASE("scene: a street that a robot drives through is the one where it stand
   for (const std::string seed : {"1", "9", "44"}) {
     const Scene stands = find_scene("random:" + seed), drives = find_scene("random-drive:" + seed);
     REQUIRE(drives.regions.size() == stands.regions.size());
-    for (std::size_t r = 0; r < stands.regions.size(); ++r) CHECK(drives.regions[r].plane.z0_m == stands.regions[r].plane.z0_m);
+    for (std::size_t r = 0; r < stands.regions.size(); ++r)
+      CHECK(drives.regions[r].plane.z0_m == stands.regions[r].plane.z0_m);
     CHECK(drives.path.follows_terrain);
     CHECK(drives.path.waypoints.back().x - drives.path.waypoints.front().x == 6);
     for (const Obstacle& obstacle : drives.obstacles) {

@@ -92,6 +92,10 @@ class Way {
   std::array<Tread, 2> sides_;  ///< left, right
 };
 
+Footing standing(const Scene& scene, Point2 at, double yaw_rad) {
+  return Way(scene, at, yaw_rad, 0).footing(0);
+}
+
 }  // namespace
 
 Scene in_map_frame(const Scene& scene) {
@@ -100,7 +104,7 @@ Scene in_map_frame(const Scene& scene) {
   }
   const Point2 at = scene.path.waypoints.front();
   const double c = std::cos(scene.path.yaw_rad), s = std::sin(scene.path.yaw_rad);
-  const double z = Way(scene, at, scene.path.yaw_rad, 0).footing(0).z_m;
+  const double z = standing(scene, at, scene.path.yaw_rad).z_m;
   const auto turn_back = [&](Point2 p) { return Point2{c * p.x + s * p.y, -s * p.x + c * p.y}; };
   Scene out = scene;
   for (GroundRegion& region : out.regions) {
@@ -121,7 +125,7 @@ RobotMotion::RobotMotion(const Scene& scene, double until_s) : until_s_(until_s)
   const std::vector<Leg> way = legs(scene.path);
   const Point2 begin = scene.path.waypoints.front();
   const double yaw_rad = way.empty() ? scene.path.yaw_rad : way.front().from_rad;
-  samples_.push_back(sample(scene, begin, yaw_rad, Way(scene, begin, yaw_rad, 0).footing(0)));
+  samples_.push_back(sample(scene, begin, yaw_rad, standing(scene, begin, yaw_rad)));
   for (const Leg& leg : way) {
     turn(scene, leg);
     drive(scene, leg);
@@ -140,16 +144,16 @@ void RobotMotion::turn(const Scene& scene, const Leg& leg) {
   const double steps = std::ceil(std::abs(whole_rad) / (scene.path.turn_rate_rad_s * step_s));
   for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double yaw_rad = leg.from_rad + whole_rad * i / steps;
-    samples_.push_back(sample(scene, leg.from, yaw_rad, Way(scene, leg.from, yaw_rad, 0).footing(0)));
+    samples_.push_back(sample(scene, leg.from, yaw_rad, standing(scene, leg.from, yaw_rad)));
   }
 }
 
 void RobotMotion::drive(const Scene& scene, const Leg& leg) {
   const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y, length_m = std::hypot(dx, dy);
   const double steps = std::ceil(length_m / (scene.path.speed_m_s * step_s));
-  const double end = std::min(steps, std::ceil((until_s_ - duration_s()) / step_s) + 1);
-  const Way way(scene, leg.from, leg.to_rad, length_m * std::max(0.0, end / steps));
-  for (double i = 1; i <= end && duration_s() < until_s_; ++i) {
+  const double time_left_s = until_s_ - duration_s() + step_s;
+  const Way way(scene, leg.from, leg.to_rad, std::min(length_m, scene.path.speed_m_s * std::max(0.0, time_left_s)));
+  for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double t = i / steps;
     samples_.push_back(
         sample(scene, {leg.from.x + t * dx, leg.from.y + t * dy}, leg.to_rad, way.footing(t * length_m)));
