@@ -6,6 +6,8 @@ signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/streets | head` ends wit
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CURBLINE = os.environ.get("CURBLINE", os.path.join(ROOT, "build", "bin", "curbline"))
 LASERS = ["utm30lx", "lms151", "lms200"]
+# A localisation that thinks better of itself, for a robot's [simulated].
+JUMPS = "pose_jump_every_s = 1.5\npose_jump_height_m = 0.02\npose_jump_attitude_rad = 0.007"
 METHODS = ["segment", "em", "crf-em", "curbline", "canny", "gradient"]
 
 

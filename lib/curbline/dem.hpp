@@ -130,10 +130,10 @@ class Dem {
   }
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
-  bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & 1) != 0; }
+  bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & touched_bit) != 0; }
   void clear_touched() {
     if (any_touched_) {
-      for (std::uint8_t& touched : touched_) touched &= 0xFE;
+      for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~touched_bit);
     }
     any_touched_ = false;
   }
@@ -160,8 +160,13 @@ class Dem {
   void begin_sweep();
   /// Has an earlier sweep seen the cell, and this one not yet?
   bool mapped_before(int slot) const {
-    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) > 1;
+    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) >= a_sweep;
   }
+  /// From now on cells that are seen bear a mark. A pass over the window.
+  void begin_marking() {
+    for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~marked_bit);
+  }
+  bool marked(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & marked_bit) != 0; }
   /// Mean of its points' growth by the tilt's latency.
   float growth_m_s(int slot) const {
     return static_cast<float>(growth_[static_cast<std::size_t>(slot)]) * (1.0f / growth_scale);
@@ -178,6 +183,8 @@ class Dem {
   };
   /// Of a place of the map; what is not finite lies outside.
   Place place_at(float x_m, float y_m) const;
+  /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
+  Place nearest_unmarked(const Place& place, int reach) const;
   /// The cell there; -1 outside the window.
   int slot_at(float x_m, float y_m) const {
     const Place place = place_at(x_m, y_m);
@@ -193,6 +200,7 @@ class Dem {
 
  private:
   static constexpr int growth_scale = 1024;
+  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, a_sweep = 4;
   static int wrap(std::int32_t index, int size) {
     const int r = index % size;
     return r < 0 ? r + size : r;
@@ -212,7 +220,7 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  /// Bit 0; above it the number of the sweep that touched the cell last.
+  /// Both bits; above them the number of the sweep that touched the cell last.
   std::array<std::uint8_t, capacity> touched_{};
   std::uint8_t sweep_ = 0;
   std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
@@ -299,7 +307,7 @@ void Dem<limits>::leave(int i, int j) {
   cells_[static_cast<std::size_t>(s)] = Cell{};
   growth_[static_cast<std::size_t>(s)] = 0;
   distances_[static_cast<std::size_t>(s)] = 0;
-  touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | 1);
+  touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | touched_bit | marked_bit);
   any_touched_ = true;
 }
 
@@ -310,6 +318,19 @@ auto Dem<limits>::place_at(float x_m, float y_m) const -> Place {
       !(v < static_cast<float>(settings_.cols)))
     return {};
   return {static_cast<int>(u), static_cast<int>(v), u, v};
+}
+
+template <Limits limits>
+auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place {
+  for (int g = 0; g <= reach; ++g) {
+    for (std::size_t d = 0; d < directions; ++d) {
+      const int i = place.i + g * step_i[d], j = place.j + g * step_j[d];
+      if (i < 0 || j < 0 || i >= settings_.rows || j >= settings_.cols) continue;
+      const int s = slot(i, j);
+      if (cell(s).valid() && !marked(s)) return {i, j};
+    }
+  }
+  return {};
 }
 
 template <Limits limits>
@@ -329,7 +350,7 @@ bool Dem<limits>::add(const Point& point) {
                 (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
   add_growth(s, point.growth_m_s, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
-  touched_[s] = static_cast<std::uint8_t>(sweep_ | 1);
+  touched_[s] = static_cast<std::uint8_t>(sweep_ | touched_bit | marked_bit);
   any_touched_ = true;
   return true;
 }
@@ -343,13 +364,14 @@ void Dem<limits>::add_growth(std::size_t s, float growth_m_s, float weight) {
     growth_[s] = static_cast<std::int16_t>(now + (now < 0.0f ? -0.5f : 0.5f));
 }
 
-/// Numbers come again after 128 sweeps: what bears this one's is then as old as the last.
+/// Numbers come again after 64 sweeps: what bears this one's is then as old as the last.
 template <Limits limits>
 void Dem<limits>::begin_sweep() {
   const std::uint8_t last = sweep_;
-  sweep_ = static_cast<std::uint8_t>(sweep_ + 2);
+  sweep_ = static_cast<std::uint8_t>(sweep_ + a_sweep);
   for (std::uint8_t& touched : touched_) {
-    if ((touched ^ sweep_) <= 1) touched = static_cast<std::uint8_t>(last | (touched & 1));
+    if ((touched ^ sweep_) < a_sweep)
+      touched = static_cast<std::uint8_t>(last | (touched & (touched_bit | marked_bit)));
   }
 }
 

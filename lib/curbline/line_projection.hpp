@@ -43,6 +43,7 @@ class ProjectedLine {
   ProjectedLine() {}
   void add(const Point& point) { points_[count_++] = point; }
   std::span<const Point> points() const { return {points_.data(), count_}; }
+  std::span<Point> points() { return {points_.data(), count_}; }
 
  private:
   std::array<Point, limits.beams> points_;

@@ -22,6 +22,7 @@
 #include "curbline/line_projection.hpp"
 #include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
+#include "curbline/pose_offset.hpp"
 #include "curbline/pose_track.hpp"
 #include "curbline/rising_times.hpp"
 #include "curbline/scan_line.hpp"
@@ -101,13 +102,25 @@ class Pipeline {
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
+  /// What the map has been set back by against the poses, about where the robot is: pose_offset.hpp
+  const PoseShift& pose_offset() const { return pose_offset_.offset(); }
   const TiltLatency& tilt_latency() const { return tilt_latency_; }
   const Settings& settings() const { return settings_; }
 
  private:
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
+  bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt);
+  void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping);
+  void follow_jump(ProjectedLine<limits>& line);
   void compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion);
-  void compare_with_cell(const Point& p, const typename Dem<limits>::Place& place, const LineMotion& motion);
+  /// A point and the ground that the map has there.
+  struct MappedGround {
+    float above_m, variance_m2;  ///< how far the point lies above it; variance of its own
+    float rise_variance_m2;      ///< and by the slope of the plane
+    float growth_m_s;
+  };
+  bool ground_at(const Point& p, const typename Dem<limits>::Place& place, const typename Dem<limits>::Place& of,
+                 MappedGround& out) const;
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -133,6 +146,8 @@ class Pipeline {
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
   PoseTrack<limits> pose_track_{};
+  PoseOffset pose_offset_{};
+  bool jumped_ = false;  ///< poses, while the last line was measured
   LineProjection<limits> line_projection_{};
   Dem<limits> dem_{};
   Segmentation<limits> segmentation_{};
@@ -159,6 +174,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   tilt_track_.init(settings.tilt);
   tilt_latency_.init(settings.tilt, settings.pose);
   pose_track_.init(settings.pose);
+  pose_offset_.init(settings.pose);
   line_projection_.init(settings);
   dem_.init(window, settings.planes.prior);
   segmentation_.init(settings.segmentation, settings.planes.prior);
@@ -218,40 +234,71 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     move_window(T_map_base);
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
+  if (pose_offset_.undecided() && !motion.jumps.any()) follow_jump(work.projected);
   if (!settings_.tilt.fixed) compare_with_map(work.projected, motion);
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }
 
+/// After a jump of the poses: is it the map that lies elsewhere, or the robot?
+template <Limits limits>
+void Pipeline<limits>::follow_jump(ProjectedLine<limits>& line) {
+  MappedGround ground;
+  for (const Point& p : line.points()) {
+    if (p.z_m > ceiling_m_) continue;
+    const auto place = dem_.place_at(p.place_x_m(), p.place_y_m());
+    if (!place.inside()) continue;
+    const auto near = dem_.nearest_unmarked(place, settings_.segmentation.link_reach);
+    if (!near.inside() || !ground_at(p, place, near, ground)) {
+      pose_offset_.pass();
+      continue;
+    }
+    const float latency_m2 = dem_.mapped_before(dem_.slot(near.i, near.j))
+                                 ? tilt_latency_.earlier_variance_m2(p.growth_m_s, ground.growth_m_s)
+                                 : tilt_latency_.own_variance_m2(p.growth_m_s, ground.growth_m_s);
+    pose_offset_.compare(
+        {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
+  }
+  const PoseShift shift = pose_offset_.end_line();
+  for (Point& p : line.points()) p.z_m += pose_offset_.at(shift, p.x_m, p.y_m);
+}
+
 /// The points that the line has where an earlier sweep has been, and this one not yet.
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion) {
+  MappedGround ground;
   for (const Point& p : line.points()) {
-    if (p.z_m <= ceiling_m_) compare_with_cell(p, dem_.place_at(p.place_x_m(), p.place_y_m()), motion);
+    if (p.z_m > ceiling_m_) continue;
+    const auto place = dem_.place_at(p.place_x_m(), p.place_y_m());
+    if (!place.inside() || !dem_.mapped_before(dem_.slot(place.i, place.j)) || !ground_at(p, place, place, ground))
+      continue;
+    const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
+    const float doubt_m2 = pose_offset_.doubt_m2(p.x_m, p.y_m);
+    tilt_latency_.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
+                           ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s});
   }
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
 }
 
-/// By the slope of the cell's plane from its centroid to the point.
+/// What a cell says of the ground at a point, by the slope of the cell's plane from its centroid; false if it has no
+/// plane, or more than one surface.
 template <Limits limits>
-void Pipeline<limits>::compare_with_cell(const Point& p, const typename Dem<limits>::Place& place,
-                                         const LineMotion& motion) {
-  if (!place.inside()) return;
-  const int slot = dem_.slot(place.i, place.j);
-  if (!dem_.mapped_before(slot)) return;
+bool Pipeline<limits>::ground_at(const Point& p, const typename Dem<limits>::Place& place,
+                                 const typename Dem<limits>::Place& of, MappedGround& out) const {
+  const int slot = dem_.slot(of.i, of.j);
   const Label<limits> label = label_field_.label(slot);
-  if (label == no_label<limits>) return;
+  if (label == no_label<limits>) return false;
   const Cell& cell = dem_.cell(slot);
-  if (dem_.several_surfaces(cell)) return;
+  if (dem_.several_surfaces(cell)) return false;
   const Plane& plane = plane_mixture_.plane(label);
   const float x = place.u * dem_.cell_x_m() - p.shift_x_m, y = place.v * dem_.cell_y_m() - p.shift_y_m;
-  const float dx = x - dem_.centroid_x_m(place.i, cell), dy = y - dem_.centroid_y_m(place.j, cell);
-  const float rise = plane.slope_x * dx + plane.slope_y * dy;
-  const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
-  const float variance_m2 = p.variance_m2 - blur_m2 + settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
-  tilt_latency_.compare({p.z_m - cell.height_m - rise, variance_m2, plane.rise_variance_m2(dx, dy) + blur_m2,
-                         p.growth_m_s, dem_.growth_m_s(slot)});
+  const float dx = x - dem_.centroid_x_m(of.i, cell), dy = y - dem_.centroid_y_m(of.j, cell);
+  out.above_m = p.z_m - cell.height_m - (plane.slope_x * dx + plane.slope_y * dy);
+  out.variance_m2 = settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
+  out.rise_variance_m2 = plane.rise_variance_m2(dx, dy);
+  out.growth_m_s = dem_.growth_m_s(slot);
+  return true;
 }
 
 /// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.
@@ -261,24 +308,42 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, Ti
   if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
   if (!line_times_.admits(line.time_ns)) return Status::line_out_of_order;
   const std::int64_t last_beam_ns = line.time_ns + line_projection_.duration_ns(line.ranges_m.size());
-  if (!settings_.pose.still) {
-    Pose first, last;
-    if (!pose_track_.at(line.time_ns, first) || !pose_track_.at(last_beam_ns, last)) return Status::no_pose;
-    motion = {make_transform(first), make_transform(last), false, pose_track_.jumps(line.time_ns, last_beam_ns)};
-  }
-  if (settings_.tilt.fixed) return Status::ok;
+  Pose first, last;
+  if (!settings_.pose.still && !(pose_track_.at(line.time_ns, first) && pose_track_.at(last_beam_ns, last)))
+    return Status::no_pose;
+  if (!settings_.tilt.fixed && !follow_tilt(line.time_ns, last_beam_ns, tilt)) return Status::no_tilt;
+  if (settings_.pose.still) return Status::ok;
+  const PoseJumps jumps = pose_track_.jumps(line.time_ns, last_beam_ns);
+  follow_poses(line.time_ns, first, jumps.any());
+  motion = {make_transform(pose_offset_.corrected(first)), make_transform(pose_offset_.corrected(last)), false, jumps};
+  return Status::ok;
+}
+
+/// False if there are no angles for the line.
+template <Limits limits>
+bool Pipeline<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt) {
   tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
-  const TiltAngle first = tilt.at(line.time_ns);
+  const TiltAngle first = tilt.at(first_ns);
   const std::uint32_t reading = tilt.reading_number();
-  const TiltAngle last = tilt.at(last_beam_ns);
+  const TiltAngle last = tilt.at(last_ns);
   tilt.rewind();
-  if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return Status::no_tilt;
+  if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return false;
   const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
   tilt_rate_rad_s_ = any.rate_rad_s;
   const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s, reading);
   if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
   if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
-  return Status::ok;
+  return true;
+}
+
+/// The robot is where a line begins. Lines that are measured while poses jump say nothing of where the ground was
+/// before, nor do those after.
+template <Limits limits>
+void Pipeline<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping) {
+  const PoseSteps steps = pose_track_.take_steps(line_ns);
+  pose_offset_.follow(steps, pose.x_m, pose.y_m);
+  if ((jumping || steps.begun) && !jumped_) dem_.begin_marking();
+  jumped_ = jumping;
 }
 
 template <Limits limits>

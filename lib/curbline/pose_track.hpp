@@ -29,10 +29,60 @@ struct Pose {
 struct PoseJumps {
   float height_m2 = 0.0f;      ///< of z
   float attitude_rad2 = 0.0f;  ///< of roll and pitch together
+  bool any() const { return height_m2 + attitude_rad2 > 0.0f; }
+};
+
+/// By how much heights of what is seen from a pose change with it: at the robot, and along the map's axes.
+struct PoseShift {
+  float height_m = 0.0f, slope_x = 0.0f, slope_y = 0.0f;
+  bool any() const { return height_m != 0.0f || slope_x != 0.0f || slope_y != 0.0f; }
+  float at(float dx_m, float dy_m) const { return height_m + slope_x * dx_m + slope_y * dy_m; }
+  PoseShift operator+(const PoseShift& b) const {
+    return {height_m + b.height_m, slope_x + b.slope_x, slope_y + b.slope_y};
+  }
+};
+
+/// Steps of the poses: one lies off where those before it lead, and the next goes on from it as fast as they did. No
+/// robot does that, a localisation does; if poses come seldom a robot does, too. Until the next has come a pose that
+/// jumps may be either.
+struct PoseSteps {
+  PoseShift by{};  ///< of a step that has begun since
+  bool begun = false;
+  /// What has become of the one that had begun before; of one that has begun since, if it was confirmed.
+  bool confirmed = false, withdrawn = false;
+
+  void begin(const PoseShift& shift) {
+    by = begun ? by + shift : shift;
+    begun = true;
+    confirmed = false;
+  }
+  void confirm() { confirmed = true; }
+  void withdraw() {
+    withdrawn = !begun;
+    begun = false;
+  }
 };
 
 /// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
 Transform make_transform(const Pose& pose);
+
+namespace detail {
+bool acceptable(const Pose& pose);
+/// Of the map: within Pose::furthest_m.
+bool near_origin(const Pose& pose);
+Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
+
+struct PoseStep {
+  float height_m = 0.0f, roll_rad = 0.0f, pitch_rad = 0.0f;
+  bool height_jumps = false, attitude_jumps = false;  ///< by three standard deviations or more
+  bool jumps() const { return height_jumps || attitude_jumps; }
+};
+/// How far `now` lies off where `before` leads, as fast as on the way from `first` to `last`.
+PoseStep step_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
+                 const PoseSettings& settings);
+/// What heights make of it, with the heading of the pose.
+PoseShift shift_of(const PoseStep& step, const Pose& now);
+}  // namespace detail
 
 /// Ring of the newest poses; linear in position and normalised-linear in attitude between two of them.
 template <Limits limits>
@@ -40,8 +90,9 @@ class PoseTrack {
  public:
   void init(const PoseSettings& settings) {
     settings_ = settings;
-    size_ = next_ = 0;
+    next_ = 0;
     times_ = RisingTimes{};
+    forget();
   }
 
   /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not
@@ -54,12 +105,30 @@ class PoseTrack {
   /// Jumps of the poses later than a line's first beam, up to the first that is not before its last. O(poses).
   PoseJumps jumps(std::int64_t first_ns, std::int64_t last_ns) const;
 
+  /// What the poses since the last call, as far as they are not later than a line's first beam, say of steps. O(1) a
+  /// pose.
+  PoseSteps take_steps(std::int64_t until_ns);
+
   bool empty() const { return size_ == 0; }
   const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
 
  private:
   const Pose& back(int age) const {
     return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)];
+  }
+
+  /// How far the pose of an age lies off where the one before it leads, as fast as on the way that ends with the pose
+  /// of age `last`, over `most` poses before that; nothing if there are too few.
+  detail::PoseStep step(int last, int most, int age) const {
+    if (last + 1 >= size_) return {};
+    const int first = last + most < size_ ? last + most : size_ - 1;
+    return detail::step_of(back(first), back(last), back(age + 1), back(age), settings_);
+  }
+
+  void forget() {
+    size_ = fresh_ = 0;
+    since_jump_ = limits.poses;
+    moves_ = false;
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
@@ -69,26 +138,21 @@ class PoseTrack {
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
+  int fresh_ = 0;       ///< of the newest poses: as many have not been asked for steps
+  int since_jump_ = 0;  ///< of those that have: as many from the last that jumped on; limits.poses: long ago
+  bool moves_ = false;  ///< that one was not the first on end
   RisingTimes times_{};
 };
-
-namespace detail {
-bool acceptable(const Pose& pose);
-/// Of the map: within Pose::furthest_m.
-bool near_origin(const Pose& pose);
-Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
-/// How far `now` lies off where the way from `first` to `last` leads.
-PoseJumps jump_of(const Pose& first, const Pose& last, const Pose& now, const PoseSettings& settings);
-}  // namespace detail
 
 template <Limits limits>
 bool PoseTrack<limits>::push(const Pose& pose) {
   if (!detail::acceptable(pose) || !times_.admits(pose.time_ns)) return false;
-  if (size_ > 0 && pose.time_ns <= newest().time_ns) size_ = 0;  // those before are of another time
+  if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // those before are of another time
   times_.take(pose.time_ns);
   poses_[static_cast<std::size_t>(next_)] = pose;
   next_ = (next_ + 1) % limits.poses;
   if (size_ < limits.poses) ++size_;
+  if (fresh_ < limits.poses) ++fresh_;
   return true;
 }
 
@@ -108,14 +172,32 @@ bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
 template <Limits limits>
 PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) const {
   PoseJumps jumps;
-  for (int age = 0; age + 2 < size_ && back(age).time_ns > first_ns; ++age) {
-    if (back(age + 1).time_ns >= last_ns) continue;
-    const int begin = age + 1 + poses_of_a_way < size_ ? age + 1 + poses_of_a_way : size_ - 1;
-    const PoseJumps jump = detail::jump_of(back(begin), back(age + 1), back(age), settings_);
-    jumps.height_m2 += jump.height_m2;
-    jumps.attitude_rad2 += jump.attitude_rad2;
+  for (int age = 0; age < size_ && back(age).time_ns > first_ns; ++age) {
+    if (age + 1 < size_ && back(age + 1).time_ns >= last_ns) continue;
+    const detail::PoseStep by = step(age + 1, poses_of_a_way, age);
+    if (by.height_jumps) jumps.height_m2 += by.height_m * by.height_m;
+    if (by.attitude_jumps) jumps.attitude_rad2 += by.roll_rad * by.roll_rad + by.pitch_rad * by.pitch_rad;
   }
   return jumps;
+}
+
+template <Limits limits>
+PoseSteps PoseTrack<limits>::take_steps(std::int64_t until_ns) {
+  PoseSteps steps;
+  for (; fresh_ > 0 && back(fresh_ - 1).time_ns <= until_ns; --fresh_) {
+    const int age = fresh_ - 1;
+    // As fast as after the last jump, if there are two poses to tell, else as before it.
+    const int last = since_jump_ == 1 ? age + 2 : age + 1;
+    const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
+    const detail::PoseStep by = step(last, most, age);
+    const bool stepped = since_jump_ == 1 && !moves_;
+    if (stepped && by.jumps()) steps.withdraw();
+    if (stepped && !by.jumps()) steps.confirm();
+    if (by.jumps() && !stepped && !moves_) steps.begin(detail::shift_of(by, back(age)));
+    moves_ = by.jumps() && (stepped || moves_);
+    since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
+  }
+  return steps;
 }
 
 /// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it

@@ -59,6 +59,17 @@ class TiltLatency {
   /// Sum of Correction::earlier_s of all lines.
   float mended_s() const { return mended_s_; }
 
+  /// Variance of how far a point of this sweep lies above ground of an earlier one by what is not known of the latency;
+  /// of how far it lies above ground of this sweep.
+  float earlier_variance_m2(float growth_m_s, float map_growth_m_s) const {
+    const float g = growth_m_s, m = map_growth_m_s;
+    return g * g * covariance_[now][now] - 2.0f * g * m * covariance_[now][earlier] +
+           m * m * covariance_[earlier][earlier];
+  }
+  float own_variance_m2(float growth_m_s, float map_growth_m_s) const {
+    return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
+  }
+
   /// To be added to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return offset_s_; }
   float sd_s() const;

@@ -119,8 +119,7 @@ void TiltLatency::Sums::add(const Sums& other) {
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
-  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + g * g * covariance_[now][now] -
-                            2.0f * g * m * covariance_[now][earlier] + m * m * covariance_[earlier][earlier];
+  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m);
   const float above_m2 = square(seen.above_m);
   if (above_m2 <= gate * variance_m2) {
     seen_.add(seen);

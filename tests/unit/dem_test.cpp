@@ -350,6 +350,29 @@ TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, how
   }
 }
 
+TEST_CASE("dem: ground from before marking began is found along rows and columns, the nearest first") {
+  Map dem = make_map(moving());
+  const auto nearest = [&](float x_m, float y_m, int reach) {
+    const auto place = dem.nearest_unmarked(dem.place_at(x_m, y_m), reach);
+    return place.inside() ? dem.slot(place.i, place.j) : -1;
+  };
+  REQUIRE(dem.add(at(0.05, 0.05)));
+  REQUIRE(dem.add(at(0.35, 0.25)));
+  const int corner = dem.slot_at(0.05f, 0.05f), further = dem.slot_at(0.35f, 0.25f);
+  dem.begin_marking();
+  REQUIRE(dem.add(at(0.15, 0.05)));
+  CHECK(nearest(0.05f, 0.05f, 0) == corner);
+  CHECK(nearest(0.15f, 0.05f, 1) == corner);
+  CHECK(nearest(0.35f, 0.05f, 3) == further);  // two cells away, not three
+  CHECK(nearest(0.35f, 0.05f, 1) == -1);
+  dem.begin_sweep();
+  CHECK(nearest(0.15f, 0.05f, 0) == -1);  // marks outlast a sweep
+  REQUIRE(dem.add(at(0.05, 0.05)));
+  CHECK(nearest(0.05f, 0.05f, 0) == -1);
+  dem.begin_marking();
+  CHECK(nearest(0.15f, 0.05f, 0) == dem.slot_at(0.15f, 0.05f));
+}
+
 TEST_CASE("dem: ground that changes is known again as soon after a day as after a minute") {
   Map dem = make_map(moving());
   const auto see = [&](int points, double height_m) {

@@ -202,5 +202,33 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
   CHECK(lines_with_steps(*pipeline, 2000, of_its_sweep) == 0);
 }
 
+TEST_CASE("pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
+  Settings settings = driving_settings();
+  settings.pose.height_sd_m = 0.003f;
+  settings.pose.attitude_sd_rad = 0.001f;
+  const auto pipeline = started(settings);
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  test::Noise lot(1);
+  float z_m = 0.0f, pitch_rad = 0.0f;
+  const auto pose = [&](double time_s) {
+    return Pose{NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, z_m, 0.0f, 0.5f * pitch_rad};
+  };
+  int with_steps = 0;
+  for (int line = 0; line < 2000; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    if (line % 160 == 70) {
+      z_m += lot.uniform() < 0.5 ? 0.02f : -0.02f;
+      pitch_rad += lot.uniform() < 0.5 ? 0.007f : -0.007f;
+    }
+    add_tilts(*pipeline, line);
+    pipeline->add_pose(pose(t));
+    pipeline->add_pose(pose(t + 0.0125));
+    pipeline->take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, x)});
+    with_steps += std::any_of(pipeline->curbs().begin(), pipeline->curbs().end(), is_step);
+  }
+  CHECK(with_steps == 0);
+}
+
 }  // namespace
 }  // namespace curbline

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "support/terrain.hpp"
 
@@ -236,6 +237,58 @@ TEST_CASE("pose track: a drive, its turns and the noise that is told of are no j
     jumps += last.height_m2 + last.attitude_rad2 > 0.0f;
   }
   CHECK(jumps < 25);  // by chance, 3 in 1000 each of height and, of two angles, 11
+}
+
+/// What each of eight poses says of steps as it comes: 'S' one begins, 'C' it is confirmed, 'W' it was none.
+template <typename Changed>
+std::string told_by_each(Changed&& changed) {
+  std::string told;
+  PoseSteps steps;
+  Track track;
+  track.init(noisy());
+  for (int k = 0; k < 8; ++k) {
+    Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
+    changed(pose, k);
+    REQUIRE(track.push(pose));
+    steps = track.take_steps(pose.time_ns);
+    told += steps.begun ? 'S' : steps.confirmed ? 'C' : steps.withdrawn ? 'W' : '.';
+  }
+  return told;
+}
+
+TEST_CASE("pose track: poses that go on elsewhere as fast as before have stepped, however far") {
+  const float step = GENERATE(0.02f, 0.2f);
+  const auto higher = [step](Pose& pose, int k) { pose.z_m += k >= 5 ? step : 0.0f; };
+  const auto turned = [step](Pose& pose, int k) { pose.qx += k >= 5 ? 0.3f * step : 0.0f; };
+  CHECK(told_by_each(higher) == ".....SC.");
+  CHECK(told_by_each(turned) == ".....SC.");
+}
+
+TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, nor has one that is wrong") {
+  const auto rises = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.02f * static_cast<float>(k - 3) : 0.0f; };
+  const auto pitches = [](Pose& pose, int k) { pose.qy += k >= 4 ? 0.01f * static_cast<float>(k - 3) : 0.0f; };
+  const auto wrong = [](Pose& pose, int k) { pose.z_m += k == 4 ? 0.1f : 0.0f; };
+  for (const std::string& told : {told_by_each(rises), told_by_each(pitches), told_by_each(wrong)}) {
+    CHECK(told.substr(0, 6) == "....SW");
+    CHECK(told.find('C') == std::string::npos);
+  }
+}
+
+TEST_CASE("pose track: a step is told in the map's frame, whatever way the robot heads") {
+  Track track;
+  track.init(noisy());
+  PoseShift by;
+  for (int k = 0; k < 8; ++k) {
+    // Heads along the map's y axis. Rolls to the right, so what lies on its left, at lower x, seems to lie higher.
+    const Eigen::Quaternionf q = Eigen::AngleAxisf(0.5f * pi, Eigen::Vector3f::UnitZ()) *
+                                 Eigen::AngleAxisf(k >= 5 ? 0.01f : 0.0f, Eigen::Vector3f::UnitX());
+    REQUIRE(track.push({t0 + 20 * ms * k, 0.0f, 0.02f * static_cast<float>(k), 0.0f, q.x(), q.y(), q.z(), q.w()}));
+    const PoseSteps steps = track.take_steps(t0 + 20 * ms * k);
+    if (steps.begun) by = steps.by;
+  }
+  CHECK(by.slope_x == Approx(-0.01).margin(1e-5));
+  CHECK(by.slope_y == Approx(0.0).margin(1e-5));
+  CHECK(by.height_m == Approx(0.0).margin(1e-5));
 }
 
 }  // namespace

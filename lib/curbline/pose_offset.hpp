@@ -1,0 +1,79 @@
+// What a localisation that thinks better of itself has moved the poses by, against the map. Its poses step (PoseSteps),
+// and where poses come seldom so do those of a robot that has met a kerb. The laser alone tells which of the two it
+// was: lines after the step look at ground that was mapped before it, and their heights lie off the map's by the step,
+// or not at all. Both likelihoods are multiplied up line by line until the one is twenty times the other; meanwhile a
+// Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if that is
+// likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less than
+// poses tremble, until both are one again.
+// Cost: 50 operations a point of the lines after a step, until it is decided: mostly one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "curbline/pose_track.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+class PoseOffset {
+ public:
+  void init(const PoseSettings& settings);
+
+  /// A line begins, with the robot there and these steps since the last. What is not decided of an earlier step is
+  /// taken as it seems to be.
+  void follow(const PoseSteps& steps, float x_m, float y_m);
+
+  /// Is it open who has made the last step?
+  bool undecided() const { return undecided_; }
+
+  /// A point of the line, and the ground there that was mapped before the step.
+  struct Sighting {
+    float x_m, y_m;            ///< in the map frame
+    float above_m;             ///< how far it lies above that ground
+    float variance_m2;         ///< of that, its own
+    float common_variance_m2;  ///< and what it shares with the line's other points: latency, the slope of the ground
+  };
+  void compare(const Sighting& seen);
+  /// A point of the line where no ground was.
+  void pass() { ++points_; }
+
+  /// The line is over. What is to be added to its heights, about where the robot is.
+  PoseShift end_line();
+
+  /// What is added to poses, about where the robot is.
+  const PoseShift& offset() const { return likelier_ ? stepped_ : offset_; }
+  Pose corrected(const Pose& pose) const;
+  /// What a shift about where the robot is makes of a height elsewhere in the map.
+  float at(const PoseShift& shift, float x_m, float y_m) const { return shift.at(x_m - x_m_, y_m - y_m_); }
+  /// By how much heights elsewhere may be wrong, squared, if it is the less likely one.
+  float doubt_m2(float x_m, float y_m) const;
+
+ private:
+  static constexpr std::size_t states = 3;  ///< height and two slopes, as in PoseShift
+  using Row = std::array<float, states>;
+
+  /// Of the sightings of a line, weighted: normal equations of a plane.
+  struct Sums {
+    float w = 0.0f, x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f, z = 0.0f, xz = 0.0f, yz = 0.0f;
+    float common_m2 = 0.0f;
+    int points = 0;
+  };
+  void see(const Row& of, float correction, float variance);
+  void settle();
+
+  float x_m_ = 0.0f, y_m_ = 0.0f;         ///< where the robot is
+  PoseShift offset_{};                    ///< if the robot has made the last step ...
+  PoseShift stepped_{};                   ///< ... and if the localisation has
+  std::array<Row, states> covariance_{};  ///< of that
+  bool undecided_ = false;
+  bool confirmed_ = false;  ///< it was a step
+  bool likelier_ = false;   ///< the localisation has made it
+  float evidence_ = 0.0f;   ///< ln of how much likelier that is
+  Sums seen_{};
+  int points_ = 0;  ///< of the line in hand
+  float height_variance_m2_ = 0.0f, attitude_variance_ = 0.0f;
+  PoseShift fades_{};  ///< by that much a line
+};
+
+}  // namespace curbline

@@ -1,0 +1,151 @@
+// Who has stepped, the robot or its localisation, and by what the poses are set back.
+#include "curbline/pose_offset.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/terrain.hpp"
+
+namespace curbline {
+namespace {
+
+PoseOffset made() {
+  PoseSettings settings;
+  settings.still = false;
+  settings.height_sd_m = 0.003f;
+  settings.attitude_sd_rad = 0.001f;
+  PoseOffset offset;
+  offset.init(settings);
+  return offset;
+}
+
+PoseSteps step(const PoseShift& by, bool confirmed = true) {
+  PoseSteps steps;
+  steps.begin(by);
+  if (confirmed) steps.confirm();
+  return steps;
+}
+
+/// A line across, ahead_m before the robot, which is at the origin. Its heights lie off the ground by `off` less what
+/// poses are set back by. Returns by what it was set back itself.
+PoseShift see_line(PoseOffset& offset, double ahead_m, const PoseShift& off, test::Noise& lot, int points = 200,
+                   int without_ground = 0) {
+  const PoseShift poses{off.height_m + offset.offset().height_m, off.slope_x + offset.offset().slope_x,
+                        off.slope_y + offset.offset().slope_y};
+  for (int k = 0; k < points; ++k) {
+    const auto x = static_cast<float>(ahead_m), y = -2.0f + 4.0f * static_cast<float>(k) / static_cast<float>(points);
+    offset.compare({x, y, poses.at(x, y) + static_cast<float>(0.01 * lot.normal()), 1e-4f, 0.0f});
+  }
+  for (int k = 0; k < without_ground; ++k) offset.pass();
+  return offset.end_line();
+}
+
+constexpr PoseShift jump{0.02f, -0.007f, 0.007f};
+
+TEST_CASE("pose offset: what a localisation has stepped by is taken off, of the line that tells as well") {
+  test::Noise lot(1);
+  PoseOffset offset = made();
+  offset.follow(step(jump), 0.0f, 0.0f);
+  REQUIRE(offset.undecided());
+  const PoseShift back = see_line(offset, 1.0, jump, lot);
+  CHECK_FALSE(offset.undecided());
+  CHECK(back.at(1.0f, 0.0f) == Approx(-0.013).margin(0.002));
+  CHECK(offset.offset().height_m == Approx(-0.02).margin(0.003));
+  CHECK(offset.offset().slope_x == Approx(0.007).margin(0.002));
+  CHECK(offset.offset().slope_y == Approx(-0.007).margin(0.001));
+  const Pose pose = offset.corrected({0, 5.0f, 3.0f, 0.02f, 0.0035f, 0.0035f, 0.0f, 1.0f});
+  CHECK(pose.z_m == Approx(0.0).margin(0.003));
+  CHECK(pose.qx == Approx(0.0).margin(0.001));
+  CHECK(pose.qy == Approx(0.0).margin(0.001));
+}
+
+TEST_CASE("pose offset: what a robot has stepped by is left alone") {
+  test::Noise lot(2);
+  PoseOffset offset = made();
+  offset.follow(step(jump), 0.0f, 0.0f);
+  CHECK_FALSE(see_line(offset, 1.0, {}, lot).any());
+  CHECK_FALSE(offset.undecided());
+  CHECK_FALSE(offset.offset().any());
+}
+
+TEST_CASE("pose offset: a step is measured better by the lines after it than by the poses") {
+  test::Noise lot(3);
+  double by_poses_m2 = 0.0, by_lines_m2 = 0.0;
+  for (int run = 0; run < 100; ++run) {
+    PoseOffset offset = made();
+    const PoseShift told{jump.height_m + static_cast<float>(0.005 * lot.normal()), jump.slope_x,
+                         jump.slope_y + static_cast<float>(0.0016 * lot.normal())};
+    offset.follow(step(told), 0.0f, 0.0f);
+    see_line(offset, 1.0, jump, lot);
+    by_poses_m2 += std::pow(told.at(1.0f, 1.0f) - jump.at(1.0f, 1.0f), 2);
+    by_lines_m2 += std::pow(offset.offset().at(1.0f, 1.0f) + jump.at(1.0f, 1.0f), 2);
+  }
+  CHECK(by_lines_m2 < 0.7 * by_poses_m2);
+}
+
+TEST_CASE("pose offset: a step that cannot be seen yet stays open, and heights where they are") {
+  test::Noise lot(4);
+  PoseOffset offset = made();
+  const PoseShift level{0.02f, -0.02f, 0.0f};  // nothing of it is seen 1 m ahead
+  offset.follow(step(level), 0.0f, 0.0f);
+  CHECK(std::abs(see_line(offset, 1.0, level, lot).at(1.0f, 0.0f)) < 0.003f);
+  CHECK(offset.undecided());
+  CHECK(offset.doubt_m2(1.0f, 0.0f) < 1e-5f);
+  CHECK(offset.doubt_m2(3.0f, 0.0f) == Approx(0.04 * 0.04).epsilon(0.3));
+  offset.follow({}, 0.0f, 0.0f);
+  see_line(offset, 2.0, level, lot);
+  offset.follow({}, 0.0f, 0.0f);
+  see_line(offset, 3.0, level, lot);
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().at(3.0f, 0.0f) == Approx(0.04).margin(0.005));
+}
+
+TEST_CASE("pose offset: a line of which less than half lies on known ground decides nothing") {
+  test::Noise lot(5);
+  PoseOffset offset = made();
+  offset.follow(step(jump), 0.0f, 0.0f);
+  CHECK_FALSE(see_line(offset, 1.0, jump, lot, 200, 201).any());
+  CHECK(offset.undecided());
+}
+
+TEST_CASE("pose offset: a step that was none is forgotten, even after a line has fallen for it") {
+  test::Noise lot(6);
+  PoseOffset offset = made();
+  offset.follow(step(jump, false), 0.0f, 0.0f);
+  see_line(offset, 1.0, jump, lot);
+  CHECK(offset.undecided());
+  REQUIRE(offset.offset().any());
+  PoseSteps none;
+  none.withdraw();
+  offset.follow(none, 0.0f, 0.0f);
+  CHECK_FALSE(offset.undecided());
+  CHECK_FALSE(offset.offset().any());
+}
+
+TEST_CASE("pose offset: steps follow each other, and the offset is their sum") {
+  test::Noise lot(7);
+  PoseOffset offset = made();
+  PoseShift sum;
+  for (int k = 0; k < 5; ++k) {
+    sum = sum + jump;
+    offset.follow(step(jump), 0.0f, 0.0f);
+    see_line(offset, 1.0, sum, lot);
+  }
+  CHECK(offset.offset().at(1.0f, 0.0f) == Approx(-5 * 0.013).margin(0.005));
+}
+
+TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses tremble") {
+  test::Noise lot(8);
+  PoseOffset offset = made();
+  offset.follow(step(jump), 0.0f, 0.0f);
+  see_line(offset, 1.0, jump, lot);
+  const PoseShift first = offset.offset();
+  for (int line = 0; line < 400; ++line) offset.follow({}, 0.0f, 0.0f);
+  CHECK(offset.offset().height_m == Approx(first.height_m + 0.003f).margin(1e-5));
+  CHECK(offset.offset().slope_x == Approx(first.slope_x - 0.001f).margin(1e-5));
+  for (int line = 0; line < 4000; ++line) offset.follow({}, 0.0f, 0.0f);
+  CHECK_FALSE(offset.offset().any());
+}
+
+}  // namespace
+}  // namespace curbline
