@@ -123,12 +123,13 @@ class Ground {
   struct Sight {
     float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
     float cell_m;          ///< of a cell, along it
+    float end_m;           ///< Viewpoint::end_x_m, or end_y_m
 
     /// The same for an edge that lies across the grid, along a strip: as if the laser were where the edge's parallel
     /// through it crosses the line, which is `aside_m` from the laser.
     Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
       const float along = axis == 0 ? strip.pxx : strip.pyy;  // the strip's normal is (pxx, pxy), or (pxy, pyy)
-      return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m};
+      return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m, end_m};
     }
   };
   /// Cells of one plane that follow each other on a row or column.
@@ -154,8 +155,10 @@ class Ground {
       const bool ahead = ahead_m > 0.0f;
       const float near_m = ahead ? before.last_height_m : next.first_height_m;
       const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
-      const float away_m = ahead ? ahead_m : behind_m, above_m = sight.eye_z_m - near_m;
+      const float above_m = sight.eye_z_m - near_m, end_m = ahead ? sight.end_m - sight.eye_m : sight.eye_m;
+      float away_m = ahead ? ahead_m : behind_m;
       if (!(above_m > 0.0f) || !(away_m > 0.0f)) return false;
+      if (sight.end_m > 0.0f && away_m < end_m) away_m = end_m;
       fall.of_rays_m = static_cast<float>(length() - 1) * sight.cell_m * above_m / away_m;
       fall.own_m = ahead ? first_height_m - last_height_m : last_height_m - first_height_m;
       return fall.of_rays_m <= drop_m;
@@ -281,7 +284,8 @@ template <Limits limits>
 template <typename LabelType, typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                                 LabelType none, LabelOf&& label_of, const PlaneFlags& high, Tallies& tallies) {
-  const std::array<Sight, 2> sights{{{view.x_m, view.z_m, dem.cell_x_m()}, {view.y_m, view.z_m, dem.cell_y_m()}}};
+  const std::array<Sight, 2> sights{
+      {{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}, {view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m}}};
   for (std::size_t axis = 0; axis < sights.size(); ++axis) {
     walk(dem, axis, none, label_of,
          [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next, int line) {

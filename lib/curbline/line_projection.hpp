@@ -28,11 +28,12 @@ struct LineMotion {
   bool still = true;  ///< both are the identity
   PoseJumps jumps{};  ///< of the poses around the line
 
-  /// Variance of a point's height by these: in between, the robot has jumped at any time, so the pose that is
-  /// interpolated is off by half of the jump at most.
+  /// Variance of a point's height by these: in between, the robot has jumped at any time. s of the way from the one to
+  /// the other, the pose that is interpolated is off by s of the jump or 1 - s: s (1 - s) is the mean square, over all
+  /// s a sixth.
   float blur_m2(float x_m, float y_m) const {
     const float dx_m = x_m - T_map_base_first.translation.x(), dy_m = y_m - T_map_base_first.translation.y();
-    return 0.25f * (jumps.height_m2 + jumps.attitude_rad2 * (dx_m * dx_m + dy_m * dy_m));
+    return (1.0f / 6) * (jumps.height_m2 + jumps.attitude_rad2 * (dx_m * dx_m + dy_m * dy_m));
   }
 };
 

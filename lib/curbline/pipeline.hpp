@@ -132,7 +132,11 @@ class Pipeline {
     return {mount.x_m, mount.y_m, mount.z_m};
   }
   Viewpoint view() const {
-    return {p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
+    Viewpoint view{p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
+    if (settings_.pose.still || settings_.window.fixed) return view;
+    view.end_x_m = static_cast<float>(dem_.rows()) * dem_.cell_x_m();
+    view.end_y_m = static_cast<float>(dem_.cols()) * dem_.cell_y_m();
+    return view;
   }
 
   Settings settings_{};

@@ -24,6 +24,9 @@ struct Point {
 /// Where the laser looks from, the tilt axis: x and y in the window's frame, z of the map frame.
 struct Viewpoint {
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
+  /// Of a robot that drives, the window's size: what lies in it was seen from as far away as its end. 0 of one that
+  /// stands.
+  float end_x_m = 0.0f, end_y_m = 0.0f;
 };
 
 }  // namespace curbline

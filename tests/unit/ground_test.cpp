@@ -17,9 +17,9 @@ using test::Stages;
 
 /// How many planes there are that cells of the window bear.
 template <typename Height>
-std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
+std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
-  stages.view.z_m = laser_z_m;
+  stages.view = view;
   fill(stages.dem, height_m);
   for (int pass = 0; pass < 3; ++pass) stages.infer(true);
   std::set<int> labels;
@@ -27,6 +27,11 @@ std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
     for (int j = 0; j < 24; ++j) labels.insert(stages.label_at(i, j));
   }
   return labels.size();
+}
+
+template <typename Height>
+std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
+  return borne_from({0.0f, 0.0f, laser_z_m}, height_m);
 }
 
 //           ______
@@ -126,6 +131,17 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
         }) == 3);  // up: seen from below
   CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
+}
+
+TEST_CASE(
+    "ground: readings that a robot took in the shadow of a step before it drove up to it are left to both sides") {
+  const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; };
+  const auto ramp = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.4 * (x - 1.4) : -0.2; };
+  Viewpoint view{0.8f, 1.2f, 1.0f};
+  CHECK(borne_from(view, down) == 3);  // stood there always: the shadow is narrower
+  view.end_x_m = view.end_y_m = 2.4f;
+  CHECK(borne_from(view, down) == 2);
+  CHECK(borne_from(view, ramp) == 3);
 }
 
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {
