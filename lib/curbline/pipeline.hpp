@@ -172,6 +172,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   settings_ = settings;
   counters_ = Counters{};
   planes_next_ = true;
+  jumped_ = false;
   line_times_ = RisingTimes{};
   p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
