@@ -322,12 +322,13 @@ auto Dem<limits>::place_at(float x_m, float y_m) const -> Place {
 
 template <Limits limits>
 auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place {
-  for (int g = 0; g <= reach; ++g) {
+  const auto unmarked = [this](int s) { return cell(s).valid() && !marked(s); };
+  if (unmarked(slot(place.i, place.j))) return place;
+  for (int g = 1; g <= reach; ++g) {
     for (std::size_t d = 0; d < directions; ++d) {
       const int i = place.i + g * step_i[d], j = place.j + g * step_j[d];
       if (i < 0 || j < 0 || i >= settings_.rows || j >= settings_.cols) continue;
-      const int s = slot(i, j);
-      if (cell(s).valid() && !marked(s)) return {i, j};
+      if (unmarked(slot(i, j))) return {i, j};
     }
   }
   return {};

@@ -116,7 +116,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     return rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(axis));
   };
   const Eigen::Vector3f x_axis = gradient(0), y_axis = gradient(1), up_axis = gradient(2);
-  const float three_sd_m2 = 9.0f * laser_.range_sd_m * laser_.range_sd_m;
+  const float three_sd_m2 = gate * laser_.range_sd_m * laser_.range_sd_m;
   NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
     const float range = line.ranges_m[i];
@@ -165,7 +165,6 @@ TiltAngle LineProjection<limits>::tilt_at(std::int64_t time_ns, TiltSnapshot<lim
 template <Limits limits>
 float LineProjection<limits>::height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt,
                                                  const Eigen::Vector3f& p_base, float tilt_rate) const {
-  const auto square = [](float x) { return x * x; };
   const float tilt_variance = square(tilt_.angle_sd_rad) + square(tilt_rate * tilt_.time_sd_s);
   const float attitude = square(pose_.attitude_sd_rad);
   const float from_mount_x = p_base.x() - T_base_tilt_.translation.x();

@@ -9,6 +9,13 @@ namespace curbline {
 
 inline constexpr float pi = 3.14159265f;
 
+/// Three standard deviations, squared: what lies off by more is something else. By chance, one in 370.
+inline constexpr float gate = 9.0f;
+
+constexpr float square(float x) {
+  return x * x;
+}
+
 /// Nearest integer, halves away from zero; the float just below a half counts as one. |x| < 2^22.
 constexpr std::int32_t round_to_int(float x) {
   return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f);

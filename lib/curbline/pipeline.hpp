@@ -265,6 +265,7 @@ void Pipeline<limits>::follow_jump(ProjectedLine<limits>& line) {
         {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
   }
   const PoseShift shift = pose_offset_.end_line();
+  if (!shift.any()) return;
   for (Point& p : line.points()) p.z_m += pose_offset_.at(shift, p.x_m, p.y_m);
 }
 

@@ -5,9 +5,6 @@
 namespace curbline {
 namespace {
 
-/// Three standard deviations, squared.
-constexpr float gate = 9.0f;
-
 /// ln 20: what 5 % say.
 constexpr float sure = 3.0f;
 
@@ -24,10 +21,6 @@ constexpr float poses_compared = 2.0f;
 /// Of a standard deviation of the poses, what an offset fades a line: one in 400 lines, longer than ground stays in the
 /// window.
 constexpr float fade_share = 0.0025f;
-
-float square(float x) {
-  return x * x;
-}
 
 float faded(float value, float by) {
   return value > by ? value - by : value < -by ? value + by : 0.0f;

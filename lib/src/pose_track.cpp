@@ -2,11 +2,10 @@
 
 #include <cmath>
 
+#include "curbline/math.hpp"
+
 namespace curbline {
 namespace {
-
-/// Three standard deviations, squared.
-constexpr float gate = 9.0f;
 
 /// q and -q are one attitude: the sign by which b's lies nearer to a's.
 float nearer_sign(const Pose& a, const Pose& b) {

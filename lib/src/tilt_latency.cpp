@@ -9,18 +9,11 @@ namespace {
 /// No sweep worth the name is smaller; turns closer together come from damaged readings and from play.
 constexpr float least_sweep_rad = 0.05f;
 
-/// Three standard deviations, squared: beyond it something else than latency is seen.
-constexpr float gate = 9.0f;
-
 /// Of what is not known of the latency, the part by which the sweeps of a robot that drives may differ.
 constexpr float sweep_share = 0.2f;
 
 /// Of lines on end that disagree with what is known, each by three standard deviations at least.
 constexpr int lines_of_a_step = 10;
-
-float square(float x) {
-  return x * x;
-}
 
 float within(float x, float bound) {
   return x < -bound ? -bound : x > bound ? bound : x;

@@ -7,6 +7,7 @@
 
 #include "curbline/pipeline.hpp"
 #include "support/nodding_pipeline.hpp"
+#include "support/noisy_poses.hpp"
 
 namespace curbline {
 namespace {
@@ -204,8 +205,7 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
 
 TEST_CASE("pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
   Settings settings = driving_settings();
-  settings.pose.height_sd_m = 0.003f;
-  settings.pose.attitude_sd_rad = 0.001f;
+  settings.pose = test::noisy_poses();
   const auto pipeline = started(settings);
   NoddingLaser laser;
   const auto x = [](double time_s) { return 0.5 * time_s; };

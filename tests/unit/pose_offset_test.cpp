@@ -4,18 +4,15 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/noisy_poses.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {
 namespace {
 
 PoseOffset made() {
-  PoseSettings settings;
-  settings.still = false;
-  settings.height_sd_m = 0.003f;
-  settings.attitude_sd_rad = 0.001f;
   PoseOffset offset;
-  offset.init(settings);
+  offset.init(test::noisy_poses());
   return offset;
 }
 

@@ -7,10 +7,13 @@
 #include <limits>
 #include <string>
 
+#include "support/noisy_poses.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {
 namespace {
+
+using test::noisy_poses;
 
 constexpr Limits limits{.poses = 8};
 using Track = PoseTrack<limits>;
@@ -188,30 +191,28 @@ TEST_CASE("pose track: a pose turns and moves points as its quaternion says") {
   CHECK((p.cast<double>() - truth).norm() < 1e-6);
 }
 
-/// Poses of 50 Hz on a ramp of 8 %, `changed(pose, k)` each.
+/// The k-th pose, of 50 Hz, on a ramp of 8 %.
+Pose on_ramp(int k) {
+  Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
+  pose.qy = -0.04f;
+  return pose;
+}
+
+/// Such poses, `changed(pose, k)` each.
 template <typename Changed>
 Track on_ramp(int poses, const PoseSettings& settings, Changed&& changed) {
   Track track;
   track.init(settings);
   for (int k = 0; k < poses; ++k) {
-    Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
-    pose.qy = -0.04f;
+    Pose pose = on_ramp(k);
     changed(pose, k);
     REQUIRE(track.push(pose));
   }
   return track;
 }
 
-PoseSettings noisy() {
-  PoseSettings settings;
-  settings.still = false;
-  settings.height_sd_m = 0.003f;
-  settings.attitude_sd_rad = 0.001f;
-  return settings;
-}
-
 TEST_CASE("pose track: poses that jump say by how much, those around them do not") {
-  const Track track = on_ramp(8, noisy(), [](Pose& pose, int k) {
+  const Track track = on_ramp(8, noisy_poses(), [](Pose& pose, int k) {
     if (k < 5) return;
     pose.z_m += 0.03f;
     pose.qx += 0.0075f;  // by 15 mrad
@@ -227,7 +228,7 @@ TEST_CASE("pose track: a drive, its turns and the noise that is told of are no j
   test::Noise lot(3);
   int jumps = 0;
   for (int run = 0; run < 1000; ++run) {
-    const Track track = on_ramp(8, noisy(), [&](Pose& pose, int k) {
+    const Track track = on_ramp(8, noisy_poses(), [&](Pose& pose, int k) {
       pose.z_m += static_cast<float>(0.003 * lot.normal());
       pose.qx += static_cast<float>(0.0005 * lot.normal());
       pose.qy += static_cast<float>(0.0005 * lot.normal());
@@ -245,9 +246,9 @@ std::string told_by_each(Changed&& changed) {
   std::string told;
   PoseSteps steps;
   Track track;
-  track.init(noisy());
+  track.init(noisy_poses());
   for (int k = 0; k < 8; ++k) {
-    Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
+    Pose pose = on_ramp(k);
     changed(pose, k);
     REQUIRE(track.push(pose));
     steps = track.take_steps(pose.time_ns);
@@ -276,7 +277,7 @@ TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, no
 
 TEST_CASE("pose track: a step is told in the map's frame, whatever way the robot heads") {
   Track track;
-  track.init(noisy());
+  track.init(noisy_poses());
   PoseShift by;
   for (int k = 0; k < 8; ++k) {
     // Heads along the map's y axis. Rolls to the right, so what lies on its left, at lower x, seems to lie higher.
