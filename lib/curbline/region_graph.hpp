@@ -48,11 +48,8 @@ class RegionGraph {
   /// merged nodes, a few each as a rule. Cost of each: a PlaneEvidence and a heap move.
   int merge(const PlaneEvidence& evidence);
 
-  /// The node that a node has become part of. O(1) after merge().
-  Index root(Index node) const {
-    while (node_[node].parent != node) node = node_[node].parent;
-    return node;
-  }
+  /// The node that a node has become part of by merge().
+  Index root(Index node) const { return node_[node].parent; }
 
  private:
   struct Node {
@@ -122,7 +119,7 @@ class RegionGraph {
   std::array<End, 2 * limits.links> end_;
   std::array<Link, limits.links> link_;
   std::array<Index, limits.links> heap_;
-  std::array<Index, limits.regions> seen_;  ///< end of the absorbing node that leads to a neighbour
+  std::array<Index, limits.regions> seen_;  ///< end that led an absorbing node to a neighbour, the last time
   int nodes_ = 0;
   int links_ = 0;
   std::size_t heap_size_ = 0;
@@ -222,7 +219,9 @@ int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
       evidences += refreshed;
     }
   }
-  for (Index n = 0; n < static_cast<Index>(nodes_); ++n) node_[n].parent = root(n);
+  for (Index n = 0; n < static_cast<Index>(nodes_); ++n) {
+    while (node_[node_[n].parent].parent != node_[n].parent) node_[n].parent = node_[node_[n].parent].parent;
+  }
   return evidences;
 }
 
@@ -247,17 +246,10 @@ void RegionGraph<limits>::merge_ends(Index link) {
   const float score = link_[link].gain + node_[a].score + node_[b].score;
   absorb(a, b);
   node_[a].score = score;
-  const Index first = node_[a].first;
-  if (first == none) return;
-  Index end = first;
-  do {
-    link_[end / 2].stale = true;
-    end = end_[end].next;
-  } while (end != first);
 }
 
 /// b becomes part of a: its links leave from a; a second link to the same neighbour, but for its pairs, and the one
-/// between a and b go.
+/// between a and b go. What a gains with its neighbours is open then.
 template <Limits limits>
 void RegionGraph<limits>::absorb(Index a, Index b) {
   node_[a].moments.add(node_[b].moments);
@@ -265,6 +257,7 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
   if (const Index first = node_[a].first; first != none) {
     Index end = first;
     do {
+      link_[end / 2].stale = true;
       seen_[end_[end].target] = end;
       end = end_[end].next;
     } while (end != first);
@@ -272,29 +265,23 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
   while (node_[b].first != none) {
     const Index end = node_[b].first;
     const auto other = static_cast<Index>(end ^ 1u);
-    const Index target = end_[end].target;
+    const Index target = end_[end].target, twin = seen_[target];
     remove(b, end);
-    if (target == a || seen_[target] != none) {
-      if (target != a) {
-        const Link& twin = link_[end / 2];
-        const int sign = (end ^ seen_[target]) % 2 == 0 ? 1 : -1;
-        link_[seen_[target] / 2].add_pairs(sign, twin.pairs, twin.rise, twin.along_x, twin.along_y);
+    const bool has_twin = twin != none && end_[twin].target == target && end_[twin ^ 1u].target == a;
+    if (target == a || has_twin) {
+      if (has_twin) {
+        const Link& second = link_[end / 2];
+        const int sign = (end ^ twin) % 2 == 0 ? 1 : -1;
+        link_[twin / 2].add_pairs(sign, second.pairs, second.rise, second.along_x, second.along_y);
       }
       remove(target, other);
       heap_remove(link_[end / 2].place);
     } else {
       end_[other].target = a;
       insert(a, end);
+      link_[end / 2].stale = true;
     }
   }
-  if (const Index first = node_[a].first; first != none) {
-    Index end = first;
-    do {
-      seen_[end_[end].target] = none;
-      end = end_[end].next;
-    } while (end != first);
-  }
-  seen_[b] = none;
 }
 
 template <Limits limits>
