@@ -23,7 +23,7 @@ int call(Operation operation, const void* arguments) {
 #if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M'
   asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
 #else
-  asm volatile("svc 0x123456" : "+r"(r0) : "r"(r1) : "memory", "lr");  // ARM state; lr for programs in supervisor mode
+  asm volatile("svc 0xAB" : "+r"(r0) : "r"(r1) : "memory", "lr");  // Thumb state; lr for programs in supervisor mode
 #endif
   return static_cast<int>(r0);
 }
