@@ -86,6 +86,7 @@ class BorderFinder {
   Border border_of(const Brink& brink) const;
   Border border_at(const Line& line, float along_m) const;
   Border border_at(const End& end, float along_m) const;
+  Beside beside(const Line& line, float border_m, int toward, LabelType label) const;
   float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
@@ -222,7 +223,31 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.low = low.label;
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
+  const float along_m = gap.line.axis == 0 ? border.x_m : border.y_m;
+  border.beside_low = beside(gap.line, along_m, -border.sign, low.label);
+  border.beside_high = beside(gap.line, along_m, border.sign, high.label);
   return border;
+}
+
+/// Of two cells after the one that a border lies in, along the axis (toward 1) or against it (-1). One that holds more
+/// than the side's plane may lie before them.
+template <Limits limits>
+Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, LabelType label) const {
+  const Plane& plane = mixture_.plane(label);
+  const auto lies_alone = [&](int along) {
+    if (along < 0 || along >= (line.axis == 0 ? dem_.rows() : dem_.cols())) return false;
+    const int s = slot(line, along);
+    const Cell& cell = dem_.cell(s);
+    return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != none && mixture_.on_ground(s) &&
+           !dem_.mixed(cell, dem_.slope_m2(plane));
+  };
+  const float border = border_m / pitch_m(line);
+  int nearer = static_cast<int>(border) + toward;
+  if (!lies_alone(nearer)) nearer += toward;
+  const int farther = nearer + toward;
+  if (!lies_alone(nearer) || !lies_alone(farther)) return {};
+  const float away = static_cast<float>(toward) * (static_cast<float>(nearer) + 0.5f - border);
+  return Beside::of(above_m(line, nearer, plane), above_m(line, farther, plane), away);
 }
 
 /// Of the face on the far side of a gap (toward 1), or on its near side (-1).

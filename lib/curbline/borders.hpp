@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/beside.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/plane_mixture.hpp"
 
@@ -18,11 +19,12 @@ class Borders {
   using Index = std::uint16_t;
 
   struct Border {
-    float x_m, y_m;       ///< in the window's frame
-    float probability;    ///< that the cells on both sides lie on different planes
-    float half_gap_m;     ///< between the cells of the one and the other
-    float off_m;          ///< by how much more the cell on `high` lies above its plane than that on `low`
-    float drop_m;         ///< of a brink: to the lowest that is seen behind it; else 0
+    float x_m, y_m;                  ///< in the window's frame
+    float probability;               ///< that the cells on both sides lie on different planes
+    float half_gap_m;                ///< between the cells of the one and the other
+    float off_m;                     ///< by how much more the cell on `high` lies above its plane than that on `low`
+    float drop_m;                    ///< of a brink: to the lowest that is seen behind it; else 0
+    Beside beside_low, beside_high;  ///< of the sides of `low` and `high`
     LabelType low, high;  ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;     ///< 0: found along x, 1: along y
     std::int8_t sign;     ///< +1 if `high` lies in the positive direction of the axis

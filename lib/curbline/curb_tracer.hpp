@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "curbline/beside.hpp"
 #include "curbline/border_finder.hpp"
 #include "curbline/borders.hpp"
 #include "curbline/counters.hpp"
@@ -64,10 +65,11 @@ class CurbTracer {
     float x_m = 0.0f, y_m = 0.0f;             ///< mean of the borders
     float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
     float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
-    float place_variance_m2 = 0.0f;     ///< of the borders, across the line
-    float gap_m = 0.0f, cell_m = 0.0f;  ///< across it: between the cells' centres; of one cell
-    bool low_is_near = false;           ///< the robot stands on the side of the low-numbered plane
-    bool low_is_right = false;          ///< of the line, from its first end to its second
+    Beside beside_low{}, beside_high{};  ///< sums
+    float place_variance_m2 = 0.0f;      ///< of the borders, across the line
+    float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
+    bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
+    bool low_is_right = false;           ///< of the line, from its first end to its second
   };
 
   /// The other plane of a border. Where no ground is seen beyond the near one stands for it: no step but the drop, no
@@ -90,6 +92,7 @@ class CurbTracer {
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
   void go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const;
+  static float follow_ground(const Stages& stages, const Piece& piece, float shadow_m, Curb& curb);
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
 
@@ -227,6 +230,8 @@ auto CurbTracer<limits>::piece_of(const Stages& stages, const Borders<limits>& b
     piece.probability += each * border.probability;
     piece.half_gap_m += each * border.half_gap_m;
     piece.off_m += each * border.off_m;
+    piece.beside_low.add(border.beside_low);
+    piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
@@ -291,6 +296,20 @@ void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece
   }
 }
 
+/// Where the ground beside a step lies off its planes, the height is the ground's. Both sides begin at the near end of
+/// a shadow, in the middle of which the borders lie. Returns the variance that this adds.
+template <Limits limits>
+float CurbTracer<limits>::follow_ground(const Stages& stages, const Piece& piece, float shadow_m, Curb& curb) {
+  const float up = curb.height_m < 0.0f ? -1.0f : 1.0f;
+  const float shadow_cells = 0.5f * shadow_m / piece.cell_m;
+  const auto [near, far] = piece.low_is_near ? std::pair{piece.beside_low, piece.beside_high}
+                                             : std::pair{piece.beside_high, piece.beside_low};
+  const Deviation of_near = deviation(near, stages.mixture.plane(curb.near_label), -up, -shadow_cells);
+  const Deviation of_far = deviation(far, stages.mixture.plane(curb.far_label), up, shadow_cells);
+  curb.height_m += up * (of_near.away_m + of_far.away_m);
+  return of_near.variance_m2 + of_far.variance_m2;
+}
+
 template <Limits limits>
 void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int length, Work& work,
                                   Counters& counters) const {
@@ -323,6 +342,13 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   }
   const bool one_sided = border.high == no_label<limits>;
   if (one_sided && is_step(curb) && first == last) return;  // a row's or column's alone is no line
+  float shadow_m = 0.0f;
+  if (curb.kind == CurbKind::step_down && !one_sided) {
+    const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
+    shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
+  }
+  const float deviation_m2 = is_step(curb) && !one_sided ? follow_ground(stages, piece, shadow_m, curb) : 0.0f;
+  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   const float hidden_m = one_sided ? curb.height_m : 0.0f;
   const float slope =
       (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
@@ -330,14 +356,8 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   // the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to
   // a quarter of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane,
   // have no part in the fit. Behind a brink as much again as is seen may be hidden, or less, evenly.
-  curb.height_sd_m = square_root(piece.variance_m2 + slope * slope * piece.place_variance_m2 +
+  curb.height_sd_m = square_root(piece.variance_m2 + deviation_m2 + slope * slope * piece.place_variance_m2 +
                                  piece.off_m * piece.off_m * (1.0f / 48) + hidden_m * hidden_m * (1.0f / 3));
-  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
-  float shadow_m = 0.0f;
-  if (curb.kind == CurbKind::step_down && !one_sided) {
-    const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
-    shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
-  }
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;
   if (piece.low_is_right != piece.low_is_near) {

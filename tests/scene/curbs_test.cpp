@@ -37,6 +37,19 @@ TEST_CASE("scene: a low curb of 3 cm is found") {
   CHECK(pipeline->curbs().size() == 1);
 }
 
+//                 _______________ 0.12
+//                |
+//  _____________ |
+//               \|  -0.03
+//  0          1.7 2               4 m
+TEST_CASE("scene: a curb is as high as from the bottom of its gutter, which is too narrow for a plane") {
+  const double x = GENERATE(2.0, 2.03, 2.05, 2.08);
+  const auto height_m = [&](double px, double) { return px < x - 0.3 ? 0.0 : px < x ? 0.1 * (x - 0.3 - px) : 0.12; };
+  const auto pipeline = seen(height_m);
+  check_curb_at(pipeline->curbs(), x, 0.15, CurbKind::step_up);
+  for (const Curb& curb : across_the_window(pipeline->curbs(), x)) CHECK(curb.height_m == Approx(0.15).margin(0.01));
+}
+
 //       ########     a street that falls by 2 %, a kerb of 18 mm askew in it and nothing else:
 //     ##########     as long as one plane has it all, its cells err alike
 TEST_CASE("scene: a kerb of 2 cm is found where it is all there is") {

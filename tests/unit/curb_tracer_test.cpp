@@ -231,6 +231,45 @@ TEST_CASE("curb tracer: a curb's face is looked through, the full step and the w
   CHECK(curb.kind == CurbKind::step_up);
 }
 
+/// A step of 12 cm at x = 1.4 m, before which the road falls by depth_m over the last 0.2 m.
+auto with_gutter(double depth_m) {
+  return [depth_m](double x, double) { return x > 1.4 ? 0.12 : x > 1.2 ? -depth_m * (x - 1.2) / 0.2 : 0.0; };
+}
+
+TEST_CASE("curb tracer: a step from a gutter that bears the road's plane is as high as from its bottom") {
+  const auto up = traced(with_gutter(0.02)), down = traced(with_gutter(0.02), 2.3f, 1.2f);
+  REQUIRE(up->tracer.curbs().size() == 1);
+  REQUIRE(down->tracer.curbs().size() == 1);
+  const Curb& from_road = up->tracer.curbs()[0];
+  CHECK(up->label_at(13, 5) == up->label_at(0, 5));  // the gutter's cells and the road's
+  CHECK(from_road.height_m == Approx(0.14).margin(4 * from_road.height_sd_m));
+  CHECK(from_road.height_m > 0.135f);
+  CHECK(from_road.height_sd_m < 0.005f);
+  CHECK(down->tracer.curbs()[0].height_m < -0.135f);
+}
+
+TEST_CASE("curb tracer: ground that rises toward a step, as what mixes both sides does, makes it no lower") {
+  const auto stages = traced(with_gutter(-0.012));
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].height_m > 0.115f);
+}
+
+TEST_CASE("curb tracer: the ground beside a border is carried on to it, and tells nothing within three deviations") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  Beside beside = Beside::of(-0.010f, -0.004f, 1.0f);  // falls by 6 mm a cell
+  CHECK(deviation(beside, plane, -1.0f, 0.0f).away_m == Approx(0.016));
+  CHECK(deviation(beside, plane, -1.0f, 0.0f).variance_m2 == Approx(5e-6));  // (2, -1) of two cells
+  CHECK(deviation(beside, plane, -1.0f, 0.5f).away_m == Approx(0.019));
+  CHECK(deviation(beside, plane, 1.0f, 0.0f).away_m == 0.0f);  // toward the other side
+  beside.add(beside);
+  CHECK(deviation(beside, plane, -1.0f, 0.0f).away_m == Approx(0.016));
+  CHECK(deviation(beside, plane, -1.0f, 0.0f).variance_m2 == Approx(2.5e-6));
+  plane.fit_variance_m2 = 1.2e-5f;  // 0.016^2 is 8.5 times the variance
+  CHECK(deviation(beside, plane, -1.0f, 0.0f).away_m == 0.0f);
+  CHECK(deviation(Beside{}, plane, -1.0f, 0.0f).variance_m2 == 0.0f);
+}
+
 TEST_CASE("curb tracer: cells beside the border that lie off their planes make the height less certain") {
   const auto flat = traced(up),
              worn = traced([](double x, double y) { return up(x, y) - (x > 1.4 && x < 1.5 ? 0.008 : 0.0); });
