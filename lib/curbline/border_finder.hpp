@@ -234,12 +234,13 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 template <Limits limits>
 Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, LabelType label) const {
   const Plane& plane = mixture_.plane(label);
+  const float slope_m2 = dem_.slope_m2(plane);
   const auto lies_alone = [&](int along) {
     if (along < 0 || along >= (line.axis == 0 ? dem_.rows() : dem_.cols())) return false;
     const int s = slot(line, along);
     const Cell& cell = dem_.cell(s);
     return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != none && mixture_.on_ground(s) &&
-           !dem_.mixed(cell, dem_.slope_m2(plane));
+           !dem_.mixed(cell, slope_m2);
   };
   const float border = border_m / pitch_m(line);
   int nearer = static_cast<int>(border) + toward;

@@ -92,6 +92,8 @@ class CurbTracer {
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
   void go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const;
+  Curb curb_of(const Stages& stages, const Border& border, const Piece& piece) const;
+  static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
   static float follow_ground(const Stages& stages, const Piece& piece, float shadow_m, Curb& curb);
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
@@ -296,6 +298,27 @@ void CurbTracer<limits>::go_on(const Stages& stages, const Border& border, Piece
   }
 }
 
+/// Kind and height as the planes tell them, the labels of both sides.
+template <Limits limits>
+Curb CurbTracer<limits>::curb_of(const Stages& stages, const Border& border, const Piece& piece) const {
+  Curb curb;
+  curb.near_label = piece.low_is_near ? border.low : border.high;
+  curb.far_label = piece.low_is_near ? border.high : border.low;
+  curb.probability = piece.probability < 1.0f ? piece.probability : 1.0f;  // a mean, rounded
+  const Plane& low = stages.mixture.plane(border.low);
+  const Plane& high = beyond(stages, border);
+  const float middle_x = 0.5f * (piece.line.x0_m + piece.line.x1_m);
+  const float middle_y = 0.5f * (piece.line.y0_m + piece.line.y1_m);
+  const float height_m = high.height_m(middle_x, middle_y) - low.height_m(middle_x, middle_y) - piece.drop_m;
+  const float cell_x_m = stages.dem.cell_x_m(), cell_y_m = stages.dem.cell_y_m();
+  const float reach_m = static_cast<float>(settings_.link_reach) * (cell_x_m < cell_y_m ? cell_x_m : cell_y_m);
+  curb.kind = kind_of(low, high, piece.line, {height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
+  if (curb.kind != CurbKind::step_up) return curb;
+  curb.height_m = piece.low_is_near ? height_m : -height_m;
+  if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
+  return curb;
+}
+
 /// Where the ground beside a step lies off its planes, the height is the ground's. Both sides begin at the near end of
 /// a shadow, in the middle of which the borders lie. Returns the variance that this adds.
 template <Limits limits>
@@ -310,6 +333,21 @@ float CurbTracer<limits>::follow_ground(const Stages& stages, const Piece& piece
   return of_near.variance_m2 + of_far.variance_m2;
 }
 
+/// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
+/// the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to a
+/// quarter of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane, have
+/// no part in the fit. Behind a brink as much again as is seen, `hidden_m`, may be hidden, or less, evenly.
+template <Limits limits>
+float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border& border, const Piece& piece,
+                                             float hidden_m) {
+  const Plane& low = stages.mixture.plane(border.low);
+  const Plane& high = beyond(stages, border);
+  const float slope =
+      (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
+  return piece.variance_m2 + square(slope) * piece.place_variance_m2 + square(piece.off_m) * (1.0f / 48) +
+         square(hidden_m) * (1.0f / 3);
+}
+
 template <Limits limits>
 void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int length, Work& work,
                                   Counters& counters) const {
@@ -317,57 +355,32 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
     ++counters.curbs_full;
     return;
   }
-  const Dem<limits>& dem = stages.dem;
   const Border& border = work.borders.at(first);
   Piece piece = piece_of(stages, work.borders, first, last);
   if (first == 0) go_on(stages, border, piece, true);
   if (last == length - 1) go_on(stages, border, piece, false);
-  Curb curb;
-  curb.near_label = piece.low_is_near ? border.low : border.high;
-  curb.far_label = piece.low_is_near ? border.high : border.low;
-  curb.probability = piece.probability < 1.0f ? piece.probability : 1.0f;  // a mean, rounded
-  const Plane& low = stages.mixture.plane(border.low);
-  const Plane& high = beyond(stages, border);
-  const float middle_x = 0.5f * (piece.line.x0_m + piece.line.x1_m);
-  const float middle_y = 0.5f * (piece.line.y0_m + piece.line.y1_m);
-  const float height_m = high.height_m(middle_x, middle_y) - low.height_m(middle_x, middle_y) - piece.drop_m;
-  curb.height_m = piece.low_is_near ? height_m : -height_m;
-  const float reach_m =
-      static_cast<float>(settings_.link_reach) * (dem.cell_x_m() < dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m());
-  curb.kind = kind_of(low, high, piece.line, {height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
-  if (curb.kind != CurbKind::step_up) {
-    curb.height_m = 0.0f;
-  } else if (curb.height_m < 0.0f) {
-    curb.kind = CurbKind::step_down;
-  }
+  Curb curb = curb_of(stages, border, piece);
   const bool one_sided = border.high == no_label<limits>;
   if (one_sided && is_step(curb) && first == last) return;  // a row's or column's alone is no line
+  float variance_m2 = height_variance_m2(stages, border, piece, one_sided ? curb.height_m : 0.0f);
   float shadow_m = 0.0f;
   if (curb.kind == CurbKind::step_down && !one_sided) {
     const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
     shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
   }
-  const float deviation_m2 = is_step(curb) && !one_sided ? follow_ground(stages, piece, shadow_m, curb) : 0.0f;
+  if (is_step(curb) && !one_sided) variance_m2 += follow_ground(stages, piece, shadow_m, curb);
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
-  const float hidden_m = one_sided ? curb.height_m : 0.0f;
-  const float slope =
-      (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
-  // The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
-  // the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to
-  // a quarter of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane,
-  // have no part in the fit. Behind a brink as much again as is seen may be hidden, or less, evenly.
-  curb.height_sd_m = square_root(piece.variance_m2 + deviation_m2 + slope * slope * piece.place_variance_m2 +
-                                 piece.off_m * piece.off_m * (1.0f / 48) + hidden_m * hidden_m * (1.0f / 3));
+  curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;
   if (piece.low_is_right != piece.low_is_near) {
     std::swap(piece.line.x0_m, piece.line.x1_m);
     std::swap(piece.line.y0_m, piece.line.y1_m);
   }
-  curb.x0_m = dem.origin_x_m() + piece.line.x0_m;
-  curb.y0_m = dem.origin_y_m() + piece.line.y0_m;
-  curb.x1_m = dem.origin_x_m() + piece.line.x1_m;
-  curb.y1_m = dem.origin_y_m() + piece.line.y1_m;
+  curb.x0_m = stages.dem.origin_x_m() + piece.line.x0_m;
+  curb.y0_m = stages.dem.origin_y_m() + piece.line.y0_m;
+  curb.x1_m = stages.dem.origin_x_m() + piece.line.x1_m;
+  curb.y1_m = stages.dem.origin_y_m() + piece.line.y1_m;
   work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
 }
 

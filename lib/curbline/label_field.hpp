@@ -262,7 +262,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = dem.height_variance_m2(cell);
-  Logs best{};
+  Logs doubt{};  // exp(-2 log potential): a logarithm each of those that are kept is enough
   std::array<LabelType, candidates> label{none, none, none};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
@@ -270,18 +270,18 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     const float variance = plane.variance_m2 + cell_variance;
     const float residual = cell.height_m - plane.height_m(x, y);
     float u = 1.0f + residual * residual / (6.0f * variance);
-    if (u > 1e5f) u = 1e5f;  // its seventh power must stay finite
+    if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
     const float u3 = u * u * u;
-    const float log_potential = -0.5f * log(variance * u3 * u3 * u);
+    const float doubted = variance * u3 * u3 * u;
     std::size_t rank = candidates;
-    while (rank > 0 && (label[rank - 1] == none || log_potential > best[rank - 1])) --rank;
+    while (rank > 0 && (label[rank - 1] == none || doubted < doubt[rank - 1])) --rank;
     if (rank == candidates) return;
     for (std::size_t c = candidates - 1; c > rank; --c) {
       label[c] = label[c - 1];
-      best[c] = best[c - 1];
+      doubt[c] = doubt[c - 1];
     }
     label[rank] = static_cast<LabelType>(k);
-    best[rank] = log_potential;
+    doubt[rank] = doubted;
   };
   near_by_[block_of(dem, i, j)].for_each(consider);
   if (label[0] == none) {
@@ -289,9 +289,10 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   }
   Site& site = sites_[static_cast<std::size_t>(slot)];
   if (label != site.label) keep_messages(site, label);
-  const bool covered = mixture.covered(slot);
-  for (std::size_t c = 0; c < candidates; ++c) {
-    const float below = label[c] == none || covered ? 0.0f : best[c] - best[0];
+  site.node.fill(0);
+  if (mixture.covered(slot)) return;
+  for (std::size_t c = 1; c < candidates && label[c] != none; ++c) {
+    const float below = -0.5f * log(doubt[c] / doubt[0]);
     site.node[c] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
   }
 }
@@ -454,9 +455,11 @@ int LabelField<limits>::follow_belief(const Place& place) {
 
 template <Limits limits>
 auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
-  Place here = place(dem, i, j, dem.slot(i, j));
+  const int slot = dem.slot(i, j);
+  const Site& site = sites_[static_cast<std::size_t>(slot)];
+  if (site.label[1] == none) return {site.label, {site.label[0] == none ? 0.0f : 1.0f, 0.0f, 0.0f}};
+  Place here = place(dem, i, j, slot);
   hear_neighbours(here);
-  const Site& site = sites_[here.slot];
   return {site.label, normalised(site, log_belief(site, here.heard))};
 }
 
