@@ -16,6 +16,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
+#include "curbline/math.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/point.hpp"
 #include "curbline/settings.hpp"
@@ -141,7 +142,7 @@ bool BorderFinder<limits>::is_veil(int slot) const {
 template <Limits limits>
 bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& plane) const {
   const float residual = dem_.above_m(i, j, cell, plane);
-  return residual * residual <= 9.0f * (plane.variance_m2 + dem_.height_variance_m2(cell));
+  return residual * residual <= gate * (plane.variance_m2 + dem_.height_variance_m2(cell));
 }
 
 /// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
@@ -330,7 +331,7 @@ float BorderFinder<limits>::middle_m(const Gap& gap) const {
   const Plane& first = mixture_.plane(gap.first.label);
   const Plane& second = mixture_.plane(gap.second.label);
   const float step_m = second.height_m(halfway.x_m, halfway.y_m) - first.height_m(halfway.x_m, halfway.y_m);
-  if (2.0f * step_m * step_m <= 9.0f * (first.variance_m2 + second.variance_m2)) return halfway_m;
+  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return halfway_m;
 
   float before = 0.0f;  // in cells, from the first one's near side
   for (int along = gap.first.along; along <= gap.second.along; ++along) {

@@ -104,7 +104,7 @@ bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const 
   };
   const auto apart = [&](const Plane& at, float step_m) {
     const float square_m2 = step_m * step_m;
-    return square_m2 > 9.0f * (first.height_variance_m2(at.x_m, at.y_m) + second.height_variance_m2(at.x_m, at.y_m)) &&
+    return square_m2 > gate * (first.height_variance_m2(at.x_m, at.y_m) + second.height_variance_m2(at.x_m, at.y_m)) &&
            square_m2 > 4.0f * share_m2;
   };
   const float at_first_m = above_m(first), at_second_m = above_m(second);
@@ -124,7 +124,7 @@ bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderR
       2.0f * share_m2 / border.pairs +
       0.25f * (first.rise_variance_m2(border.dx_m, border.dy_m) + second.rise_variance_m2(border.dx_m, border.dy_m));
   const float square_m2 = jump_m * jump_m;
-  return jump_m * toward > 0.0f && square_m2 > share_m2 && square_m2 > 9.0f * variance_m2;
+  return jump_m * toward > 0.0f && square_m2 > share_m2 && square_m2 > gate * variance_m2;
 }
 
 /// The angle, across the line along which they meet, and what is known of it; all times its own square.
@@ -135,7 +135,7 @@ bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) cons
     return plane.variance_m2 * (x * x * plane.pxx + 2.0f * x * y * plane.pxy + y * y * plane.pyy);
   };
   const float bend = prior_.curvature_1_m * (x * (second.x_m - first.x_m) + y * (second.y_m - first.y_m));
-  return square * square > 9.0f * (variance(first) + variance(second) + bend * bend);
+  return square * square > gate * (variance(first) + variance(second) + bend * bend);
 }
 
 Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {
