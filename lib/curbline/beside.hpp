@@ -4,7 +4,6 @@
 // from it cannot be. Cost: two cells a border and side.
 #pragma once
 
-#include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {

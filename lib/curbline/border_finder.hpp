@@ -101,6 +101,7 @@ class BorderFinder {
   int away(const Line& line, int along) const {
     return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
   }
+  int cells_of(const Line& line) const { return line.axis == 0 ? dem_.rows() : dem_.cols(); }
   float pitch_m(const Line& line) const { return line.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
   /// Of the middle of the line.
   float across_m(const Line& line) const {
@@ -216,7 +217,8 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first.label < gap.second.label;
   const Place& low = rising ? gap.first : gap.second;
   const Place& high = rising ? gap.second : gap.first;
-  Border border = border_at(gap.line, middle_m(gap));
+  const float along_m = middle_m(gap);
+  Border border = border_at(gap.line, along_m);
   border.probability = 1.0f - same_plane(gap);
   border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap.line);
   border.off_m = above_m(gap.line, high.along, mixture_.plane(high.label)) -
@@ -224,7 +226,6 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.low = low.label;
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
-  const float along_m = gap.line.axis == 0 ? border.x_m : border.y_m;
   border.beside_low = beside(gap.line, along_m, -border.sign, low.label);
   border.beside_high = beside(gap.line, along_m, border.sign, high.label);
   return border;
@@ -237,7 +238,7 @@ Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward
   const Plane& plane = mixture_.plane(label);
   const float slope_m2 = dem_.slope_m2(plane);
   const auto lies_alone = [&](int along) {
-    if (along < 0 || along >= (line.axis == 0 ? dem_.rows() : dem_.cols())) return false;
+    if (along < 0 || along >= cells_of(line)) return false;
     const int s = slot(line, along);
     const Cell& cell = dem_.cell(s);
     return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != none && mixture_.on_ground(s) &&
@@ -268,7 +269,7 @@ auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> En
     last += toward * g;
     if (field_.label(slot(line, last)) != first.label || toward * (last - first.along) >= widest) return {};
   }
-  const bool at_end = last == 0 || last == (line.axis == 0 ? dem_.rows() : dem_.cols()) - 1;
+  const bool at_end = last == 0 || last == cells_of(line) - 1;
   if (at_end) return {};  // the window's, perhaps not the face's
   return {line, {first.label, static_cast<std::int16_t>(last)}, toward};
 }

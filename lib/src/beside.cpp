@@ -1,5 +1,7 @@
 #include "curbline/beside.hpp"
 
+#include "curbline/math.hpp"
+
 namespace curbline {
 
 Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells) {
