@@ -89,6 +89,13 @@ class Budget(unittest.TestCase):
         rows = [("stack", "pipeline", 4097), ("ram", "pipeline", 100), ("", "dem", 90)]
         self.assertEqual(budget.print_table(board, rows, {"stack": {"pipeline": 4096}, "ram": {"pipeline": 100}}, {("stack", "pipeline"): 4000}), 1)
 
+    def test_the_mean_of_simulated_drives_alone_is_not_judged_by_the_budget_of_all(self):
+        board = budget.boards.BOARDS["cortex-m7"]
+        rows = [("instructions", "worst", 7), ("", "mean", 4)]
+        allowed = {"instructions": {"worst": 6, "mean": 3}}
+        self.assertEqual(budget.print_table(board, rows, allowed, {}), 2)
+        self.assertEqual(budget.print_table(board, rows, budget.without_recorded(allowed), {}), 1)
+
 
 if __name__ == "__main__":
     unittest.main()
