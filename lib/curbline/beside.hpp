@@ -1,9 +1,10 @@
 // The ground beside a border may lie off the plane that it bears: a gutter or the camber of a road, too narrow or too
 // weak for a plane of its own. The two cells next to the border's own tell, on each side, carried on to the border.
 // What lies off toward the other side may be the readings of both that a cell mixes, and is left; what lies off away
-// from it cannot be. Cost: two cells a border and side.
+// from it cannot be. What is left tells how wrong the plane may be there. Cost: two cells a border and side.
 #pragma once
 
+#include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {
@@ -27,13 +28,28 @@ struct Beside {
   }
 };
 
-/// By how much a side lies farther from the other one than its plane does, and the variance.
+/// By how much the ground of a side lies farther from the other side than its plane does, on the mean of the borders,
+/// and the variance of that. Below 0 it lies nearer.
 struct Deviation {
   float away_m = 0.0f, variance_m2 = 0.0f;
+
+  /// It lies farther by three standard deviations: the ground beside the border is not the plane's.
+  bool found() const { return away_m > 0.0f && square(away_m) > gate * variance_m2; }
+  /// Variance of the side's height there. The cells' own if they tell it, else what they lie off the plane beyond that:
+  /// it may be as wrong.
+  float height_variance_m2() const { return found() ? variance_m2 : beyond_m2(); }
+  /// Of that what makes the planes lie farther apart than the ground does.
+  float too_far_m2() const { return away_m < 0.0f ? beyond_m2() : 0.0f; }
+
+ private:
+  float beyond_m2() const {
+    const float m2 = square(away_m) - variance_m2;
+    return m2 > 0.0f ? m2 : 0.0f;
+  }
 };
 
 /// Of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow. `away` is 1 if
-/// the other side lies below, -1 if above. Each cell is one observation; none within three standard deviations.
+/// the other side lies below, -1 if above. Each cell is one observation; of no border it is 0.
 Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells);
 
 }  // namespace curbline

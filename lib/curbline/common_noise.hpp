@@ -49,10 +49,10 @@ class CommonNoise {
   /// these ten rows.
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
-  /// Share of the expected noise, no less than the ground's texture makes and no more than PlanePrior::common_share,
-  /// which it is too as long as there is no plane: of the patches, each weighed by its cells, the one that a third of
-  /// them lie below. Two curbs side by side may cross half of the patches.
-  float share(const PlanePrior& prior, float latency_sd_s) const;
+  /// What the points of a cell share: of the patches, each weighed by its cells, the one that a third of them lie
+  /// below. Two curbs side by side may cross half of the patches. At least PlanePrior::least_common_share of the
+  /// expected noise and at most PlanePrior::common_share, which it is too as long as there is no plane.
+  float common_m2(const PlanePrior& prior, float latency_sd_s) const;
 
  private:
   static constexpr int side = PatchResiduals::side;
@@ -111,14 +111,14 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
 }
 
 template <Limits limits>
-float CommonNoise<limits>::share(const PlanePrior& prior, float latency_sd_s) const {
+float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s) const {
   auto left = patches_;
   float cells = 0.0f, growth_m2_s2 = 0.0f;
   for (const Patch& patch : left) {
     cells += patch.cells;
     growth_m2_s2 += patch.growth_m2_s2;
   }
-  if (!(cells > 0.0f)) return prior.common_share;
+  if (!(cells > 0.0f)) return prior.common_m2();
   float common_m2 = 0.0f;
   for (float passed = 0.0f; 3.0f * passed < cells;) {  // the least first, each once
     Patch* least = nullptr;
@@ -130,9 +130,8 @@ float CommonNoise<limits>::share(const PlanePrior& prior, float latency_sd_s) co
     least->cells = 0.0f;
   }
   common_m2 += latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
-  float share = (common_m2 > prior.texture_m2 ? common_m2 : prior.texture_m2) / prior.noise_m2;
-  if (share < PlanePrior::least_common_share) share = PlanePrior::least_common_share;
-  return share < prior.common_share ? share : prior.common_share;
+  const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
+  return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
 }
 
 }  // namespace curbline

@@ -94,7 +94,11 @@ class CurbTracer {
   void go_on(const Stages& stages, const Border& border, Piece& piece, bool at_start) const;
   Curb curb_of(const Stages& stages, const Border& border, const Piece& piece) const;
   static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
-  static float follow_ground(const Stages& stages, const Piece& piece, float shadow_m, Curb& curb);
+  struct Deviations {
+    Deviation low, high;
+  };
+  static Deviations deviations_of(const Stages& stages, const Border& border, const Piece& piece, float height_m,
+                                  float shadow_m);
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   void keep_ids(Work& work, float near_m);
 
@@ -312,25 +316,25 @@ Curb CurbTracer<limits>::curb_of(const Stages& stages, const Border& border, con
   const float height_m = high.height_m(middle_x, middle_y) - low.height_m(middle_x, middle_y) - piece.drop_m;
   const float cell_x_m = stages.dem.cell_x_m(), cell_y_m = stages.dem.cell_y_m();
   const float reach_m = static_cast<float>(settings_.link_reach) * (cell_x_m < cell_y_m ? cell_x_m : cell_y_m);
-  curb.kind = kind_of(low, high, piece.line, {height_m, square_root(piece.variance_m2), piece.half_gap_m, reach_m});
+  const Deviations sides = deviations_of(stages, border, piece, height_m, 0.0f);
+  const float height_sd_m = square_root(piece.variance_m2 + sides.low.too_far_m2() + sides.high.too_far_m2());
+  curb.kind =
+      kind_of(low, high, piece.line, {height_m, height_sd_m, piece.half_gap_m, reach_m, stages.dem.prior().texture_m2});
   if (curb.kind != CurbKind::step_up) return curb;
   curb.height_m = piece.low_is_near ? height_m : -height_m;
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   return curb;
 }
 
-/// Where the ground beside a step lies off its planes, the height is the ground's. Both sides begin at the near end of
-/// a shadow, in the middle of which the borders lie. Returns the variance that this adds.
+/// How the ground lies off its planes beside a piece of which the height is above 0 if `high` is the higher plane. Both
+/// sides begin at the near end of a shadow, in the middle of which the borders lie.
 template <Limits limits>
-float CurbTracer<limits>::follow_ground(const Stages& stages, const Piece& piece, float shadow_m, Curb& curb) {
-  const float up = curb.height_m < 0.0f ? -1.0f : 1.0f;
-  const float shadow_cells = 0.5f * shadow_m / piece.cell_m;
-  const auto [near, far] = piece.low_is_near ? std::pair{piece.beside_low, piece.beside_high}
-                                             : std::pair{piece.beside_high, piece.beside_low};
-  const Deviation of_near = deviation(near, stages.mixture.plane(curb.near_label), -up, -shadow_cells);
-  const Deviation of_far = deviation(far, stages.mixture.plane(curb.far_label), up, shadow_cells);
-  curb.height_m += up * (of_near.away_m + of_far.away_m);
-  return of_near.variance_m2 + of_far.variance_m2;
+auto CurbTracer<limits>::deviations_of(const Stages& stages, const Border& border, const Piece& piece, float height_m,
+                                       float shadow_m) -> Deviations {
+  const float up = height_m < 0.0f ? -1.0f : 1.0f;
+  const float beyond_cells = (piece.low_is_near ? 0.5f : -0.5f) * shadow_m / piece.cell_m;
+  return {deviation(piece.beside_low, stages.mixture.plane(border.low), -up, -beyond_cells),
+          deviation(piece.beside_high, beyond(stages, border), up, beyond_cells)};
 }
 
 /// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
@@ -368,7 +372,14 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
     const float above_m = stages.view.z_m - stages.mixture.plane(curb.near_label).height_m(piece.x_m, piece.y_m);
     shadow_m = move_before_shadow(piece.line, stages.view, {-curb.height_m, above_m, piece.gap_m + piece.cell_m});
   }
-  if (is_step(curb) && !one_sided) variance_m2 += follow_ground(stages, piece, shadow_m, curb);
+  if (is_step(curb)) {
+    const float toward = curb.height_m < 0.0f ? -1.0f : 1.0f;
+    const auto [low, high] = deviations_of(stages, border, piece, piece.low_is_near ? toward : -toward, shadow_m);
+    for (const Deviation& side : {low, high}) {
+      if (side.found()) curb.height_m += toward * side.away_m;
+      variance_m2 += side.height_variance_m2();
+    }
+  }
   if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;

@@ -63,9 +63,15 @@ class Dem {
   /// what a cell of more than one surface has of earlier ones fade. O(1).
   bool add(const Point& point);
 
-  /// What is known before any point; PlanePrior::common_share as it was set last.
+  /// What is known before any point; PlanePrior::common_share by what was found last.
   const PlanePrior& prior() const { return prior_; }
-  void set_common_share(float share) { prior_.common_share = share; }
+  /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
+  float common_m2() const { return common_m2_; }
+  /// As evidence it is no less than the ground's texture.
+  void set_common_m2(float found_m2) {
+    common_m2_ = found_m2;
+    prior_.common_share = (found_m2 > prior_.texture_m2 ? found_m2 : prior_.texture_m2) / prior_.noise_m2;
+  }
 
   int rows() const { return settings_.rows; }
   int cols() const { return settings_.cols; }
@@ -216,6 +222,7 @@ class Dem {
 
   WindowSettings settings_{};
   PlanePrior prior_{};
+  float common_m2_ = 0.0f;
   float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
@@ -232,6 +239,7 @@ template <Limits limits>
 void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) {
   settings_ = settings;
   prior_ = prior;
+  common_m2_ = prior.common_m2();
   cells_.fill(Cell{});
   touched_.fill(0);
   growth_.fill(0);

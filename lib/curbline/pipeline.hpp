@@ -442,7 +442,7 @@ void Pipeline<limits>::follow_curbs() {
 template <Limits limits>
 void Pipeline<limits>::follow_noise() {
   common_noise_.follow(dem_, plane_mixture_);
-  dem_.set_common_share(common_noise_.share(settings_.planes.prior, tilt_latency_.sd_s()));
+  dem_.set_common_m2(common_noise_.common_m2(settings_.planes.prior, tilt_latency_.sd_s()));
 }
 
 template <Limits limits>

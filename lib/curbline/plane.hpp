@@ -110,7 +110,7 @@ struct Plane {
   float z_m = 0.0f;                          ///< height there
   float slope_x = 0.0f, slope_y = 0.0f;      ///< dz/dx, dz/dy
   float variance_m2 = 0.0f;                  ///< of a point of its region about the plane
-  float fit_variance_m2 = 0.0f;              ///< of a point of the cells that it is fitted to
+  float fit_variance_m2 = 0.0f;              ///< of what a cell that it is fitted to counts for: a point, or their mean
   float cells = 0.0f;                        ///< how many these are; 0: no such plane
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
@@ -133,5 +133,9 @@ struct Plane {
 /// leaves open is no steeper than ground is. And mean square residual, not below what the points of a cell share of the
 /// expected noise: averaging over a cell does not help against that.
 Plane fit_plane(const PlaneMoments& moments, const PlanePrior& prior);
+
+/// The same from the mean heights of cells alone (their own zz is 0): the mean square residual is that of such means,
+/// of which three have gone into the plane, not below what the points of a cell were found to share, `common_m2`.
+Plane fit_plane_to_means(const PlaneMoments& moments, const PlanePrior& prior, float common_m2);
 
 }  // namespace curbline

@@ -174,16 +174,17 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -
   return fitted;
 }
 
-/// Fits planes that are ground to those cells of their regions that hold nothing else, and do not bear another plane on
-/// which they lie better: what mixes both sides of a step would tilt the plane of a small region toward the other.
-/// Where the step is low the heights within a cell do not show it; but beside a step down it lies too high, and all
-/// cells along the step do alike: together they are one observation, too high by up to the half of the step, anywhere.
+/// Fits planes that are ground to the mean heights of those cells of their regions that hold nothing else, and do not
+/// bear another plane on which they lie better: what mixes both sides of a step would tilt the plane of a small region
+/// toward the other. Where the step is low the heights within a cell do not show it; but beside a step down it lies too
+/// high, and all cells along the step do alike: together they are one observation, too high by up to the half of the
+/// step, anywhere.
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
                                   LabelOf&& label_of) {
   struct Clean {
-    bool wanted = false, wide = false;
+    bool wanted = false, wide = false, steep = false;
     float slope_m2 = 0.0f;  ///< Dem::slope_m2() of the region's plane
     PlaneMoments inner, beside;
     float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
@@ -192,6 +193,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   for (std::size_t l = 0; l < clean.size(); ++l) {
     clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
     clean[l].wide = planes_[l].cells >= wide_cells;
+    clean[l].steep = square(planes_[l].slope_x) + square(planes_[l].slope_y) > square(steepest_ramp);
     clean[l].slope_m2 = dem.slope_m2(planes_[l]);
   }
   dem.for_each_valid([&](int i, int j, int s) {
@@ -202,7 +204,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (dem.mixed(cell, of_plane.slope_m2)) return;
     const LabelType borne = label_of(s);
     if (borne != label && borne != none && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
-    const PlaneMoments moments = dem.moments(i, j, cell);
+    PlaneMoments moments = dem.moments(i, j, cell);
+    if (!of_plane.steep) moments.zz = 0.0f;
     const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
     of_plane.beside.add_cell(moments);
@@ -215,7 +218,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
     moments.add(beside);
     const float of_region_m2 = planes_[l].variance_m2;
-    planes_[l] = fit_plane(moments, dem.prior());
+    planes_[l] =
+        clean[l].steep ? fit_plane(moments, dem.prior()) : fit_plane_to_means(moments, dem.prior(), dem.common_m2());
     planes_[l].variance_m2 = of_region_m2;
   }
 }

@@ -25,7 +25,8 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
   const float steep = across < 0.0f ? -across : across,
               step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
   const float height_m2 = drawn.height_sd_m * drawn.height_sd_m;
-  const float cell_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
+  const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
+  const float cell_m2 = mean_m2 > drawn.texture_m2 ? mean_m2 : drawn.texture_m2;
   const bool meet_near = step_m <= steep * drawn.reach_m + 2.0f * drawn.height_sd_m;
   const bool crease = meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * square_root(height_m2 + cell_m2);
   if (!crease) return CurbKind::step_up;

@@ -23,6 +23,27 @@ Slopes solve(const PlaneMoments& m, float ridge) {
   return {x, y, determinant, residual > 0.0f ? residual : 0.0f};
 }
 
+/// With the variance that a sum of squares has by a weight.
+Plane fitted(const PlaneMoments& m, const PlanePrior& prior, float weight, float least_m2) {
+  const float ridge = prior.noise_m2 / (steepest_ramp * steepest_ramp);
+  const Slopes slopes = solve(m, ridge);
+  // Positions weigh by points; one cell is one observation.
+  const float per_cell = m.weight / m.cells / slopes.determinant;
+  Plane plane;
+  plane.x_m = m.x;
+  plane.y_m = m.y;
+  plane.z_m = m.z;
+  plane.slope_x = slopes.x;
+  plane.slope_y = slopes.y;
+  const float mean_square = slopes.residual_m2 / weight;
+  plane.variance_m2 = plane.fit_variance_m2 = mean_square > least_m2 ? mean_square : least_m2;
+  plane.cells = m.cells;
+  plane.pxx = (m.yy + ridge) * per_cell;
+  plane.pxy = -m.xy * per_cell;
+  plane.pyy = (m.xx + ridge) * per_cell;
+  return plane;
+}
+
 }  // namespace
 
 void PlaneMoments::add(const PlaneMoments& other) {
@@ -139,24 +160,12 @@ bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) cons
 }
 
 Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {
-  const float ridge = prior.noise_m2 / (steepest_ramp * steepest_ramp);
-  const Slopes slopes = solve(m, ridge);
-  // Positions weigh by points; one cell is one observation.
-  const float per_cell = m.weight / m.cells / slopes.determinant;
-  Plane plane;
-  plane.x_m = m.x;
-  plane.y_m = m.y;
-  plane.z_m = m.z;
-  plane.slope_x = slopes.x;
-  plane.slope_y = slopes.y;
-  const float mean_square = slopes.residual_m2 / m.weight;
-  const float floor_m2 = prior.common_m2();
-  plane.variance_m2 = plane.fit_variance_m2 = mean_square > floor_m2 ? mean_square : floor_m2;
-  plane.cells = m.cells;
-  plane.pxx = (m.yy + ridge) * per_cell;
-  plane.pxy = -m.xy * per_cell;
-  plane.pyy = (m.xx + ridge) * per_cell;
-  return plane;
+  return fitted(m, prior, m.weight, prior.common_m2());
+}
+
+Plane fit_plane_to_means(const PlaneMoments& m, const PlanePrior& prior, float common_m2) {
+  const float left = m.cells > 4.0f ? m.cells - 3.0f : 1.0f;
+  return fitted(m, prior, m.weight * left / m.cells, common_m2);
 }
 
 }  // namespace curbline

@@ -54,7 +54,7 @@ float share_of(const Stages<limits>& stages, const PlanePrior& prior, float late
   for (int row = 0; row < stages.dem.rows(); row += PatchResiduals::side) {
     common_noise.follow(stages.dem, stages.mixture);
   }
-  return common_noise.share(prior, latency_sd_s);
+  return common_noise.common_m2(prior, latency_sd_s) / prior.noise_m2;
 }
 
 /// Share found on a map of such heights, where it may be anything.
@@ -64,7 +64,6 @@ float share_of(Height&& height_m) {
   test::fill(stages.dem, height_m);
   stages.infer(true);
   PlanePrior prior;
-  prior.texture_m2 = 0.0f;
   prior.common_share = 100.0f;
   return share_of(stages, prior);
 }
@@ -148,9 +147,7 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
     }
   }
   stages.infer(true);
-  PlanePrior prior;
-  prior.texture_m2 = 0.0f;
-  CHECK(share_of(stages, prior) == Approx(0.16).epsilon(0.4));
+  CHECK(share_of(stages, PlanePrior{}) == Approx(0.16).epsilon(0.4));
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
@@ -167,7 +164,7 @@ TEST_CASE("common noise: what is not known of the tilt's latency is common to al
   prior.common_share = 1.0f;
   const auto share = [&](float latency_sd_s) { return share_of(stages, prior, latency_sd_s); };
   CHECK(share(0.01f) == Approx(0.64).epsilon(0.01));
-  CHECK(share(0.001f) == prior.texture_m2 / prior.noise_m2);
+  CHECK(share(0.001f) == PlanePrior::least_common_share);
 }
 
 TEST_CASE("common noise: uneven ground has no say as long as a third is even") {
@@ -181,17 +178,14 @@ TEST_CASE("common noise: uneven ground has no say as long as a third is even") {
   CHECK(share_of(ground(most(0.8f))) > 1.0f);
 }
 
-TEST_CASE("common noise: it lies between the texture's share and that of the settings, which holds where no plane is") {
+TEST_CASE("common noise: it lies between the least share and that of the settings, which holds where no plane is") {
   Stages<limits> stages(map_settings());
   const PlanePrior prior;
   const auto share = [&] { return share_of(stages, prior); };
   CHECK(share() == prior.common_share);
-  test::fill(stages.dem, Unevenness(0.001, 0.0, 0.0));
+  test::fill(stages.dem, [](double, double) { return 0.0; });
   stages.infer(true);
-  CHECK(share() == prior.texture_m2 / prior.noise_m2);
-  PlanePrior without_texture;
-  without_texture.texture_m2 = 0.0f;
-  CHECK(share_of(stages, without_texture) >= PlanePrior::least_common_share);
+  CHECK(share() == PlanePrior::least_common_share);
   Stages<limits> rough(map_settings());
   test::fill(rough.dem, Unevenness(0.01, 0.5, 0.5));
   rough.infer(true);

@@ -58,6 +58,18 @@ std::string picture(const Map& dem) {
   return rows;
 }
 
+TEST_CASE("dem: what the points of a cell were found to share is no less, as evidence, than the ground's texture") {
+  const PlanePrior prior;
+  Map dem = make_map(moving());
+  CHECK(dem.common_m2() == prior.common_m2());
+  dem.set_common_m2(4e-5f);
+  CHECK(dem.common_m2() == 4e-5f);
+  CHECK(dem.prior().common_m2() == Approx(4e-5f));
+  dem.set_common_m2(1e-6f);
+  CHECK(dem.common_m2() == 1e-6f);
+  CHECK(dem.prior().common_m2() == Approx(prior.texture_m2));
+}
+
 TEST_CASE("dem: every cell of the window has a slot of its own") {
   Map dem = make_map(moving());
   for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {7.3f, -3.1f}, {-55.0f, 20.0f}}) {

@@ -213,6 +213,23 @@ TEST_CASE("plane fit: no plane is known better than what the points of a cell sh
   CHECK(fit_plane(of_points(points), prior).variance_m2 == prior.common_share * prior.noise_m2);
 }
 
+TEST_CASE("plane fit: of the mean heights of cells the stated variance is that of such a mean") {
+  Noise noise;
+  const double sd = 0.004;
+  const auto variance_m2 = [&](double side_m, float common_m2) {
+    float mean_m2 = 0.0f;
+    for (int k = 0; k < 400; ++k) {
+      const PlaneMoments moments =
+          of_points(test::sample({0, side_m, 0, side_m}, 0.1, sd, noise, [](double, double) { return 0.0; }));
+      mean_m2 += fit_plane_to_means(moments, no_floor(), common_m2).fit_variance_m2 / 400.0f;
+    }
+    return mean_m2;
+  };
+  CHECK(variance_m2(1.0, 0.0f) == Approx(sd * sd).epsilon(0.05));
+  CHECK(variance_m2(0.5, 0.0f) == Approx(sd * sd).epsilon(0.05));  // three of 25 have gone into the plane
+  CHECK(variance_m2(1.0, 1e-4f) == Approx(1e-4));
+}
+
 TEST_CASE("plane fit: what a row of cells leaves open of its slope is no steeper than a ramp") {
   Noise noise;
   const auto points = test::sample({0, 0.01, 0, 1}, 0.01, 0.01, noise, [](double, double) { return 0.0; });
