@@ -9,7 +9,8 @@
 //     falls there at least half as steeply as the rays, as about an edge that is bent, or is so narrow that its slope
 //     is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so wider.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
-//     long, that rises above the ground: readings that mix the obstacle and the ground around it.
+//     long, that rises above the ground: readings that mix the obstacle and the ground around it. One that falls away
+//     from the laser as its rays do is a veil before the obstacle.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
 // tell nothing of it. A plane that falls away as rays do and is not known to be a veil is borne by its cells, but no
@@ -318,14 +319,16 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   if (tally.face()) return Kind::mixture;
   if (obstacle) return Kind::cover;
   if (ground == nullptr || !plane.alive()) return Kind::ground;
-  if (tally.fringe() && stands_out(plane, *ground)) return Kind::cover;
+  const bool fringe = tally.fringe() && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
-  if (laser_m <= highest_step_m) return Kind::ground;
+  if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
   const bool steep = no_ramp(plane, view);
-  if (tally.veil(steep)) return Kind::mixture;
   // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
-  if (!(above_m < 0.5f * laser_m)) return Kind::ground;
+  const bool as_rays = above_m < 0.5f * laser_m;
+  if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
+  if (tally.veil(steep)) return Kind::mixture;
+  if (!as_rays) return Kind::ground;
   return holds_laser(plane, view, above_m) ? Kind::mixture : steep ? Kind::steep : Kind::ground;
 }
 

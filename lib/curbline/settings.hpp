@@ -80,7 +80,7 @@ enum class PlaneUpdate : unsigned char {
 
 struct PlaneSettings {
   PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 8.0f;  ///< >= 3; regions below are not planes: eight cells are the least that a 2 x 4 strip has
+  float min_cells = 4.0f;  ///< >= 3; regions below are not planes: one more than a plane has parameters
   PlaneUpdate update = PlaneUpdate::regions;
 };
 

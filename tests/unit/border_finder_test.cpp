@@ -295,12 +295,12 @@ TEST_CASE("border finder: where a veil follows the ground and nothing is seen be
 
 //  o
 //  _________   ____
-//           . .         as the veil, but of six cells, in the middle of the way; or a drain, behind which it goes on
+//           .           as the veil, but of three cells, in the middle of the way; or a drain, behind which it goes on
 TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain does not") {
   const auto curbs = [](double to_m) {
     Stages<small_limits> stages(small_settings());
     test::Noise noise;
-    const auto in_drain = [](double x, double y) { return x >= 1.4 && x < 1.6 && y >= 1.0 && y < 1.3; };
+    const auto in_drain = [](double x, double y) { return x >= 1.4 && x < 1.5 && y >= 1.0 && y < 1.3; };
     for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, 0.0, noise,
                                        [&](double x, double y) { return in_drain(x, y) ? -0.1 : 0.0; })) {
       const double x = static_cast<double>(p.x_m), y = static_cast<double>(p.y_m);
@@ -316,8 +316,33 @@ TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, 
   CHECK(brinks[0].kind == CurbKind::step_down);
   CHECK(brinks[0].far_label == no_label<small_limits>);
   CHECK(brinks[0].x0_m == Approx(1.4).margin(0.03));
-  CHECK(brinks[0].height_m == Approx(-0.12).margin(0.03));
+  CHECK(brinks[0].height_m == Approx(-0.2).margin(0.03));  // to the far side of a cell whose middle is seen
   CHECK(curbs(1.4).empty());
+}
+
+//  o             |
+//  ________      |       a car, before which the edge and a row of the road are seen
+//          \\    |
+//            \\__|
+TEST_CASE("border finder: a veil before an obstacle hides a step as one beside it does") {
+  Stages<small_limits> stages(small_settings());
+  // The road, lower and seen to its end beside the car, is the largest plane: what mixes lies above it.
+  test::fill(stages.dem, [](double x, double y) {
+    if (x < 0.8) return 0.0;
+    if (y < 1.6) return -0.2;
+    if (x < 1.0) return -0.05 - 1.2 * (x - 0.85);
+    return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+  });
+  stages.view.y_m = 1.2f;
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.trace(0.0f, 1.2f);
+  for (const double y : {1.75, 2.0, 2.25}) {
+    CHECK(std::any_of(stages.tracer.curbs().begin(), stages.tracer.curbs().end(), [&](const Curb& curb) {
+      const auto [low, high] = std::minmax(curb.y0_m, curb.y1_m);
+      return curb.kind == CurbKind::step_down && static_cast<double>(low) < y && y < static_cast<double>(high) &&
+             std::abs(curb.x0_m - 0.8f) < 0.05f;
+    }));
+  }
 }
 
 TEST_CASE("border finder: a veil at the window's end hides a step all the same") {

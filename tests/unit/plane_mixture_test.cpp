@@ -204,10 +204,12 @@ TEST_CASE("plane mixture: regions smaller than the bound are no planes") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
   add_points(*stages, {0, 1.2, 0, 1.2}, noise, [](double, double) { return 0.0; });
-  add_points(*stages, {1.2, 1.5, 0, 0.2}, noise, [](double, double) { return 0.5; });  // six cells
+  add_points(*stages, {1.2, 1.5, 0, 0.1}, noise, [](double, double) { return 0.5; });    // three cells
+  add_points(*stages, {1.8, 2.0, 1.8, 2.0}, noise, [](double, double) { return 0.5; });  // four
   stages->infer();
-  CHECK(alive(*stages) == 1);
+  CHECK(alive(*stages) == 2);
   CHECK(stages->mixture.region_label(stages->dem.slot(13, 0)) == stages->mixture.none);
+  CHECK(stages->mixture.region_label(stages->dem.slot(18, 18)) != stages->mixture.none);
 }
 
 TEST_CASE("plane mixture: with more regions than planes the largest win and the others are counted") {
