@@ -127,16 +127,16 @@ class BorderFinder {
 template <Limits limits>
 bool BorderFinder<limits>::bears_ground(int slot) const {
   const LabelType label = field_.label(slot);
-  return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.falls_as_rays(label);
+  return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.may_be_veil(label);
 }
 
 /// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of a
-/// region too small for a plane, or of a plane that falls away as the rays do.
+/// region too small for a plane, or of a plane that may be a veil.
 template <Limits limits>
 bool BorderFinder<limits>::is_veil(int slot) const {
   if (mixture_.region_label(slot) == none) return true;
   const LabelType label = field_.label(slot);
-  return mixture_.on_ground(slot) ? label != none && mixture_.falls_as_rays(label) : !mixture_.covered(slot);
+  return mixture_.on_ground(slot) ? label != none && mixture_.may_be_veil(label) : !mixture_.covered(slot);
 }
 
 /// Within three standard deviations.

@@ -13,9 +13,10 @@
 //     from the laser as its rays do is a veil before the obstacle.
 // No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
-// tell nothing of it. A plane that falls away as rays do and is not known to be a veil is borne by its cells, but no
-// curb has it for a side: it may be a veil with what little the window holds behind it. Cost: three passes over the
-// window.
+// tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
+// for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
+// away more steeply than a ramp and is no wider than the laser's spot on an edge, however the rays pass it, blurs it.
+// Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -43,19 +44,20 @@ class Ground {
               LabelOf&& label_of, Changed&& changed);
 
   bool is(int label) const { return borne(kind(label)); }
-  /// Does it, of planes that are ground, fall away from the laser as its rays do?
-  bool falls_as_rays(int label) const { return kind(label) == Kind::steep; }
+  /// May it, of planes that are ground, be a veil?
+  bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
   /// Is it an obstacle or a fringe?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
   using PlaneFlags = std::array<bool, limits.planes>;
-  enum class Kind : std::uint8_t { ground, steep, mixture, cover };
-  static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::steep; }
+  enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
+  static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
 
   /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
-  /// beam of 10 mrad is on the ground 6 m away, seen from 1.2 m above it.
+  /// beam is on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
+  static constexpr float beam_rad = 0.01f;       ///< divergence of a beam
   static constexpr int widest_gap = 2;           ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
   static constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
@@ -86,7 +88,8 @@ class Ground {
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
-    std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
+    std::array<float, 2> short_cells{}, blurred_cells{};  ///< in short runs; as many as the spot on an edge there blurs
+    std::array<float, 2> fringe_cells{};                  ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
       cells += 1.0f;
@@ -111,8 +114,12 @@ class Ground {
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
+    bool no_wider_than_spot() const { return no_wider_than_spot(0) || no_wider_than_spot(1); }
 
    private:
+    bool no_wider_than_spot(std::size_t axis) const {
+      return most(short_cells[axis]) && short_cells[axis] <= blurred_cells[axis];
+    }
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
     bool veil(const Shadowed& in_shadow, bool steep) const {
       return most(in_shadow.cells) &&
@@ -126,6 +133,15 @@ class Ground {
     float cell_m;          ///< of a cell, along it
     float end_m;           ///< Viewpoint::end_x_m, or end_y_m
 
+    bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
+    /// To the near end of a run; of a robot that drives, as far as it has seen it from. 0 and less: the laser is above.
+    float away_m(int first, int last) const {
+      const bool is_ahead = ahead(first);
+      const float away_m =
+          is_ahead ? static_cast<float>(first) * cell_m - eye_m : eye_m - static_cast<float>(last + 1) * cell_m;
+      const float from_end_m = is_ahead ? end_m - eye_m : eye_m;
+      return end_m > 0.0f && away_m > 0.0f && away_m < from_end_m ? from_end_m : away_m;
+    }
     /// The same for an edge that lies across the grid, along a strip: as if the laser were where the edge's parallel
     /// through it crosses the line, which is `aside_m` from the laser.
     Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
@@ -152,18 +168,22 @@ class Ground {
     /// shadow (shadow.hpp), and a cell for what those at its ends have of the planes? Then how far it falls. Inlined,
     /// since calls of it would cost the worst line of a Cortex-M7 20,000 instructions more (tools/budget).
     [[gnu::always_inline]] bool in_shadow(const Run& before, const Run& next, const Sight& sight, Fall& fall) const {
-      const float ahead_m = static_cast<float>(first) * sight.cell_m - sight.eye_m;
-      const float behind_m = sight.eye_m - static_cast<float>(last + 1) * sight.cell_m;
-      const bool ahead = ahead_m > 0.0f;
+      const bool ahead = sight.ahead(first);
       const float near_m = ahead ? before.last_height_m : next.first_height_m;
       const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
-      const float above_m = sight.eye_z_m - near_m, end_m = ahead ? sight.end_m - sight.eye_m : sight.eye_m;
-      float away_m = ahead ? ahead_m : behind_m;
+      const float above_m = sight.eye_z_m - near_m, away_m = sight.away_m(first, last);
       if (!(above_m > 0.0f) || !(away_m > 0.0f)) return false;
-      if (sight.end_m > 0.0f && away_m < end_m) away_m = end_m;
       fall.of_rays_m = static_cast<float>(length() - 1) * sight.cell_m * above_m / away_m;
       fall.own_m = ahead ? first_height_m - last_height_m : last_height_m - first_height_m;
       return fall.of_rays_m <= drop_m;
+    }
+    /// Cells that hold something of both sides of an edge here, as long as the spot on the ground and one more.
+    /// `aside_m`: how far the line is from the laser.
+    float blurred_cells(const Sight& sight, float aside_m) const {
+      const float above_m = sight.eye_z_m - first_height_m, away_m = sight.away_m(first, last);
+      if (!(above_m > 0.0f)) return 0.0f;
+      const float range_squared = above_m * above_m + away_m * away_m + aside_m * aside_m;
+      return 1.0f + beam_rad * range_squared / (above_m * sight.cell_m);
     }
   };
 
@@ -182,11 +202,11 @@ class Ground {
   static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
     return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
-  /// Is its slope, between its centroid and the laser, more than that of any ramp?
-  static bool no_ramp(const Plane& plane, const Viewpoint& view) {
-    const float dx_m = view.x_m - plane.x_m, dy_m = view.y_m - plane.y_m;
-    const float rise_m = plane.slope_x * dx_m + plane.slope_y * dy_m;
-    return rise_m * rise_m > steepest_ramp * steepest_ramp * (dx_m * dx_m + dy_m * dy_m);
+  static bool no_ramp(const Plane& plane) {
+    return plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y > steepest_ramp * steepest_ramp;
+  }
+  static bool falls_away(const Plane& plane, const Viewpoint& view) {
+    return plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
   static bool stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
@@ -221,8 +241,7 @@ template <Limits limits>
 bool Ground<limits>::stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
                                   const Plane& ground) {
   const float above_m = height_above(ground, plane);
-  const float slope_squared = plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y;
-  if (!(above_m > usual_step_m) || slope_squared > steepest_ramp * steepest_ramp) return false;
+  if (!(above_m > usual_step_m) || no_ramp(plane)) return false;
   for (std::size_t l = 0; l < planes.size(); ++l) {
     if (!planes[l].alive() || obstacle[l]) continue;
     if (height_above(ground, planes[l]) < above_m + 0.5f * usual_step_m) continue;
@@ -302,6 +321,10 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
              tally.shadow[axis].add(cells, fall);
            }
            if (run.length() > longest_strip) return;
+           if (no_ramp(planes[run.label])) {  // of others it is not asked
+             tally.short_cells[axis] += cells;
+             tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
+           }
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
            const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
            if (after_high || before_high) tally.fringe_cells[axis] += cells;
@@ -322,14 +345,14 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const bool fringe = tally.fringe() && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
-  const bool steep = no_ramp(plane, view);
+  const bool steep = no_ramp(plane);
   // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
-  if (tally.veil(steep)) return Kind::mixture;
-  if (!as_rays) return Kind::ground;
-  return holds_laser(plane, view, above_m) ? Kind::mixture : steep ? Kind::steep : Kind::ground;
+  if (tally.veil(steep) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
+  const bool blurred = tally.no_wider_than_spot() && falls_away(plane, view);
+  return steep && (as_rays || blurred) ? Kind::doubtful : Kind::ground;
 }
 
 template <Limits limits>

@@ -76,8 +76,8 @@ class PlaneMixture {
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
   /// Is the plane ground, which cells may bear? ground.hpp
   bool ground(int label) const { return ground_.is(label); }
-  /// Does it, being ground, fall away from the laser as a veil before an edge does?
-  bool falls_as_rays(int label) const { return ground_.falls_as_rays(label); }
+  /// May it, being ground, be a veil? No curb has it for a side.
+  bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
   /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.
