@@ -88,8 +88,8 @@ class Ground {
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
-    std::array<float, 2> short_cells{}, blurred_cells{};  ///< in short runs; as many as the spot on an edge there blurs
-    std::array<float, 2> fringe_cells{};                  ///< in strips beside an obstacle higher than a step
+    std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; of planes steeper than a ramp
+    std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
       cells += 1.0f;
@@ -114,12 +114,9 @@ class Ground {
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
-    bool no_wider_than_spot() const { return no_wider_than_spot(0) || no_wider_than_spot(1); }
+    bool blurred_edge() const { return cells <= blurred_cells[0] || cells <= blurred_cells[1]; }
 
    private:
-    bool no_wider_than_spot(std::size_t axis) const {
-      return most(short_cells[axis]) && short_cells[axis] <= blurred_cells[axis];
-    }
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
     bool veil(const Shadowed& in_shadow, bool steep) const {
       return most(in_shadow.cells) &&
@@ -320,11 +317,8 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
                leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m), fall)) {
              tally.shadow[axis].add(cells, fall);
            }
+           if (no_ramp(planes[run.label])) tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
            if (run.length() > longest_strip) return;
-           if (no_ramp(planes[run.label])) {  // of others it is not asked
-             tally.short_cells[axis] += cells;
-             tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
-           }
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
            const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
            if (after_high || before_high) tally.fringe_cells[axis] += cells;
@@ -351,7 +345,7 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
   if (tally.veil(steep) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
-  const bool blurred = tally.no_wider_than_spot() && falls_away(plane, view);
+  const bool blurred = tally.blurred_edge() && falls_away(plane, view);
   return steep && (as_rays || blurred) ? Kind::doubtful : Kind::ground;
 }
 
