@@ -88,7 +88,7 @@ class Ground {
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
-    std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; of planes steeper than a ramp
+    std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
     std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
     void add(float cell_spread_m2, float cell_weight) {
@@ -114,9 +114,10 @@ class Ground {
     bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
-    bool blurred_edge() const { return cells <= blurred_cells[0] || cells <= blurred_cells[1]; }
+    bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
 
    private:
+    bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
     bool veil(const Shadowed& in_shadow, bool steep) const {
       return most(in_shadow.cells) &&
@@ -202,8 +203,9 @@ class Ground {
   static bool no_ramp(const Plane& plane) {
     return plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y > steepest_ramp * steepest_ramp;
   }
-  static bool falls_away(const Plane& plane, const Viewpoint& view) {
-    return plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
+  /// Does it fall away from the laser, and more steeply than a ramp?
+  static bool drops_off(const Plane& plane, const Viewpoint& view) {
+    return no_ramp(plane) && plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
   }
   static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
   static bool stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
@@ -214,7 +216,7 @@ class Ground {
   static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelType, typename LabelOf>
   static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
-                         LabelOf&& label_of, const PlaneFlags& high, Tallies& tallies);
+                         LabelOf&& label_of, const PlaneFlags& high, const PlaneFlags& drops, Tallies& tallies);
   static Kind kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
                       const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
@@ -301,7 +303,8 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                LabelType none, LabelOf&& label_of, const PlaneFlags& high, Tallies& tallies) {
+                                LabelType none, LabelOf&& label_of, const PlaneFlags& high, const PlaneFlags& drops,
+                                Tallies& tallies) {
   const std::array<Sight, 2> sights{
       {{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}, {view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m}}};
   for (std::size_t axis = 0; axis < sights.size(); ++axis) {
@@ -317,7 +320,7 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
                leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m), fall)) {
              tally.shadow[axis].add(cells, fall);
            }
-           if (no_ramp(planes[run.label])) tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
+           if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
            if (run.length() > longest_strip) return;
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
            const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
@@ -345,8 +348,7 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
   if (tally.veil(steep) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
-  const bool blurred = tally.blurred_edge() && falls_away(plane, view);
-  return steep && (as_rays || blurred) ? Kind::doubtful : Kind::ground;
+  return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
 template <Limits limits>
@@ -366,14 +368,15 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   for (int i = 0; i < dem.rows(); ++i) note_edge(i, 0), note_edge(i, dem.cols() - 1);
   for (int j = 0; j < dem.cols(); ++j) note_edge(0, j), note_edge(dem.rows() - 1, j);
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
-  PlaneFlags obstacle{}, high{};
+  PlaneFlags obstacle{}, high{}, drops{};
   for (std::size_t l = 0; l < obstacle.size(); ++l) {
     obstacle[l] = tallies[l].obstacle(cell_area_m2);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
   const Plane* ground = largest(planes, obstacle);
   if (ground != nullptr) add_tops(tallies, planes, *ground, cell_area_m2, obstacle, high);
-  tally_runs(dem, planes, view, none, label_of, high, tallies);
+  for (std::size_t l = 0; l < drops.size(); ++l) drops[l] = !obstacle[l] && drops_off(planes[l], view);
+  tally_runs(dem, planes, view, none, label_of, high, drops, tallies);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);
     const Kind before = kind_[l];
