@@ -15,6 +15,7 @@
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt
 #include "curbline/tilt_latency.hpp"     // how late they are, found on the way
 #include "curbline/pose_track.hpp"       // in: robot poses
+#include "curbline/pose_offset.hpp"      // whether a jump was the robot's
 #include "curbline/line_projection.hpp"  // beams to points with variance
 #include "curbline/point.hpp"            //
 #include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
@@ -25,7 +26,9 @@
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/common_noise.hpp"     // what their cells err alike
 #include "curbline/ground.hpp"           // which planes are ground
+#include "curbline/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/label_field.hpp"      // belief propagation
+#include "curbline/map_comparison.hpp"   // what a line says against the map: to tilt_latency, pose_offset
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell

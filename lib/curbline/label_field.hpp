@@ -1,9 +1,9 @@
 // Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
 // (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
 // from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
-// values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels out of the planes near by
-// (those of regions in its block or the eight around it), all others count as impossible for it. So two pavements of
-// one height on either side of a road keep their labels apart.
+// values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) out of
+// the planes near by (those of regions in its block or the eight around it). So two pavements of one height on either
+// side of a road keep their labels apart.
 #pragma once
 
 #include <array>
@@ -14,6 +14,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/label_site.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/settings.hpp"
@@ -32,22 +33,7 @@ class LabelField {
  public:
   using LabelType = Label<limits>;
   static constexpr LabelType none = no_label<limits>;
-  static constexpr int candidates = 3;
   static constexpr int capacity = Dem<limits>::capacity;
-
-  struct Belief {
-    std::array<LabelType, candidates> label;    ///< `none` where there are fewer
-    std::array<float, candidates> probability;  ///< sums to 1
-
-    /// Probability of one label, 0 if it is no candidate.
-    float of(LabelType wanted) const {
-      float found = 0.0f;
-      for (std::size_t c = 0; c < label.size(); ++c) {
-        if (label[c] == wanted) found = probability[c];
-      }
-      return found;
-    }
-  };
 
   /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
   struct Place {
@@ -55,7 +41,7 @@ class LabelField {
     std::array<Slot<limits>, directions> neighbour;
     std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
     std::uint8_t same_labels;                       ///< a bit a direction: the neighbour has the same candidates
-    std::array<std::int16_t, candidates> heard;     ///< in 1 / message_scale nat
+    typename LabelSite<limits>::Heard heard;
   };
   /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
   struct Visits {
@@ -80,26 +66,15 @@ class LabelField {
              Counters& counters);
 
   LabelType label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
-  /// Posterior of a valid cell. O(candidates^2).
-  Belief belief(const Dem<limits>& dem, int i, int j) const;
+  /// Posterior of a valid cell. O(label_candidates^2).
+  Belief<limits> belief(const Dem<limits>& dem, int i, int j) const;
 
  private:
-  // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
-  // nothing.
-  static constexpr int message_scale = 32, node_scale = 256;
   static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
 
-  using Message = std::array<std::uint8_t, candidates>;  ///< of each candidate of the sender
-  struct Site {
-    std::array<LabelType, candidates> label{none, none, none};
-    LabelType best = none;
-    std::array<std::int16_t, candidates> node{};  ///< log potential of each candidate
-    std::array<Message, directions> message{};    ///< to the neighbour there
-  };
+  using Site = LabelSite<limits>;
   /// Bits; renew: its candidates too.
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
-  using Logs = std::array<float, candidates>;
-  using Nats = std::array<std::int32_t, candidates>;  ///< in 1 / node_scale nat
   using Planes = IndexSet<limits.planes>;
 
   static std::size_t block_of(const Dem<limits>& dem, int i, int j) {
@@ -111,24 +86,18 @@ class LabelField {
   bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
   void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
-  void keep_messages(Site& site, const std::array<LabelType, candidates>& label);
   Place place(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Place& place) const;
-  static void hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message,
-                   bool same_labels, int sign, std::array<std::int16_t, candidates>& sum);
   void send(const Place& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
   int follow_belief(const Place& place);
-  static Nats log_belief(const Site& site, const std::array<std::int16_t, candidates>& sum);
-  static Logs normalised(const Site& site, const Nats& logs);
 
   LabelSettings settings_{};
   std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
   float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
   int band_ = 0;                                                        ///< first row to refresh in the next update()
   int first_row_ = 0;                                                   ///< whose cells may send first in it
-  std::array<float, max_link_reach + 1> boost_{};                       ///< exp(J / distance) - 1
-  std::array<std::uint8_t, max_link_reach + 1> loudest_{};              ///< message of a cell that is sure
+  std::array<typename Site::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
   std::array<Site, Dem<limits>::capacity> sites_{};
   std::array<std::uint8_t, Dem<limits>::capacity> flag_{};
 };
@@ -140,11 +109,8 @@ void LabelField<limits>::init(const LabelSettings& settings) {
   flag_.fill(quiet);
   near_by_.fill({});
   band_ = first_row_ = 0;
-  for (std::size_t g = 1; g < boost_.size(); ++g) {
-    boost_[g] = exp(settings.coupling / static_cast<float>(g)) - 1.0f;
-    loudest_[g] =
-        static_cast<std::uint8_t>(round_to_int(settings.coupling / static_cast<float>(g) * float{message_scale}));
-  }
+  for (std::size_t g = 1; g < coupling_.size(); ++g)
+    coupling_[g] = Site::coupling(settings.coupling / static_cast<float>(g));
 }
 
 template <Limits limits>
@@ -262,8 +228,9 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = dem.height_variance_m2(cell);
-  std::array<float, candidates> doubt{};  // exp(-2 log potential): a logarithm each of those that are kept is enough
-  std::array<LabelType, candidates> label{none, none, none};
+  std::array<float, label_candidates>
+      doubt{};  // exp(-2 log potential): a logarithm each of those that are kept is enough
+  typename Site::Labels label{none, none, none};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
     if (!plane.alive() || !mixture.ground(k)) return;
@@ -273,10 +240,10 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
     const float u3 = u * u * u;
     const float doubted = variance * u3 * u3 * u;
-    std::size_t rank = candidates;
+    std::size_t rank = label.size();
     while (rank > 0 && (label[rank - 1] == none || doubted < doubt[rank - 1])) --rank;
-    if (rank == candidates) return;
-    for (std::size_t c = candidates - 1; c > rank; --c) {
+    if (rank == label.size()) return;
+    for (std::size_t c = label.size() - 1; c > rank; --c) {
       label[c] = label[c - 1];
       doubt[c] = doubt[c - 1];
     }
@@ -288,28 +255,14 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
   Site& site = sites_[static_cast<std::size_t>(slot)];
-  if (label != site.label) keep_messages(site, label);
+  site.set_labels(label);
   site.node.fill(0);
   if (mixture.covered(slot)) return;
-  for (std::size_t c = 1; c < candidates && label[c] != none; ++c) {
+  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
     const float below = -0.5f * log(doubt[c] / doubt[0]);
-    site.node[c] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
+    site.node[c] =
+        static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{Site::node_scale}));
   }
-}
-
-/// Candidates in another order, or others: what was said of a label stays with it.
-template <Limits limits>
-void LabelField<limits>::keep_messages(Site& site, const std::array<LabelType, candidates>& label) {
-  for (auto& message : site.message) {
-    const auto before = message;
-    for (std::size_t c = 0; c < candidates; ++c) {
-      message[c] = 0;
-      for (std::size_t o = 0; o < candidates; ++o) {
-        if (label[c] != none && site.label[o] == label[c]) message[c] = before[o];
-      }
-    }
-  }
-  site.label = label;
 }
 
 template <Limits limits>
@@ -335,56 +288,11 @@ void LabelField<limits>::hear_neighbours(Place& place) const {
     const Site& other = sites_[place.neighbour[d]];
     const bool same = site.label == other.label;
     place.same_labels |= static_cast<std::uint8_t>(same << d);
-    hear(site, other.label, other.message[d ^ 1u], same, 1, place.heard);
+    site.hear(other.label, other.sent[d ^ 1u], same, 1, place.heard);
   }
 }
 
-/// Adds (sign 1) or takes away (-1) what a neighbour says of the labels that both may bear.
-template <Limits limits>
-void LabelField<limits>::hear(const Site& site, const std::array<LabelType, candidates>& label, const Message& message,
-                              bool same_labels, int sign, std::array<std::int16_t, candidates>& sum) {
-  if (same_labels) {
-    for (std::size_t c = 0; c < candidates; ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * message[c]);
-    return;
-  }
-  for (std::size_t c = 0; c < candidates && site.label[c] != none; ++c) {
-    for (std::size_t o = 0; o < candidates; ++o) {
-      if (site.label[c] == label[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * message[o]);
-    }
-  }
-}
-
-/// Log belief of each candidate, from its node and what was heard.
-template <Limits limits>
-auto LabelField<limits>::log_belief(const Site& site, const std::array<std::int16_t, candidates>& sum) -> Nats {
-  Nats logs;
-  for (std::size_t c = 0; c < candidates; ++c) logs[c] = site.node[c] + sum[c] * (node_scale / message_scale);
-  return logs;
-}
-
-template <Limits limits>
-auto LabelField<limits>::normalised(const Site& site, const Nats& logs) -> Logs {
-  constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
-  std::int32_t top = logs[0];
-  for (std::size_t c = 1; c < candidates; ++c) {
-    if (site.label[c] != none && logs[c] > top) top = logs[c];
-  }
-  Logs p{};
-  float sum = 0.0f;
-  for (std::size_t c = 0; c < candidates; ++c) {
-    const std::int32_t below = logs[c] - top;
-    p[c] = site.label[c] == none || below < nothing ? 0.0f
-           : below == 0                             ? 1.0f
-                                                    : exp(static_cast<float>(below) * (1.0f / node_scale));
-    sum += p[c];
-  }
-  if (!(sum > 1.0f)) return p;
-  for (float& value : p) value /= sum;
-  return p;
-}
-
-/// Potts message, normalised to 1 for labels that the sender rules out: m(l) = 1 + (exp(J/g) - 1) p(l), p the sender's
-/// belief without what the receiver told it. At most exp(J).
+/// To the next cell there, and to what it has heard, if it is news.
 template <Limits limits>
 void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& visits) {
   const std::size_t distance = from.distance[direction];
@@ -392,22 +300,15 @@ void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& 
   Site& site = sites_[from.slot];
   const Site& other = sites_[from.neighbour[direction]];
   const bool same = (from.same_labels >> direction & 1) != 0;
-  Message message{loudest_[distance], 0, 0};
-  if (site.label[1] != none) {
+  typename Site::Message message{coupling_[distance].loudest, 0, 0};
+  if (!site.decided()) {
     auto by_others = from.heard;
-    hear(site, other.label, other.message[direction ^ 1u], same, -1, by_others);
-    const Logs p = normalised(site, log_belief(site, by_others));
-    for (std::size_t c = 0; c < candidates; ++c) {
-      message[c] =
-          p[c] == 0.0f ? std::uint8_t{0}
-          : p[c] == 1.0f
-              ? loudest_[distance]
-              : static_cast<std::uint8_t>(round_to_int(log(1.0f + boost_[distance] * p[c]) * float{message_scale}));
-    }
+    site.hear(other.label, other.sent[direction ^ 1u], same, -1, by_others);
+    message = Site::message(site.probabilities(by_others), coupling_[distance]);
   }
-  auto& sent = site.message[direction];
+  auto& sent = site.sent[direction];
   bool news = false;
-  for (std::size_t c = 0; c < candidates; ++c) {
+  for (std::size_t c = 0; c < message.size(); ++c) {
     const int change = message[c] - sent[c];
     news |= change > no_news || change < -no_news;
   }
@@ -415,8 +316,8 @@ void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& 
   auto& flag = flag_[from.neighbour[direction]];
   if ((flag & visited) != 0) {
     auto& sum = visits.place[visits.index[from.neighbour[direction]]].heard;
-    hear(other, site.label, sent, same, -1, sum);
-    hear(other, site.label, message, same, 1, sum);
+    other.hear(site.label, sent, same, -1, sum);
+    other.hear(site.label, message, same, 1, sum);
   }
   flag |= heard;
   sent = message;
@@ -441,26 +342,20 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
 template <Limits limits>
 int LabelField<limits>::follow_belief(const Place& place) {
   Site& site = sites_[place.slot];
-  std::size_t best = 0;
-  if (site.label[1] != none) {
-    const Nats logs = log_belief(site, place.heard);
-    for (std::size_t c = 1; c < candidates; ++c) {
-      if (site.label[c] != none && logs[c] > logs[best]) best = c;
-    }
-  }
-  if (site.best == site.label[best]) return 0;
-  site.best = site.label[best];
+  const LabelType best = site.most_likely(place.heard);
+  if (site.best == best) return 0;
+  site.best = best;
   return 1;
 }
 
 template <Limits limits>
-auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
+auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief<limits> {
   const int slot = dem.slot(i, j);
   const Site& site = sites_[static_cast<std::size_t>(slot)];
-  if (site.label[1] == none) return {site.label, {site.label[0] == none ? 0.0f : 1.0f, 0.0f, 0.0f}};
+  if (site.decided()) return {site.label, {site.label[0] == none ? 0.0f : 1.0f, 0.0f, 0.0f}};
   Place here = place(dem, i, j, slot);
   hear_neighbours(here);
-  return {site.label, normalised(site, log_belief(site, here.heard))};
+  return {site.label, site.probabilities(here.heard)};
 }
 
 }  // namespace curbline

@@ -20,6 +20,7 @@
 #include "curbline/label_field.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/line_projection.hpp"
+#include "curbline/map_comparison.hpp"
 #include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/pose_offset.hpp"
@@ -111,16 +112,7 @@ class Pipeline {
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping);
-  void follow_jump(ProjectedLine<limits>& line);
-  void compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion);
-  /// A point and the ground that the map has there.
-  struct MappedGround {
-    float above_m, variance_m2;  ///< how far the point lies above it; variance of its own
-    float rise_variance_m2;      ///< and by the slope of the plane
-    float growth_m_s;
-  };
-  bool ground_at(const Point& p, const typename Dem<limits>::Place& place, const typename Dem<limits>::Place& of,
-                 MappedGround& out) const;
+  void compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion);
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -239,72 +231,21 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     move_window(T_map_base);
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
-  if (pose_offset_.undecided() && !motion.jumps.any()) follow_jump(work.projected);
-  if (!settings_.tilt.fixed) compare_with_map(work.projected, motion);
+  compare_with_map(work.projected, motion);
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }
 
-/// After a jump of the poses: is it the map that lies elsewhere, or the robot?
+/// Poses that may be wrong, and the tilt's latency. What the latency turns out to be moves the map.
 template <Limits limits>
-void Pipeline<limits>::follow_jump(ProjectedLine<limits>& line) {
-  MappedGround ground;
-  for (const Point& p : line.points()) {
-    if (p.z_m > ceiling_m_) continue;
-    const auto place = dem_.place_at(p.place_x_m(), p.place_y_m());
-    if (!place.inside()) continue;
-    const auto near = dem_.nearest_unmarked(place, settings_.segmentation.link_reach);
-    if (!near.inside() || !ground_at(p, place, near, ground)) {
-      pose_offset_.pass();
-      continue;
-    }
-    const float latency_m2 = dem_.mapped_before(dem_.slot(near.i, near.j))
-                                 ? tilt_latency_.earlier_variance_m2(p.growth_m_s, ground.growth_m_s)
-                                 : tilt_latency_.own_variance_m2(p.growth_m_s, ground.growth_m_s);
-    pose_offset_.compare(
-        {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
-  }
-  const PoseShift shift = pose_offset_.end_line();
-  if (!shift.any()) return;
-  for (Point& p : line.points()) p.z_m += pose_offset_.at(shift, p.x_m, p.y_m);
-}
-
-/// The points that the line has where an earlier sweep has been, and this one not yet.
-template <Limits limits>
-void Pipeline<limits>::compare_with_map(const ProjectedLine<limits>& line, const LineMotion& motion) {
-  MappedGround ground;
-  for (const Point& p : line.points()) {
-    if (p.z_m > ceiling_m_) continue;
-    const auto place = dem_.place_at(p.place_x_m(), p.place_y_m());
-    if (!place.inside() || !dem_.mapped_before(dem_.slot(place.i, place.j)) || !ground_at(p, place, place, ground))
-      continue;
-    const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
-    const float doubt_m2 = pose_offset_.doubt_m2(p.x_m, p.y_m);
-    tilt_latency_.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
-                           ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s});
-  }
+void Pipeline<limits>::compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion) {
+  const MapComparison<limits> map(dem_, plane_mixture_, label_field_, ceiling_m_);
+  if (pose_offset_.undecided() && !motion.jumps.any())
+    map.follow_jump(line, settings_.segmentation.link_reach, tilt_latency_, pose_offset_);
+  if (settings_.tilt.fixed) return;
+  map.follow_latency(line, motion, pose_offset_, tilt_latency_);
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
-}
-
-/// What a cell says of the ground at a point, by the slope of the cell's plane from its centroid; false if it has no
-/// plane, or more than one surface.
-template <Limits limits>
-bool Pipeline<limits>::ground_at(const Point& p, const typename Dem<limits>::Place& place,
-                                 const typename Dem<limits>::Place& of, MappedGround& out) const {
-  const int slot = dem_.slot(of.i, of.j);
-  const Label<limits> label = label_field_.label(slot);
-  if (label == no_label<limits>) return false;
-  const Cell& cell = dem_.cell(slot);
-  if (dem_.several_surfaces(cell)) return false;
-  const Plane& plane = plane_mixture_.plane(label);
-  const float x = place.u * dem_.cell_x_m() - p.shift_x_m, y = place.v * dem_.cell_y_m() - p.shift_y_m;
-  const float dx = x - dem_.centroid_x_m(of.i, cell), dy = y - dem_.centroid_y_m(of.j, cell);
-  out.above_m = p.z_m - cell.height_m - (plane.slope_x * dx + plane.slope_y * dy);
-  out.variance_m2 = settings_.planes.prior.texture_m2 + dem_.height_variance_m2(cell);
-  out.rise_variance_m2 = plane.rise_variance_m2(dx, dy);
-  out.growth_m_s = dem_.growth_m_s(slot);
-  return true;
 }
 
 /// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.

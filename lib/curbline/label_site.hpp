@@ -1,0 +1,162 @@
+// What the label field knows of one cell, and the arithmetic of its beliefs: candidate labels, their node potentials
+// and the Potts messages that it has sent (paper, section III-D). LabelField says who sends when. Sums are of whole
+// fractions of a nat, so that what was added can be taken away again, to the bit.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/dem.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane_mixture.hpp"
+
+namespace curbline {
+
+/// A cell keeps that many labels, the most likely; all others count as impossible for it.
+inline constexpr int label_candidates = 3;
+
+/// Posterior of a cell's label.
+template <Limits limits>
+struct Belief {
+  std::array<Label<limits>, label_candidates> label;  ///< no_label<limits> where there are fewer
+  std::array<float, label_candidates> probability;    ///< sums to 1
+
+  /// Probability of one label, 0 if it is no candidate.
+  float of(Label<limits> wanted) const {
+    float found = 0.0f;
+    for (std::size_t c = 0; c < label.size(); ++c) {
+      if (label[c] == wanted) found = probability[c];
+    }
+    return found;
+  }
+};
+
+template <Limits limits>
+struct LabelSite {
+  using LabelType = Label<limits>;
+  static constexpr LabelType none = no_label<limits>;
+  // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
+  // nothing.
+  static constexpr int message_scale = 32, node_scale = 256;
+
+  using Labels = std::array<LabelType, label_candidates>;
+  using Message = std::array<std::uint8_t, label_candidates>;  ///< of each candidate of the sender
+  using Heard = std::array<std::int16_t, label_candidates>;    ///< a sum of messages, of each candidate of the hearer
+  using Probabilities = std::array<float, label_candidates>;
+  /// Potts factor exp(J / g) over a gap of g cells.
+  struct Coupling {
+    float boost = 0.0f;        ///< exp(J / g) - 1
+    std::uint8_t loudest = 0;  ///< J / g, what a cell says that is sure
+  };
+
+  Labels label{none, none, none};
+  LabelType best = none;
+  std::array<std::int16_t, label_candidates> node{};  ///< log potential of each candidate
+  std::array<Message, directions> sent{};             ///< to the neighbour there, last
+
+  static Coupling coupling(float nats) {
+    return {exp(nats) - 1.0f, static_cast<std::uint8_t>(round_to_int(nats * float{message_scale}))};
+  }
+
+  /// Only one label is possible, or none.
+  bool decided() const { return label[1] == none; }
+  /// Candidates in another order, or others: what was said of a label stays with it.
+  void set_labels(const Labels& labels);
+  /// Adds to `sum` (sign 1) or takes from it (-1) what a neighbour says of the labels that both may bear.
+  void hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const;
+  /// Belief, from its node and what was heard.
+  Probabilities probabilities(const Heard& heard) const;
+  /// What a cell says of whose belief p is, without what it heard from the hearer; normalised to 1 for labels that it
+  /// rules out: m(l) = 1 + (exp(J / g) - 1) p(l).
+  static Message message(const Probabilities& p, const Coupling& coupling);
+  /// The most likely candidate.
+  LabelType most_likely(const Heard& heard) const;
+
+ private:
+  using Nats = std::array<std::int32_t, label_candidates>;  ///< in 1 / node_scale nat
+  Nats log_belief(const Heard& heard) const;
+};
+
+template <Limits limits>
+void LabelSite<limits>::set_labels(const Labels& labels) {
+  if (labels == label) return;
+  for (Message& message : sent) {
+    const Message before = message;
+    for (std::size_t c = 0; c < label.size(); ++c) {
+      message[c] = 0;
+      for (std::size_t o = 0; o < label.size(); ++o) {
+        if (labels[c] != none && label[o] == labels[c]) message[c] = before[o];
+      }
+    }
+  }
+  label = labels;
+}
+
+template <Limits limits>
+void LabelSite<limits>::hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const {
+  if (same_labels) {
+    for (std::size_t c = 0; c < label.size(); ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[c]);
+    return;
+  }
+  for (std::size_t c = 0; c < label.size() && label[c] != none; ++c) {
+    for (std::size_t o = 0; o < others.size(); ++o) {
+      if (label[c] == others[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[o]);
+    }
+  }
+}
+
+template <Limits limits>
+auto LabelSite<limits>::log_belief(const Heard& heard) const -> Nats {
+  Nats logs;
+  for (std::size_t c = 0; c < label.size(); ++c) logs[c] = node[c] + heard[c] * (node_scale / message_scale);
+  return logs;
+}
+
+template <Limits limits>
+auto LabelSite<limits>::probabilities(const Heard& heard) const -> Probabilities {
+  constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
+  const Nats logs = log_belief(heard);
+  std::int32_t top = logs[0];
+  for (std::size_t c = 1; c < label.size(); ++c) {
+    if (label[c] != none && logs[c] > top) top = logs[c];
+  }
+  Probabilities p{};
+  float sum = 0.0f;
+  for (std::size_t c = 0; c < label.size(); ++c) {
+    const std::int32_t below = logs[c] - top;
+    p[c] = label[c] == none || below < nothing ? 0.0f
+           : below == 0                        ? 1.0f
+                                               : exp(static_cast<float>(below) * (1.0f / node_scale));
+    sum += p[c];
+  }
+  if (!(sum > 1.0f)) return p;
+  for (float& value : p) value /= sum;
+  return p;
+}
+
+template <Limits limits>
+auto LabelSite<limits>::message(const Probabilities& p, const Coupling& coupling) -> Message {
+  Message logs;
+  for (std::size_t c = 0; c < logs.size(); ++c) {
+    logs[c] = p[c] == 0.0f ? std::uint8_t{0}
+              : p[c] == 1.0f
+                  ? coupling.loudest
+                  : static_cast<std::uint8_t>(round_to_int(log(1.0f + coupling.boost * p[c]) * float{message_scale}));
+  }
+  return logs;
+}
+
+template <Limits limits>
+auto LabelSite<limits>::most_likely(const Heard& heard) const -> LabelType {
+  if (decided()) return label[0];
+  const Nats logs = log_belief(heard);
+  std::size_t best_one = 0;
+  for (std::size_t c = 1; c < label.size(); ++c) {
+    if (label[c] != none && logs[c] > logs[best_one]) best_one = c;
+  }
+  return label[best_one];
+}
+
+}  // namespace curbline
