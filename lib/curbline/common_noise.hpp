@@ -49,8 +49,8 @@ class CommonNoise {
   /// these ten rows.
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
-  /// What the points of a cell share: of the patches, each weighed by its cells, the one that a third of them lie
-  /// below. Two curbs side by side may cross half of the patches. At least PlanePrior::least_common_share of the
+  /// What the points of a cell share: of the patches, each weighed by its cells, the one that a quarter of them lie
+  /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least PlanePrior::least_common_share of the
   /// expected noise and at most PlanePrior::common_share, which it is too as long as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
 
@@ -120,7 +120,7 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
   }
   if (!(cells > 0.0f)) return prior.common_m2();
   float common_m2 = 0.0f;
-  for (float passed = 0.0f; 3.0f * passed < cells;) {  // the least first, each once
+  for (float passed = 0.0f; 4.0f * passed < cells;) {  // the least first, each once
     Patch* least = nullptr;
     for (Patch& patch : left) {
       if (patch.cells > 0.0f && (least == nullptr || patch.common_m2 < least->common_m2)) least = &patch;

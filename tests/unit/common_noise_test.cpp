@@ -117,20 +117,31 @@ TEST_CASE("common noise: cells that lie on their plane share nothing") {
 }
 
 TEST_CASE("common noise: the share is that of the evener patches") {
-  const auto at_most_a_third_less = [](float share, double expected) {
-    CHECK(share > 0.67 * expected);
+  const auto at_most_by_half_less = [](float share, double expected) {
+    CHECK(share > 0.5 * expected);
     CHECK(share < 1.05 * expected);
   };
-  at_most_a_third_less(share_of(Unevenness(0.004, 0.0, 0.0)), 0.16);
-  at_most_a_third_less(share_of(Unevenness(0.008, 0.0, 0.0)), 0.64);
-  at_most_a_third_less(share_of(Unevenness(0.004, 0.5, 0.0)), 0.48);
-  at_most_a_third_less(share_of(Unevenness(0.004, 0.0, 0.5)), 0.48);
+  at_most_by_half_less(share_of(Unevenness(0.004, 0.0, 0.0)), 0.16);
+  at_most_by_half_less(share_of(Unevenness(0.008, 0.0, 0.0)), 0.64);
+  at_most_by_half_less(share_of(Unevenness(0.004, 0.5, 0.0)), 0.48);
+  at_most_by_half_less(share_of(Unevenness(0.004, 0.0, 0.5)), 0.48);
 }
 
 TEST_CASE("common noise: a step by which no planes are parted yet does not pass for it") {
   const Unevenness even(0.003, 0.0, 0.0);
   Stages<limits> stages(map_settings());
   test::fill(stages.dem, [&](double x_m, double y_m) { return even(x_m, y_m) + (x_m + y_m < 4.0 ? 0.0 : 0.012); });
+  stages.infer(true);
+  CHECK(stages.label_at(2, 2) == stages.label_at(37, 37));
+  CHECK(share_of(stages, PlanePrior{}) < 0.3f);
+}
+
+TEST_CASE("common noise: nor do three, which cross three quarters of the window") {
+  const Unevenness even(0.003, 0.0, 0.0);
+  Stages<limits> stages(map_settings());
+  test::fill(stages.dem, [&](double x_m, double y_m) {
+    return even(x_m, y_m) + (x_m > 0.5) * 0.011 - (x_m > 1.5) * 0.011 + (x_m > 2.5) * 0.011;
+  });
   stages.infer(true);
   CHECK(stages.label_at(2, 2) == stages.label_at(37, 37));
   CHECK(share_of(stages, PlanePrior{}) < 0.3f);
@@ -147,7 +158,7 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
     }
   }
   stages.infer(true);
-  CHECK(share_of(stages, PlanePrior{}) == Approx(0.16).epsilon(0.4));
+  CHECK(share_of(stages, PlanePrior{}) == Approx(0.12).epsilon(0.4));  // 0.16 of all patches, 0.48 with correlations
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
@@ -167,15 +178,15 @@ TEST_CASE("common noise: what is not known of the tilt's latency is common to al
   CHECK(share(0.001f) == PlanePrior::least_common_share);
 }
 
-TEST_CASE("common noise: uneven ground has no say as long as a third is even") {
+TEST_CASE("common noise: uneven ground has no say as long as a quarter is even") {
   const Unevenness even(0.003, 0.0, 0.0), uneven(0.01, 0.5, 0.5);
   const auto most = [](float at_m) { return [=](double x_m, double) { return x_m < static_cast<double>(at_m); }; };
   const auto ground = [&](auto&& on_even) {
     return
         [&, on_even](double x_m, double y_m) { return on_even(x_m, y_m) ? even(x_m, y_m) : 0.25 + uneven(x_m, y_m); };
   };
-  CHECK(share_of(ground(most(2.0f))) < 0.15f);
-  CHECK(share_of(ground(most(0.8f))) > 1.0f);
+  CHECK(share_of(ground(most(1.0f))) < 0.2f);
+  CHECK(share_of(ground(most(0.6f))) > 1.0f);
 }
 
 TEST_CASE("common noise: it lies between the least share and that of the settings, which holds where no plane is") {
