@@ -50,8 +50,9 @@ class CommonNoise {
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
   /// What the points of a cell share: of the patches, each weighed by its cells, the one that a quarter of them lie
-  /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least PlanePrior::least_common_share of the
-  /// expected noise and at most PlanePrior::common_share, which it is too as long as there is no plane.
+  /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least
+  /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
+  /// as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
 
  private:

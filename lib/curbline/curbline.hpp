@@ -20,6 +20,7 @@
 #include "curbline/point.hpp"            //
 #include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
 #include "curbline/dem.hpp"              // rolling window of cells
+#include "curbline/link.hpp"             // neighbours on a row or column
 #include "curbline/segmentation.hpp"     // leaves, regions
 #include "curbline/region_graph.hpp"     // merging by evidence
 #include "curbline/plane.hpp"            // moments, evidence, fit

@@ -391,23 +391,4 @@ void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
   });
 }
 
-/// Two valid cells with no valid cell between them on a row or column.
-struct Link {
-  std::size_t from, to;  ///< slots
-  int distance;          ///< in cells
-  int axis;              ///< 0: along +x, 1: along +y
-};
-
-/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
-template <Limits limits, typename Visit>
-void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
-  dem.for_each_valid([&](int i, int j, int s) {
-    const auto from = static_cast<std::size_t>(s);
-    if (const int g = dem.next_valid(s, 0, reach); g > 0)
-      visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g, 0});
-    if (const int g = dem.next_valid(s, 2, reach); g > 0)
-      visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g, 1});
-  });
-}
-
 }  // namespace curbline

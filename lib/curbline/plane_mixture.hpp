@@ -101,8 +101,6 @@ class PlaneMixture {
     std::array<LabelType, limits.planes> label;                                    ///< by rank
   };
   using Fitted = std::array<bool, limits.planes>;  ///< by label
-  /// Below as many nothing is known of a plane beside its three parameters.
-  static constexpr float least_clean_cells = 4.0f;
   /// Of as many one in twenty lies along a side: what is amiss there hardly moves the plane, and is not asked for.
   static constexpr float wide_cells = 400.0f;
 
@@ -214,7 +212,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   for (std::size_t l = 0; l < clean.size(); ++l) {
     PlaneMoments& moments = clean[l].inner;
     PlaneMoments& beside = clean[l].beside;
-    if (moments.cells + beside.cells < least_clean_cells) continue;
+    if (moments.cells + beside.cells < settings_.min_cells) continue;
     if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
     moments.add(beside);
     const float of_region_m2 = planes_[l].variance_m2;

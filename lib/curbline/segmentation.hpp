@@ -11,6 +11,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/link.hpp"
 #include "curbline/region_graph.hpp"
 #include "curbline/settings.hpp"
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "curbline/link.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {

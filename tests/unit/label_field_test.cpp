@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "curbline/link.hpp"
 #include "support/small_map.hpp"
 
 namespace curbline {

@@ -1,0 +1,31 @@
+// Neighbours: what is known of one cell tells of the next valid one on its row and on its column, also where scan lines
+// leave rows between them empty. A pass over the window.
+#pragma once
+
+#include <cstddef>
+
+#include "curbline/dem.hpp"
+#include "curbline/limits.hpp"
+
+namespace curbline {
+
+/// Two valid cells with no valid cell between them on a row or column.
+struct Link {
+  std::size_t from, to;  ///< slots
+  int distance;          ///< in cells
+  int axis;              ///< 0: along +x, 1: along +y
+};
+
+/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
+template <Limits limits, typename Visit>
+void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
+  dem.for_each_valid([&](int i, int j, int s) {
+    const auto from = static_cast<std::size_t>(s);
+    if (const int g = dem.next_valid(s, 0, reach); g > 0)
+      visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g, 0});
+    if (const int g = dem.next_valid(s, 2, reach); g > 0)
+      visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g, 1});
+  });
+}
+
+}  // namespace curbline
