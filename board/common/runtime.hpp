@@ -13,7 +13,8 @@ void paint_stack(const void* below);
 /// on.
 [[noreturn]] void run_main();
 
-/// What a board has of its own: where main() goes when it returns, and an exception that nobody handles. leave_to_host.cpp tells the host.
+/// What a board has of its own: where main() goes when it returns, and an exception that nobody handles.
+/// leave_to_host.cpp tells the host.
 [[noreturn]] void leave(int status);
 inline constexpr int unexpected_exception = 3;
 

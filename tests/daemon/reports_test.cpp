@@ -27,9 +27,9 @@ TEST_CASE("reports: curbs are JSON with the names and the rounding of replay's")
   const auto line = nlohmann::json::parse(curbs_line(1'700'000'000'025'000'999, curbs, buffer, left_out));
   CHECK(line.at("time_s") == 1'700'000'000.025);
   REQUIRE(line.at("curbs").size() == 2);
-  const nlohmann::json wanted{{"x0_m", 1.0},          {"y0_m", -1.5},        {"x1_m", 1.0},        {"y1_m", 1.5},
-                              {"height_m", 0.123456}, {"height_sd_m", 0.01}, {"probability", 1.0}, {"kind", "step_up"},
-                              {"face_width_m", 0.05}, {"id", 7}};
+  const nlohmann::json wanted{
+      {"x0_m", 1.0},         {"y0_m", -1.5},       {"x1_m", 1.0},       {"y1_m", 1.5},          {"height_m", 0.123456},
+      {"height_sd_m", 0.01}, {"probability", 1.0}, {"kind", "step_up"}, {"face_width_m", 0.05}, {"id", 7}};
   CHECK(line.at("curbs").at(0) == wanted);
   CHECK(line.at("curbs").at(1).at("x0_m") == -2.25);
   CHECK(left_out == 0);
@@ -69,7 +69,8 @@ TEST_CASE("reports: the fullest status fits") {
   const can::TiltDecoderCounters frames{~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
   const auto bus = std::make_unique<socketcan::SocketCan>();
   const ScannerState scanner;
-  status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = bus.get(), status.scanner = &scanner;
+  status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = bus.get(),
+  status.scanner = &scanner;
   status.latency = status.work = &full;
   std::array<char, 32 << 10> buffer{};
   const auto line = status_line(status, buffer);

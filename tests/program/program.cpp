@@ -99,8 +99,8 @@ void check_wrong_usage(const Outcome& outcome, const std::string& part) {
 }
 
 Recording::Recording(const std::string& scene, const std::string& robot, const Words& more) {
-  const Words simulate{"simulate", "--scene", scene, "--robot",
-                       robot.ends_with(".toml") ? robot : shipped_robot(robot), "--out", path("")};
+  const Words simulate{"simulate", "--scene", scene, "--robot", robot.ends_with(".toml") ? robot : shipped_robot(robot),
+                       "--out",    path("")};
   const Outcome outcome = curbline(simulate + more);
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);

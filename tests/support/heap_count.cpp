@@ -25,7 +25,8 @@ void* or_throw(void* p) {
 
 }  // namespace
 
-// What C code and Eigen ask directly. The linker turns calls into these (--wrap), those of libraries that are shared excepted.
+// What C code and Eigen ask directly. The linker turns calls into these (--wrap), those of libraries that are shared
+// excepted.
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t count, std::size_t size);

@@ -1,5 +1,5 @@
-// How often the program has asked the heap for memory: operator new is replaced in heap_count.cpp, malloc and its like are wrapped by
-// the linker. Link the library heap_count.
+// How often the program has asked the heap for memory: operator new is replaced in heap_count.cpp, malloc and its like
+// are wrapped by the linker. Link the library heap_count.
 #pragma once
 
 namespace curbline::test {

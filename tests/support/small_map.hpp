@@ -62,7 +62,8 @@ struct Stages {
   }
   int label(bool all = true) {
     field.note_touched(dem);
-    const int changed = field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, work.visits(), counters);
+    const int changed =
+        field.update(dem, mixture, all ? FieldScope::window : FieldScope::line, work.visits(), counters);
     dem.clear_touched();
     return changed;
   }

@@ -76,7 +76,8 @@ TEST_CASE("curbs: a row a piece, and back") {
   CHECK(read_curbs(dir.write("c.csv", none.str())).empty());
 }
 
-TEST_CASE("curbs: a JSON line bears the names of the columns, in their order, then the width of the face and the number") {
+TEST_CASE(
+    "curbs: a JSON line bears the names of the columns, in their order, then the width of the face and the number") {
   std::ostringstream text;
   write_curb_json(text, {1, 2, 3.5, -4, static_cast<double>(0.12f), 0.004, 0.97, "step_up", 0.03, 12});
   CHECK(

@@ -84,7 +84,8 @@ TEST_CASE("streaming and batch: after the last chunk the labels agree, but where
       const std::vector<int> stream = labels_of(*pipeline);
       const double v = v_measure(batch, stream);
       CAPTURE(seed, calls);
-      // Where 40 of 1600 cells hold points of both planes, batch and stream may leave them to different ones: V 0.91 then.
+      // Where 40 of 1600 cells hold points of both planes, batch and stream may leave them to different ones: V 0.91
+      // then.
       CHECK(v >= (step_x_m == 2.0 ? 1 - 1e-9 : 0.9));
       CHECK(v_measure(beside_the_step(batch, step_x_m), beside_the_step(stream, step_x_m)) == Approx(1));
     }

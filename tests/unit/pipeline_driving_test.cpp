@@ -124,7 +124,7 @@ TEST_CASE("pipeline: when the window moves a plane stays where it is in the map"
 
 TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
   const Drive d = drive({3.2, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without
-  CHECK(d.pipeline->counters().lines_dropped == 46);  // the first ones are extrapolated, for 0.1 s
+  CHECK(d.pipeline->counters().lines_dropped == 46);                      // the first ones are extrapolated, for 0.1 s
   CHECK(d.sightings > 400);
   CHECK(d.worst_place_m < 0.1);
   CHECK(d.worst_height_m < 0.02);
@@ -203,7 +203,8 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
   CHECK(lines_with_steps(*pipeline, 2000, of_its_sweep) == 0);
 }
 
-TEST_CASE("pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
+TEST_CASE(
+    "pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
   Settings settings = driving_settings();
   settings.pose = test::noisy_poses();
   const auto pipeline = started(settings);

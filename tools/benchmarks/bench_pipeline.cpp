@@ -1,5 +1,6 @@
-// Times and sizes, all in one process so that ratios hold: a scan line, a whole map of 1600 cells beside the paper's algorithm, belief
-// messages, bytes for several limits. The data is the simulated street of the demo, seen by the robot of the demo.
+// Times and sizes, all in one process so that ratios hold: a scan line, a whole map of 1600 cells beside the paper's
+// algorithm, belief messages, bytes for several limits. The data is the simulated street of the demo, seen by the robot
+// of the demo.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -20,7 +21,9 @@ using namespace curbline;
 using namespace curbline::tools;
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// One recorded nod: what goes in, line by line, and the same as points.
 struct Street {
@@ -51,7 +54,8 @@ struct Street {
   /// Readings up to the first after the line's end; returns where to go on.
   template <typename Pipeline>
   std::size_t feed(Pipeline& pipeline, std::size_t next, std::int64_t line_ns) const {
-    while (next < tilt.size() && (next == 0 || tilt[next - 1].time_ns < line_ns + 25'000'000)) pipeline.add_tilt(tilt[next++]);
+    while (next < tilt.size() && (next == 0 || tilt[next - 1].time_ns < line_ns + 25'000'000))
+      pipeline.add_tilt(tilt[next++]);
     return next;
   }
 
@@ -137,8 +141,10 @@ void whole_map(benchmark::State& state, reference::Messages messages) {
   }
   state.counters["valid_cells"] = valid;
 }
-BENCHMARK_CAPTURE(whole_map, against_crf_em_with_K_x_K_messages, reference::Messages::general)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(whole_map, against_crf_em_with_O_K_messages, reference::Messages::two_valued)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_map, against_crf_em_with_K_x_K_messages, reference::Messages::general)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_map, against_crf_em_with_O_K_messages, reference::Messages::two_valued)
+    ->Unit(benchmark::kMillisecond);
 
 /// Belief propagation over the whole window, messages a second.
 void belief_messages(benchmark::State& state) {
@@ -158,7 +164,8 @@ void belief_messages(benchmark::State& state) {
   auto& work = workspace.segmentation();
   segmentation.update(dem, work, counters);
   mixture.init(street().settings.planes);
-  mixture.update(dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
+  mixture.update(
+      dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
   auto& visits = workspace.visits();
   for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, visits, counters));
   state.counters["messages_per_second"] = benchmark::Counter(counters.messages, benchmark::Counter::kIsRate);
@@ -175,7 +182,8 @@ void bytes(benchmark::State& state) {
   state.counters["curbs_KiB"] = sizeof(CurbTracer<limits>) / 1024.0;
   state.counters["shared_KiB"] = sizeof(Workspace<limits>) / 1024.0;
 }
-constexpr Limits small_limits{.rows = 24, .cols = 24, .planes = 8, .beams = 361, .regions = 160, .links = 480, .borders = 256, .curbs = 64};
+constexpr Limits small_limits{
+    .rows = 24, .cols = 24, .planes = 8, .beams = 361, .regions = 160, .links = 480, .borders = 256, .curbs = 64};
 BENCHMARK(bytes<small_limits>)->Name("bytes/24x24_8_planes_361_beams")->Iterations(1);
 BENCHMARK(bytes<board_limits>)->Name("bytes/40x40_16_planes_1081_beams")->Iterations(1);
 BENCHMARK(bytes<wide_limits>)->Name("bytes/128x128_64_planes_2881_beams")->Iterations(1);

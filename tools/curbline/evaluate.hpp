@@ -21,8 +21,8 @@ struct EvaluateOptions {
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print);
 
 /// The paper's own tables on a folder of clouds with hand-drawn regions (scan-NN.xyz, scan-NN.gt): V by cloud in x, y
-/// in [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference; for
-/// curbline also from the raw streams (scan-NN.carmen, scan-NN.candump), where all are there, one after the other
+/// in [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference;
+/// for curbline also from the raw streams (scan-NN.carmen, scan-NN.candump), where all are there, one after the other
 /// through one pipeline with the robot that ships as clausius.toml.
 nlohmann::json evaluate_paper(const std::string& data, bool print);
 

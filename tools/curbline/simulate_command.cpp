@@ -17,7 +17,8 @@ void add_simulate(CLI::App& app) {
   };
   auto* command = app.add_subcommand("simulate", "A scene to scan lines, CAN log, poses and truth");
   auto o = std::make_shared<Options>();
-  command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, random:SEED or random-drive:SEED")->required();
+  command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, random:SEED or random-drive:SEED")
+      ->required();
   command->add_option("--robot", o->robot, "robot description")->required();
   command->add_option("--out", o->out, "directory to write to")->required();
   command->add_option("--seed", o->simulation.seed, "of the noise")->capture_default_str();

@@ -24,7 +24,8 @@ double v_measure(const Map& map, std::span<const int> region_of_cell);
 /// on one grid.
 double prediction_rmse(const Map& trained, const Map& other);
 
-/// Root mean square of the difference of the cells' heights, over the cells that are valid in both. 0 if there are none.
+/// Root mean square of the difference of the cells' heights, over the cells that are valid in both. 0 if there are
+/// none.
 double height_rms(const Map& a, const Map& b);
 
 }  // namespace curbline::tools

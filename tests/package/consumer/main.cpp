@@ -38,13 +38,14 @@ int main() {
     const float tilt_rad = 0.2f + 0.003f * static_cast<float>(line);
     pipeline.add_tilt({time_ns, tilt_rad});
     std::array<float, 361> ranges{};
-    for (std::size_t i = 0; i < ranges.size(); ++i) ranges[i] = range_m(-1.5f + static_cast<float>(i) * 3.0f / 360.0f, tilt_rad);
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+      ranges[i] = range_m(-1.5f + static_cast<float>(i) * 3.0f / 360.0f, tilt_rad);
     pipeline.take({time_ns, ranges});
   }
   for (const auto& curb : pipeline.curbs()) {
-    std::printf("(%.2f %.2f) - (%.2f %.2f): %.3f m +- %.3f, %s\n", static_cast<double>(curb.x0_m), static_cast<double>(curb.y0_m),
-                static_cast<double>(curb.x1_m), static_cast<double>(curb.y1_m), static_cast<double>(curb.height_m),
-                static_cast<double>(curb.height_sd_m), to_string(curb.kind));
+    std::printf("(%.2f %.2f) - (%.2f %.2f): %.3f m +- %.3f, %s\n", static_cast<double>(curb.x0_m),
+                static_cast<double>(curb.y0_m), static_cast<double>(curb.x1_m), static_cast<double>(curb.y1_m),
+                static_cast<double>(curb.height_m), static_cast<double>(curb.height_sd_m), to_string(curb.kind));
     if (curb.kind == curbline::CurbKind::step_up && curb.height_m > 0.11f && curb.height_m < 0.13f) return 0;
   }
   std::printf("no curb of 0.12 m among %zu\n", pipeline.curbs().size());
