@@ -15,7 +15,8 @@
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
 // tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
 // for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
-// away more steeply than a ramp and is no wider than the laser's spot on an edge, however the rays pass it, blurs it.
+// away more steeply than a ramp and is no wider than the shadow of what it falls and the laser's spot on an edge,
+// however the rays pass it, blurs that edge.
 // Cost: three passes over the window.
 #pragma once
 
@@ -175,13 +176,21 @@ class Ground {
       fall.own_m = ahead ? first_height_m - last_height_m : last_height_m - first_height_m;
       return fall.of_rays_m <= drop_m;
     }
-    /// Cells that hold something of both sides of an edge here, as long as the spot on the ground and one more.
-    /// `aside_m`: how far the line is from the laser.
-    float blurred_cells(const Sight& sight, float aside_m) const {
+    /// How far it begins below where `before` or `next`, the one nearer to the laser, ends; 0 if there is none.
+    float begins_below_m(const Run& before, const Run& next, LabelType none, const Sight& sight) const {
+      if (sight.ahead(first)) return before.label == none ? 0.0f : before.last_height_m - first_height_m;
+      return next.label == none ? 0.0f : next.first_height_m - last_height_m;
+    }
+    /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of
+    /// what the run falls, and one more. If a step of more than that parts it from the run before it, it is not the
+    /// fall of the edge, and casts no shadow. `aside_m`: how far the line is from the laser.
+    float blurred_cells(const Run& before, const Run& next, LabelType none, const Sight& sight, float aside_m) const {
       const float above_m = sight.eye_z_m - first_height_m, away_m = sight.away_m(first, last);
       if (!(above_m > 0.0f)) return 0.0f;
-      const float range_squared = above_m * above_m + away_m * away_m + aside_m * aside_m;
-      return 1.0f + beam_rad * range_squared / (above_m * sight.cell_m);
+      const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
+      const float fall_m = highest_m - lowest_m, step_m = begins_below_m(before, next, none, sight);
+      const float shadow = away_m > 0.0f && step_m <= fall_m && step_m >= -fall_m ? away_m * fall_m : 0.0f;
+      return 1.0f + (spot + shadow) / (above_m * sight.cell_m);
     }
   };
 
@@ -316,11 +325,11 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
            const bool leads = before.label != none && next.label != none && run.between(before, next);
            const Sight& aside = sights[1 - axis];
            const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-           if (Fall fall;
-               leads && run.in_shadow(before, next, sights[axis].across(planes[run.label], axis, aside_m), fall)) {
-             tally.shadow[axis].add(cells, fall);
+           if (leads || drops[run.label]) {
+             const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
+             if (Fall fall; leads && run.in_shadow(before, next, across, fall)) tally.shadow[axis].add(cells, fall);
+             if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, none, across, aside_m);
            }
-           if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(sights[axis], aside_m);
            if (run.length() > longest_strip) return;
            const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
            const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;

@@ -119,16 +119,15 @@ auto LabelSite<limits>::probabilities(const Heard& heard) const -> Probabilities
   constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
   const Nats logs = log_belief(heard);
   std::int32_t top = logs[0];
-  for (std::size_t c = 1; c < label.size(); ++c) {
-    if (label[c] != none && logs[c] > top) top = logs[c];
+  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
+    if (logs[c] > top) top = logs[c];
   }
   Probabilities p{};
   float sum = 0.0f;
-  for (std::size_t c = 0; c < label.size(); ++c) {
+  for (std::size_t c = 0; c < label.size() && label[c] != none; ++c) {
     const std::int32_t below = logs[c] - top;
-    p[c] = label[c] == none || below < nothing ? 0.0f
-           : below == 0                        ? 1.0f
-                                               : exp(static_cast<float>(below) * (1.0f / node_scale));
+    if (below < nothing) continue;
+    p[c] = below == 0 ? 1.0f : exp(static_cast<float>(below) * (1.0f / node_scale));
     sum += p[c];
   }
   if (!(sum > 1.0f)) return p;
@@ -153,8 +152,8 @@ auto LabelSite<limits>::most_likely(const Heard& heard) const -> LabelType {
   if (decided()) return label[0];
   const Nats logs = log_belief(heard);
   std::size_t best_one = 0;
-  for (std::size_t c = 1; c < label.size(); ++c) {
-    if (label[c] != none && logs[c] > logs[best_one]) best_one = c;
+  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
+    if (logs[c] > logs[best_one]) best_one = c;
   }
   return label[best_one];
 }

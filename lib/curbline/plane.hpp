@@ -76,9 +76,10 @@ class PlaneEvidence {
   template <typename BorderOf>
   float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b, const PlaneMoments& both,
              BorderOf&& border_of) const {
-    const float gain = score(both) - score_a - score_b;
+    const float prior = log_gamma_of(both.cells);
+    const float gain = log_evidence(both) + prior - score_a - score_b;
     if (gain < 0.0f) return gain;
-    const float by_evidence = gain - (log_gamma_of(both.cells) - log_gamma_of(a.cells) - log_gamma_of(b.cells));
+    const float by_evidence = gain - (prior - log_gamma_of(a.cells) - log_gamma_of(b.cells));
     return by_evidence < 0.0f && parted(a, b, border_of()) ? by_evidence : gain;
   }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "support/small_map.hpp"
@@ -365,6 +366,23 @@ TEST_CASE("border finder: an edge that the spots of rays askew blur is a step do
   };
   CHECK(steps_down({-2.0f, 1.2f, 1.0f}) == 1);
   CHECK(steps_down({1.2f, 1.2f, 1.0f}) == 0);
+}
+
+// ____________          from far away the shadow of a step of 6 cm and the laser's spot are as long together as
+//             \____     the 40 cm over which the ground falls; from near by they are not, and it is a ramp
+TEST_CASE("border finder: what falls over the shadow of an edge and the spot on it is a step, from near by a ramp") {
+  const auto kinds = [](float laser_y_m) {
+    Stages<small_limits> stages(small_settings());
+    test::fill(stages.dem, [](double, double y) { return y < 1.2 ? 0.0 : y < 1.6 ? -0.14 * (y - 1.2) : -0.056; });
+    stages.view = {1.2f, laser_y_m, 1.3f};
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(stages.view.x_m, stages.view.y_m);
+    std::set<CurbKind> found;
+    for (const Curb& curb : stages.tracer.curbs()) found.insert(curb.kind);
+    return found;
+  };
+  CHECK(kinds(-3.3f) == std::set{CurbKind::step_down});
+  CHECK(kinds(0.6f) == std::set{CurbKind::ramp_edge});
 }
 
 TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which there is ground, are no brinks") {
