@@ -236,7 +236,8 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   return Status::ok;
 }
 
-/// Poses that may be wrong, and the tilt's latency. What the latency turns out to be moves the map.
+/// By ground that was mapped before: whose a jump of the poses was, and how late the tilt is. What the latency turns
+/// out to be moves the map.
 template <Limits limits>
 void Pipeline<limits>::compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion) {
   const MapComparison<limits> map(dem_, plane_mixture_, label_field_, ceiling_m_);
