@@ -1,0 +1,87 @@
+// What a line says against ground that an earlier sweep has mapped: which of its points are asked, and of what.
+#include "curbline/map_comparison.hpp"
+
+#include <catch2/catch.hpp>
+#include <memory>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::small_limits;
+using test::Stages;
+
+constexpr float growth_m_s = 1.0f, rate_rad_s = 0.5f, lag_s = 0.01f;
+
+float slope_m(float x_m) {
+  return 0.1f * x_m;
+}
+
+/// A slope that a sweep has seen; the next one begins, of which every line is late by lag_s.
+struct Late {
+  Late() {
+    test::fill(stages->dem, [](double x, double) { return static_cast<double>(slope_m(static_cast<float>(x))); });
+    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->dem.begin_sweep();
+    const Settings settings = test::small_settings();
+    latency.init(settings.tilt, settings.pose);
+    offset.init(settings.pose);
+    latency.follow(0.2f, rate_rad_s, 0);
+  }
+  /// Twenty lines of a point in each column, in row i.
+  void look(int i, float ceiling_m = 1.0f) {
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m);
+    for (std::uint32_t n = 1; n <= 20; ++n) {
+      latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
+      auto line = std::make_unique<ProjectedLine<small_limits>>();
+      const float x_m = 0.1f * static_cast<float>(i) + 0.02f;  // not where the cell's points lie: the slope tells
+      for (int j = 0; j < 24; ++j) {
+        Point p{x_m, 0.1f * static_cast<float>(j) + 0.05f, slope_m(x_m), 1e-4f};
+        p.z_m -= growth_m_s * (lag_s - latency.offset_s());
+        p.growth_m_s = growth_m_s;
+        line->add(p);
+      }
+      map.follow_latency(*line, LineMotion{}, offset, latency);
+      latency.end_line(-rate_rad_s);
+    }
+  }
+
+  std::unique_ptr<Stages<>> stages = std::make_unique<Stages<>>(test::small_settings());
+  TiltLatency latency{};
+  PoseOffset offset{};
+};
+
+TEST_CASE("map comparison: points on ground of an earlier sweep tell how late the tilt is, by the slope of its plane") {
+  Late late;
+  late.look(12);
+  CHECK(late.latency.offset_s() == Approx(lag_s).margin(0.001));
+}
+
+TEST_CASE("map comparison: ground that this sweep has seen, or that holds two surfaces, tells nothing of it") {
+  Late seen, two;
+  for (int j = 0; j < 24; ++j) {
+    const float y_m = 0.1f * static_cast<float>(j) + 0.05f;
+    seen.stages->dem.add({1.25f, y_m, slope_m(1.25f), 1e-4f});
+  }
+  seen.look(12);
+  CHECK(seen.latency.offset_s() == 0.0f);
+  for (int j = 0; j < 24; ++j) {
+    const float y_m = 0.1f * static_cast<float>(j) + 0.05f;
+    for (int k = 0; k < 4; ++k) two.stages->dem.add({1.25f, y_m, slope_m(1.25f) + 0.05f, 1e-4f});
+  }
+  two.stages->dem.begin_sweep();
+  two.look(12);
+  CHECK(two.latency.offset_s() == 0.0f);
+}
+
+TEST_CASE("map comparison: points above the ceiling and beside the window are asked nothing") {
+  Late high, outside;
+  high.look(12, 0.1f);
+  CHECK(high.latency.offset_s() == 0.0f);
+  outside.look(24);
+  CHECK(outside.latency.offset_s() == 0.0f);
+}
+
+}  // namespace
+}  // namespace curbline
