@@ -228,8 +228,8 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = dem.height_variance_m2(cell);
-  std::array<float, label_candidates>
-      doubt{};  // exp(-2 log potential): a logarithm each of those that are kept is enough
+  // exp(-2 log potential): a logarithm each of those that are kept is enough.
+  std::array<float, label_candidates> doubt{};
   typename Site::Labels label{none, none, none};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);

@@ -29,7 +29,7 @@ struct Late {
     offset.init(settings.pose);
     latency.follow(0.2f, rate_rad_s, 0);
   }
-  /// Twenty lines of a point in each column, in row i.
+  /// Twenty lines, each with a point of row i in every column.
   void look(int i, float ceiling_m = 1.0f) {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m);
     for (std::uint32_t n = 1; n <= 20; ++n) {
