@@ -25,12 +25,17 @@ class MapComparison {
   /// `reach` from its points on a row or column, and sets the line back by what is known then.
   void follow_jump(ProjectedLine<limits>& line, int reach, const TiltLatency& latency, PoseOffset& offset) const;
 
+  /// Of a line that is measured while poses jump: do points lie off the map, the same way, by as much as they jump?
+  bool lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, int reach, const TiltLatency& latency,
+                const PoseOffset& offset) const;
+
   /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
   void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
                       TiltLatency& latency) const;
 
  private:
   using Place = typename Dem<limits>::Place;
+  void compare(const ProjectedLine<limits>& line, int reach, const TiltLatency& latency, PoseOffset& offset) const;
   /// What a cell says of the ground at a point.
   struct Ground {
     float above_m, variance_m2;  ///< how far the point lies above it; variance of the ground's own height
@@ -48,6 +53,24 @@ class MapComparison {
 template <Limits limits>
 void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, int reach, const TiltLatency& latency,
                                         PoseOffset& offset) const {
+  compare(line, reach, latency, offset);
+  const PoseShift shift = offset.end_line();
+  if (!shift.any()) return;
+  for (Point& p : line.points()) p.z_m += offset.at(shift, p.x_m, p.y_m);
+}
+
+template <Limits limits>
+bool MapComparison<limits>::lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, int reach,
+                                     const TiltLatency& latency, const PoseOffset& offset) const {
+  PoseOffset suspect = offset.suspecting(jumps);
+  compare(line, reach, latency, suspect);
+  suspect.end_line();
+  return suspect.likelier();
+}
+
+template <Limits limits>
+void MapComparison<limits>::compare(const ProjectedLine<limits>& line, int reach, const TiltLatency& latency,
+                                    PoseOffset& offset) const {
   Ground ground;
   for (const Point& p : line.points()) {
     if (p.z_m > ceiling_m_) continue;
@@ -64,9 +87,6 @@ void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, int reach, 
     offset.compare(
         {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
   }
-  const PoseShift shift = offset.end_line();
-  if (!shift.any()) return;
-  for (Point& p : line.points()) p.z_m += offset.at(shift, p.x_m, p.y_m);
 }
 
 template <Limits limits>

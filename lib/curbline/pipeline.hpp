@@ -112,7 +112,7 @@ class Pipeline {
   Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping);
-  void compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion);
+  bool compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion);
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -231,22 +231,31 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     move_window(T_map_base);
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
-  compare_with_map(work.projected, motion);
+  if (!compare_with_map(work.projected, motion)) {
+    ++counters_.lines_off_map;
+    return Status::ok;
+  }
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }
 
 /// By ground that was mapped before: whose a jump of the poses was, and how late the tilt is. What the latency turns
-/// out to be moves the map.
+/// out to be moves the map. False if the line was measured as poses jumped, and the map says that it does not lie where
+/// they have it: a ridge as high as the jump, of a single line.
 template <Limits limits>
-void Pipeline<limits>::compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion) {
+bool Pipeline<limits>::compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion) {
   const MapComparison<limits> map(dem_, plane_mixture_, label_field_, ceiling_m_);
-  if (pose_offset_.undecided() && !motion.jumps.any())
-    map.follow_jump(line, settings_.segmentation.link_reach, tilt_latency_, pose_offset_);
-  if (settings_.tilt.fixed) return;
+  const int reach = settings_.segmentation.link_reach;
+  if (!motion.jumps.any()) {
+    if (pose_offset_.undecided()) map.follow_jump(line, reach, tilt_latency_, pose_offset_);
+  } else if (!pose_track_.climbs() && map.lies_off(line, motion.jumps, reach, tilt_latency_, pose_offset_)) {
+    return false;
+  }
+  if (settings_.tilt.fixed) return true;
   map.follow_latency(line, motion, pose_offset_, tilt_latency_);
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
+  return true;
 }
 
 /// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.

@@ -26,6 +26,12 @@ class PoseOffset {
 
   /// Is it open who has made the last step?
   bool undecided() const { return undecided_; }
+  /// Does it seem to be the localisation?
+  bool likelier() const { return likelier_; }
+
+  /// With a step from now on of which no more is known than that it is about as large as poses have jumped: of a line
+  /// that is measured while they do.
+  PoseOffset suspecting(const PoseJumps& jumps) const;
 
   /// A point of the line, and the ground there that was mapped before the step.
   struct Sighting {
@@ -61,6 +67,8 @@ class PoseOffset {
   };
   void see(const Row& of, float correction, float variance);
   void settle();
+  void open(const PoseShift& stepped, float height_variance_m2, float attitude_variance);
+  float step_variance_m2(float dx_m, float dy_m) const;
 
   float x_m_ = 0.0f, y_m_ = 0.0f;         ///< where the robot is
   PoseShift offset_{};                    ///< if the robot has made the last step ...

@@ -108,6 +108,8 @@ class PoseTrack {
   /// What the poses since the last call, as far as they are not later than a line's first beam, say of steps. O(1) a
   /// pose.
   PoseSteps take_steps(std::int64_t until_ns);
+  /// By those poses: do they jump on end, as a robot's do that climbs?
+  bool climbs() const { return moves_; }
 
   bool empty() const { return size_ == 0; }
   const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }

@@ -50,18 +50,29 @@ void PoseOffset::follow(const PoseSteps& steps, float x_m, float y_m) {
   if (steps.withdrawn) undecided_ = likelier_ = false;
   if (steps.begun) {
     settle();
-    stepped_ = offset_ - steps.by;
-    covariance_ = {};
-    covariance_[0][0] = poses_of_a_step * height_variance_m2_;
-    covariance_[1][1] = covariance_[2][2] = poses_of_a_step * attitude_variance_;
-    undecided_ = true;
-    confirmed_ = false;
-    evidence_ = 0.0f;
+    open(offset_ - steps.by, poses_of_a_step * height_variance_m2_, poses_of_a_step * attitude_variance_);
   }
   if (steps.confirmed) {
     confirmed_ = true;
     evidence_ += rarely;
   }
+}
+
+PoseOffset PoseOffset::suspecting(const PoseJumps& jumps) const {
+  PoseOffset suspect = *this;
+  suspect.settle();
+  suspect.open(suspect.offset_, jumps.height_m2, jumps.attitude_rad2);
+  return suspect;
+}
+
+void PoseOffset::open(const PoseShift& stepped, float height_variance_m2, float attitude_variance) {
+  stepped_ = stepped;
+  covariance_ = {};
+  covariance_[0][0] = height_variance_m2;
+  covariance_[1][1] = covariance_[2][2] = attitude_variance;
+  undecided_ = true;
+  confirmed_ = false;
+  evidence_ = 0.0f;
 }
 
 void PoseOffset::settle() {
@@ -74,10 +85,11 @@ void PoseOffset::compare(const Sighting& seen) {
   ++points_;
   const float dx = seen.x_m - x_m_, dy = seen.y_m - y_m_;
   const float pose_m2 = height_variance_m2_ + attitude_variance_ * (dx * dx + dy * dy);
-  const float bound_m2 =
-      gate * (seen.variance_m2 + seen.common_variance_m2 + (poses_compared + poses_of_a_step) * pose_m2);
+  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + poses_compared * pose_m2;
   const float lacks_m = offset().at(dx, dy) - seen.above_m;  // the offset that the point asks for
-  if (square(lacks_m - offset_.at(dx, dy)) > bound_m2 && square(lacks_m - stepped_.at(dx, dy)) > bound_m2) return;
+  if (square(lacks_m - offset_.at(dx, dy)) > gate * variance_m2 &&
+      square(lacks_m - stepped_.at(dx, dy)) > gate * (variance_m2 + step_variance_m2(dx, dy)))
+    return;
   const float w = 1.0f / seen.variance_m2;
   seen_.w += w;
   seen_.x += w * dx;
@@ -90,6 +102,11 @@ void PoseOffset::compare(const Sighting& seen) {
   seen_.yz += w * dy * lacks_m;
   seen_.common_m2 += seen.common_variance_m2 + poses_compared * pose_m2;
   ++seen_.points;
+}
+
+float PoseOffset::step_variance_m2(float dx, float dy) const {
+  const auto& p = covariance_;
+  return p[0][0] + dx * (2.0f * p[0][1] + dx * p[1][1]) + dy * (2.0f * (p[0][2] + dx * p[1][2]) + dy * p[2][2]);
 }
 
 /// A number that is linear in the offset: its likelihoods, and Kalman's update.

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
+#include "support/noisy_poses.hpp"
 #include "support/small_map.hpp"
 
 namespace curbline {
@@ -81,6 +82,49 @@ TEST_CASE("map comparison: points above the ceiling and beside the window are as
   CHECK(high.latency.offset_s() == 0.0f);
   outside.look(24);
   CHECK(outside.latency.offset_s() == 0.0f);
+}
+
+/// Level ground seen before poses jump by 2 cm, and lines measured as they do.
+struct Jumping {
+  Jumping() {
+    test::fill(stages->dem, [](double, double) { return 0.0; });
+    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->dem.begin_marking();
+    const Settings settings = test::small_settings();
+    latency.init(settings.tilt, settings.pose);
+    offset.init(test::noisy_poses());
+    offset.follow({}, 0.0f, 1.2f);
+  }
+  /// Is a line across, with its points so high, off the map?
+  bool off(float above_m, float slope_y = 0.0f) const {
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f);
+    auto line = std::make_unique<ProjectedLine<small_limits>>();
+    for (int j = 0; j < 24; ++j) {
+      const float y_m = 0.1f * static_cast<float>(j) + 0.05f;
+      line->add({1.25f, y_m, above_m + slope_y * (y_m - 1.2f), 1e-4f});
+    }
+    return map.lies_off(*line, {square(0.02f), square(0.007f)}, 10, latency, offset);
+  }
+
+  std::unique_ptr<Stages<>> stages = std::make_unique<Stages<>>(test::small_settings());
+  TiltLatency latency{};
+  PoseOffset offset{};
+};
+
+TEST_CASE("map comparison: a line that was measured as poses jumped is off the map if it lies above or below it") {
+  const Jumping jumping;
+  CHECK(jumping.off(0.02f));
+  CHECK(jumping.off(-0.02f));
+  CHECK(jumping.off(0.0f, 0.02f));
+  CHECK_FALSE(jumping.off(0.0f));
+  CHECK_FALSE(jumping.off(0.003f));
+  CHECK_FALSE(jumping.offset.undecided());
+}
+
+TEST_CASE("map comparison: of a line on ground that has been seen since alone nothing is known") {
+  const Jumping jumping;
+  test::fill(jumping.stages->dem, [](double, double) { return 0.0; });
+  CHECK_FALSE(jumping.off(0.02f));
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ nlohmann::json summary_of(const Replay& replay) {
           {"latency_steps", latency.steps()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},
+          {"lines_off_map", c.lines_off_map},
           {"poses_dropped", c.poses_dropped},
           {"regions_full", c.regions_full},
           {"links_full", c.links_full},
