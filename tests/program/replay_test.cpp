@@ -169,6 +169,41 @@ TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind
   CHECK(curb_rates(found, std::span(&rim, 1), cell_m, [](double, double) { return true; }).recall > 0.9);
 }
 
+//   y      y = 1: a kerb along the way that grows from 2 cm to 10 cm
+//   0      ->
+//   0                        8 m
+TEST_CASE("program: what a drive has left behind of a curb is as high as the curb is there") {
+  const TemporaryDirectory dir;
+  const std::string scene =
+      dir.write("kerb.toml",
+                "[ground]\nz = 0\n[[region]]\nrectangle = [-20, 1, 20, 20]\nz = 0.02\nslope = [0.01, 0]\n"
+                "[robot]\npath = [[0, 0], [8, 0]]\n");
+  const Recording logs(scene, "utm30lx");
+  replay(logs);
+  double behind_m = 0;
+  for (const MapCurb& c : read_curbs(logs.path("curbs.csv"))) {
+    const double length_m = std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m), x_m = 0.5 * (c.x0_m + c.x1_m);
+    if (c.kind != "step_up" || x_m > 7.0 || std::abs(0.5 * (c.y0_m + c.y1_m) - 1.0) > place_m) continue;
+    INFO("from " << c.x0_m << " to " << c.x1_m);
+    CHECK(c.height_m == Approx(0.02 + 0.01 * x_m).margin(0.004));
+    behind_m += length_m;
+  }
+  CHECK(behind_m > 4.0);
+}
+
+TEST_CASE("program: a localisation that thinks better of itself within a line leaves no ridge on level ground") {
+  const TemporaryDirectory dir;
+  const std::string scene =
+      dir.write("level.toml", "[ground]\nz = 0\n[robot]\npath = [[0, 0], [6, 0]]\nspeed = 1\n");
+  std::string robot = read_file(shipped_robot("utm30lx"));
+  robot += "pose_jump_every_s = 1.5\npose_jump_height_m = 0.02\npose_jump_attitude_rad = 0.007\n";
+  const Recording logs(scene, dir.write("robot.toml", robot));
+  const Outcome outcome = curbline(logs.replay() + results(logs) + Words{"--json"});
+  REQUIRE(outcome.status == 0);
+  for (const MapCurb& c : read_curbs(logs.path("curbs.csv"))) CHECK_FALSE(is_step(c));
+  CHECK(nlohmann::json::parse(outcome.out).at("lines_off_map") >= 2);
+}
+
 TEST_CASE("program: evaluate scores the whole way of a drive, not only what its last window saw") {
   const Recording logs("city", "utm30lx", {"--duration", "20"});
   nlohmann::json figures = evaluate(logs);  // the window has left the bed behind

@@ -25,5 +25,18 @@ TEST_CASE("map: a map that is moved has its planes where its cells are") {
   CHECK(map.curbs[0].height_m == 0.12);
 }
 
+TEST_CASE("map: a part of a curb is as high as the curb is there, up or down") {
+  const MapCurb curb{.x0_m = 1, .y0_m = 2, .x1_m = 5, .y1_m = 2, .height_m = 0.03, .kind = "step_up", .rise_m = 0.08};
+  const MapCurb end = part_of(curb, {0.75, 1.0}), middle = part_of(curb, {0.25, 0.75}), start = part_of(curb, {0, 0.2});
+  CHECK(end.x0_m == Approx(4));
+  CHECK(end.height_m == Approx(0.06));
+  CHECK(end.rise_m == Approx(0.02));
+  CHECK(middle.height_m == Approx(0.03));
+  CHECK(start.height_m == Approx(-0.002));
+  CHECK(end.kind == "step_up");
+  CHECK(start.kind == "step_down");
+  CHECK(part_of({.x1_m = 4, .kind = "crease"}, {0, 0.2}).kind == "crease");
+}
+
 }  // namespace
 }  // namespace curbline::tools

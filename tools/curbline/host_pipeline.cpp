@@ -48,11 +48,29 @@ class PipelineOf final : public HostPipeline {
       for (int j = 0; j < dem.cols(); ++j) map.cells[map.grid.at(i, j)] = cell(i, j);
     }
     for (int label = 0; label < limits.planes; ++label) add_plane(map, label);
-    for (const Curb& curb : pipeline_.curbs()) map.curbs.push_back(to_map_curb(curb));
+    map.curbs = map_curbs();
     return map;
   }
 
+  std::vector<MapCurb> map_curbs() const override {
+    std::vector<MapCurb> out;
+    for (const Curb& curb : pipeline_.curbs()) {
+      out.push_back(to_map_curb(curb));
+      out.back().rise_m = rise_m(curb);
+    }
+    return out;
+  }
+
  private:
+  /// By the slopes of both planes.
+  double rise_m(const Curb& curb) const {
+    if (!is_step(curb) || curb.near_label == no_label<limits> || curb.far_label == no_label<limits>) return 0;
+    const Plane &near = pipeline_.plane(curb.near_label), &far = pipeline_.plane(curb.far_label);
+    if (!near.alive() || !far.alive()) return 0;
+    return (far.slope_x - near.slope_x) * (curb.x1_m - curb.x0_m) +
+           (far.slope_y - near.slope_y) * (curb.y1_m - curb.y0_m);
+  }
+
   MapCell cell(int i, int j) const {
     const Dem<limits>& dem = pipeline_.dem();
     const Cell& from = dem.cell(dem.slot(i, j));

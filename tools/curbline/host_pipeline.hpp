@@ -57,6 +57,7 @@ class HostPipeline {
   /// Place of the window now, and everything in it.
   virtual Grid grid() const = 0;
   virtual Map map() const = 0;
+  virtual std::vector<MapCurb> map_curbs() const = 0;
 };
 
 /// Throws BadInput if the settings are refused; one beyond the largest limits is too.

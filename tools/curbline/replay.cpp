@@ -99,8 +99,7 @@ bool Replay::step(std::vector<Point>* points) {
   feed_tilt(last_beam_ns +
             static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
-  curbs_before_.clear();
-  for (const Curb& curb : pipeline_->curbs()) curbs_before_.push_back(to_map_curb(curb));
+  curbs_before_ = pipeline_->map_curbs();
   const ScanLine line{line_.time_ns, line_.ranges_m};
   const auto start = std::chrono::steady_clock::now();
   status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
@@ -232,7 +231,8 @@ void Replay::check_complete() const {
 
 std::vector<MapCurb> Replay::all_curbs() const {
   std::vector<MapCurb> all = left_behind_;
-  for (const Curb& curb : pipeline_->curbs()) all.push_back(to_map_curb(curb));
+  const std::vector<MapCurb> now = pipeline_->map_curbs();
+  all.insert(all.end(), now.begin(), now.end());
   return all;
 }
 

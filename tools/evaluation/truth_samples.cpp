@@ -11,10 +11,6 @@ constexpr double aside_m = 0.2;
 
 }  // namespace
 
-bool is_step(const MapCurb& curb) {
-  return curb.kind.starts_with("step");
-}
-
 std::vector<TruthSample> truth_samples(const Truth& truth) {
   std::vector<TruthSample> out;
   for (std::size_t k = 0; k < truth.curbs.size(); ++k) {

@@ -12,9 +12,6 @@
 
 namespace curbline::tools {
 
-/// Whether a found piece is told as a step, up or down; creases and edges of ramps are none.
-bool is_step(const MapCurb& curb);
-
 /// A place on a true step.
 struct TruthSample {
   std::size_t curb = 0;  ///< of Truth::curbs

@@ -2,6 +2,10 @@
 
 namespace curbline::tools {
 
+bool is_step(const MapCurb& curb) {
+  return curb.kind.starts_with("step");
+}
+
 MapCurb part_of(const MapCurb& curb, const Share& share) {
   const double dx = curb.x1_m - curb.x0_m, dy = curb.y1_m - curb.y0_m;
   MapCurb part = curb;
@@ -9,6 +13,9 @@ MapCurb part_of(const MapCurb& curb, const Share& share) {
   part.y0_m = curb.y0_m + share.from * dy;
   part.x1_m = curb.x0_m + share.to * dx;
   part.y1_m = curb.y0_m + share.to * dy;
+  part.height_m = curb.height_m + (0.5 * (share.from + share.to) - 0.5) * curb.rise_m;
+  part.rise_m = (share.to - share.from) * curb.rise_m;
+  if (is_step(curb)) part.kind = part.height_m < 0 ? "step_down" : "step_up";
   return part;
 }
 

@@ -49,12 +49,16 @@ struct MapPlane {
 struct MapCurb {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
   double height_m = 0, height_sd_m = 0, probability = 0;
-  std::string kind;  ///< step_up, step_down, crease, ramp_edge
+  std::string kind{};  ///< step_up, step_down, crease, ramp_edge
   double face_width_m = 0;
-  int id = 0;  ///< 0: it has none
+  int id = 0;         ///< 0: it has none
+  double rise_m = 0;  ///< how much height_m, which is that of the middle, grows from one end to the other
 };
 
-/// That part of a curb line, all else as it is.
+/// Told as a step, up or down; creases and edges of ramps are none.
+bool is_step(const MapCurb& curb);
+
+/// That part of a curb line, as high as it is there.
 MapCurb part_of(const MapCurb& curb, const Share& share);
 
 struct Map {
