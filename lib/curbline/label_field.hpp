@@ -147,7 +147,8 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   first_row_ = first + 1;
   const int band = band_ < rows ? band_ : 0;
   band_ = band + settings_.refresh_rows;
-  int left = scope == FieldScope::line ? settings_.max_messages / directions : capacity;
+  const int messages = settings_.max_messages > 0 ? settings_.max_messages : 3 * rows * dem.cols() / 4;
+  int left = scope == FieldScope::line ? messages / directions : capacity;
   /// `visited`, with `renew` or without, or `quiet`.
   const auto wanted = [&](int s) -> std::uint8_t {
     const std::uint8_t before = flag_[static_cast<std::size_t>(s)];

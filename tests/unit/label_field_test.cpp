@@ -297,6 +297,16 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   CHECK(bounded->counters.cells_deferred == deferred);
 }
 
+TEST_CASE("label field: a budget that is not given grows with the window, three messages for four cells") {
+  const int rows = GENERATE(12, 24);
+  Settings settings = small_settings(rows, 24);
+  settings.labels.max_messages = 0;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  stages->infer();
+  CHECK(stages->counters.messages == 3u * static_cast<unsigned>(rows) * 24u / 4u);
+}
+
 int cells_without_label(const Stages<>& stages) {
   int without = 0;
   for (int i = 0; i < 24; ++i) {

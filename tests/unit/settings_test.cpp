@@ -94,7 +94,7 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
   refuses(bad, [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
   refuses(bad, [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
-  refuses(bad, [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 0, -1});
+  refuses(bad, [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 1, -1});
   refuses(bad, [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});
   refuses(bad, [](Settings& s) -> float& { return s.curbs.max_step_m; }, {0.0f, nan, infinity});
 }
