@@ -19,6 +19,7 @@
 #include "curbline/line_projection.hpp"  // beams to points with variance
 #include "curbline/point.hpp"            //
 #include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
+#include "curbline/viewpoints.hpp"       // from where a robot that drives has seen them
 #include "curbline/dem.hpp"              // rolling window of cells
 #include "curbline/link.hpp"             // neighbours on a row or column
 #include "curbline/segmentation.hpp"     // leaves, regions
@@ -36,6 +37,7 @@
 #include "curbline/curb.hpp"             // out: a curb
 #include "curbline/line_fit.hpp"         // a straight piece of it
 #include "curbline/shadow.hpp"           // of a step down
+#include "curbline/curb_piece.hpp"       // borders on one line
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share

@@ -13,6 +13,7 @@
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/viewpoints.hpp"
 
 namespace curbline {
 
@@ -138,13 +139,10 @@ class Dem {
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
   bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & touched_bit) != 0; }
   void clear_touched() {
-    if (any_touched_) {
-      for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~touched_bit);
-    }
+    if (any_touched_) clear_all(touched_bit);
     any_touched_ = false;
   }
 
-  /// True if any cell is.
   bool any_touched() const { return any_touched_; }
 
   /// Calls visit(i, j, slot) for each valid cell, row by row.
@@ -163,16 +161,26 @@ class Dem {
   }
 
   /// The laser sweeps over the ground anew. A pass over the window.
-  void begin_sweep();
+  void begin_sweep() { clear_all(sweep_bit); }
   /// Has an earlier sweep seen the cell, and this one not yet?
   bool mapped_before(int slot) const {
-    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] ^ sweep_) >= a_sweep;
+    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] & sweep_bit) == 0;
   }
   /// From now on cells that are seen bear a mark. A pass over the window.
-  void begin_marking() {
-    for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~marked_bit);
-  }
+  void begin_marking() { clear_all(marked_bit); }
   bool marked(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & marked_bit) != 0; }
+  /// The laser is there, in the map frame: what is seen from now on is seen from there.
+  void look_from(float x_m, float y_m) {
+    viewpoints_.look_from({x_m, y_m});
+    flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + touched_bit + marked_bit + sweep_bit);
+  }
+  /// From where a cell was seen last: from `now`, with the laser in another place.
+  Viewpoint seen_from(int slot, const Viewpoint& now) const {
+    const Viewpoints::Place& place = viewpoints_.at(touched_[static_cast<std::size_t>(slot)] / a_viewpoint);
+    return {place.x_m - origin_x_m(), place.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
+  }
+  /// If not, all has been seen from one place.
+  bool seen_from_several() const { return viewpoints_.moved(); }
   /// Mean of its points' growth by the tilt's latency.
   float growth_m_s(int slot) const {
     return static_cast<float>(growth_[static_cast<std::size_t>(slot)]) * (1.0f / growth_scale);
@@ -206,7 +214,11 @@ class Dem {
 
  private:
   static constexpr int growth_scale = 1024;
-  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, a_sweep = 4;
+  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
+  static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
+  void clear_all(std::uint8_t bit) {
+    for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~bit);
+  }
   static int wrap(std::int32_t index, int size) {
     const int r = index % size;
     return r < 0 ? r + size : r;
@@ -227,10 +239,11 @@ class Dem {
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
   std::array<Cell, capacity> cells_{};
-  /// Both bits; above them the number of the sweep that touched the cell last.
+  Viewpoints viewpoints_{};
+  /// The bits, of this sweep the third; above them the number of the viewpoint that the cell was seen from last.
   std::array<std::uint8_t, capacity> touched_{};
-  std::uint8_t sweep_ = 0;
-  std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
+  std::uint8_t flags_ = touched_bit + marked_bit + sweep_bit;  ///< of a cell that is seen now
+  std::array<std::int16_t, capacity> growth_{};                ///< in 1 / growth_scale m/s
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;
 };
@@ -242,6 +255,10 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   common_m2_ = prior.common_m2();
   cells_.fill(Cell{});
   touched_.fill(0);
+  flags_ = touched_bit + marked_bit + sweep_bit;
+  const float along_x_m = static_cast<float>(settings.rows) * settings.cell_x_m;
+  const float along_y_m = static_cast<float>(settings.cols) * settings.cell_y_m;
+  viewpoints_.init(along_x_m > along_y_m ? along_x_m : along_y_m);
   growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;
@@ -315,7 +332,7 @@ void Dem<limits>::leave(int i, int j) {
   cells_[static_cast<std::size_t>(s)] = Cell{};
   growth_[static_cast<std::size_t>(s)] = 0;
   distances_[static_cast<std::size_t>(s)] = 0;
-  touched_[static_cast<std::size_t>(s)] = static_cast<std::uint8_t>(sweep_ | touched_bit | marked_bit);
+  touched_[static_cast<std::size_t>(s)] = flags_;
   any_touched_ = true;
 }
 
@@ -359,7 +376,7 @@ bool Dem<limits>::add(const Point& point) {
                 (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
   add_growth(s, point.growth_m_s, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
-  touched_[s] = static_cast<std::uint8_t>(sweep_ | touched_bit | marked_bit);
+  touched_[s] = flags_;
   any_touched_ = true;
   return true;
 }
@@ -371,17 +388,6 @@ void Dem<limits>::add_growth(std::size_t s, float growth_m_s, float weight) {
   const float now = before + weight / cells_[s].weight * (point - before);
   if (now > -most_growth_m_s * growth_scale && now < most_growth_m_s * growth_scale)
     growth_[s] = static_cast<std::int16_t>(now + (now < 0.0f ? -0.5f : 0.5f));
-}
-
-/// Numbers come again after 64 sweeps: what bears this one's is then as old as the last.
-template <Limits limits>
-void Dem<limits>::begin_sweep() {
-  const std::uint8_t last = sweep_;
-  sweep_ = static_cast<std::uint8_t>(sweep_ + a_sweep);
-  for (std::uint8_t& touched : touched_) {
-    if ((touched ^ sweep_) < a_sweep)
-      touched = static_cast<std::uint8_t>(last | (touched & (touched_bit | marked_bit)));
-  }
 }
 
 template <Limits limits>

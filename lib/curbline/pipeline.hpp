@@ -229,6 +229,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : T_map_base.translation.z());
     p_map_tilt_ = T_map_base * p_base_tilt();
     move_window(T_map_base);
+    dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
   }
   line_projection_.project(line, work.tilt, motion, counters_, work.projected);
   if (!compare_with_map(work.projected, motion)) {

@@ -60,8 +60,8 @@ bool good_inference(const Settings& s) {
          within(prior.degrees, 1.0f, 1e6f) && within(prior.common_share, PlanePrior::least_common_share, 1.0f) &&
          within(prior.curvature_1_m, 0.0f, 10.0f) && s.planes.min_cells >= 3.0f &&
          within(s.labels.coupling, 0.01f, 7.9f) && s.labels.link_reach >= 1 && s.labels.link_reach <= max_link_reach &&
-         s.labels.refresh_rows >= 0 && (s.labels.max_messages == 0 || s.labels.max_messages >= 4) && s.curbs.link_reach >= 1 &&
-         s.curbs.link_reach <= max_link_reach && positive(s.curbs.max_step_m);
+         s.labels.refresh_rows >= 0 && (s.labels.max_messages == 0 || s.labels.max_messages >= 4) &&
+         s.curbs.link_reach >= 1 && s.curbs.link_reach <= max_link_reach && positive(s.curbs.max_step_m);
 }
 
 }  // namespace

@@ -193,8 +193,7 @@ TEST_CASE("program: what a drive has left behind of a curb is as high as the cur
 
 TEST_CASE("program: a localisation that thinks better of itself within a line leaves no ridge on level ground") {
   const TemporaryDirectory dir;
-  const std::string scene =
-      dir.write("level.toml", "[ground]\nz = 0\n[robot]\npath = [[0, 0], [6, 0]]\nspeed = 1\n");
+  const std::string scene = dir.write("level.toml", "[ground]\nz = 0\n[robot]\npath = [[0, 0], [6, 0]]\nspeed = 1\n");
   std::string robot = read_file(shipped_robot("utm30lx"));
   robot += "pose_jump_every_s = 1.5\npose_jump_height_m = 0.02\npose_jump_attitude_rad = 0.007\n";
   const Recording logs(scene, dir.write("robot.toml", robot));

@@ -39,6 +39,20 @@ double total_length_m(std::span<const Curb> curbs) {
   return sum;
 }
 
+/// Points every 2 cm of the window.
+template <typename Height>
+std::vector<Point> fine_grid(Height&& height_m) {
+  std::vector<Point> points;
+  for (int i = 0; i < 120; ++i) {
+    for (int j = 0; j < 120; ++j) {
+      const double x = 0.02 * i + 0.01, y = 0.02 * j + 0.01;
+      points.push_back({static_cast<float>(x), static_cast<float>(y),
+                        static_cast<float>(height_m(x, y) + ((i + j) % 2 == 0 ? 0.002 : -0.002)), 1e-4f});
+    }
+  }
+  return points;
+}
+
 double up(double x, double) {
   return x < 1.4 ? 0.0 : 0.12;
 }
@@ -77,6 +91,47 @@ TEST_CASE("curb tracer: seen from above the same step goes down") {
   CHECK(curb.kind == CurbKind::step_down);
   CHECK(curb.height_m == Approx(-0.12).margin(4 * curb.height_sd_m));
   CHECK(curb.near_label == stages->label_at(23, 0));
+}
+
+/// A step down of 12 cm at x = 1.2, with what it hides from a laser 1 m up at x = -0.8.
+std::unique_ptr<Stages<>> seen_over_an_edge() {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  const double hidden_m = 2.0 * 0.12 / (1.0 - 0.12);
+  stages->dem.look_from(-0.8f, 1.2f);
+  for (const Point& p : fine_grid([](double x, double) { return x < 1.2 ? 0.12 : 0.0; })) {
+    if (p.x_m < 1.2f || p.x_m > 1.2 + hidden_m) stages->dem.add(p);
+  }
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  return stages;
+}
+
+//  -0.8     0.9  1.2        a robot that has driven up to the edge, or over it, has seen what lies behind from afar
+//   o  ->    o    |____
+TEST_CASE("curb tracer: an edge lies before its shadow from where it was seen, wherever the robot is by now") {
+  const auto stages = seen_over_an_edge();
+  for (const float robot_x_m : {-0.8f, 0.9f, 1.9f}) {
+    INFO("robot at " << robot_x_m);
+    stages->dem.look_from(robot_x_m, 1.2f);
+    stages->trace(robot_x_m, 1.2f);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    const Curb& curb = stages->tracer.curbs()[0];
+    CHECK(curb.kind == (robot_x_m < 1.2f ? CurbKind::step_down : CurbKind::step_up));
+    CHECK(std::abs(curb.height_m) == Approx(0.12).margin(0.005));
+    CHECK(curb.x0_m == Approx(1.2).margin(0.015));
+    CHECK(curb.x1_m == Approx(1.2).margin(0.015));
+  }
+}
+
+TEST_CASE("curb tracer: a step that was seen from below casts no shadow for a robot that has climbed it") {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  stages->dem.look_from(-0.8f, 1.2f);
+  fill(stages->dem, up);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->dem.look_from(2.3f, 1.2f);
+  stages->trace(2.3f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_down);
+  CHECK(stages->tracer.curbs()[0].x0_m == Approx(1.4).margin(0.01));
 }
 
 TEST_CASE(

@@ -363,6 +363,31 @@ TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, how
   }
 }
 
+TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame, through sweeps and marks") {
+  Map dem = make_map(moving());
+  const Viewpoint now{7.0f, 8.0f, 1.1f, 4.0f, 4.0f};
+  dem.look_from(-2.0f, 1.0f);
+  REQUIRE(dem.add(at(0.05, 0.05)));
+  CHECK_FALSE(dem.seen_from_several());
+  dem.look_from(-1.0f, 1.0f);
+  REQUIRE(dem.add(at(0.15, 0.05)));
+  dem.begin_sweep();
+  dem.begin_marking();
+  dem.clear_touched();
+  dem.look_from(0.0f, 1.0f);
+  REQUIRE(dem.seen_from_several());
+  const auto seen_from = [&](float x_m) { return dem.seen_from(dem.slot_at(x_m, 0.05f), now); };
+  CHECK(seen_from(0.05f).x_m == Approx(-2.0));
+  CHECK(seen_from(0.15f).x_m == Approx(-1.0));
+  CHECK(seen_from(0.15f).y_m == Approx(1.0 + 0.8));
+  CHECK(seen_from(0.15f).z_m == now.z_m);
+  CHECK(seen_from(0.15f).end_x_m == now.end_x_m);
+  REQUIRE(dem.add(at(0.05, 0.05)));
+  CHECK(seen_from(0.05f).x_m == Approx(0.0));
+  CHECK_FALSE(dem.mapped_before(dem.slot_at(0.05f, 0.05f)));
+  CHECK(dem.mapped_before(dem.slot_at(0.15f, 0.05f)));
+}
+
 TEST_CASE("dem: ground from before marking began is found along rows and columns, the nearest first") {
   Map dem = make_map(moving());
   const auto nearest = [&](float x_m, float y_m, int reach) {

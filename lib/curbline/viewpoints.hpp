@@ -1,0 +1,51 @@
+// From where a laser that drives has seen what it has: a ring of the newest places on its way, a twenty-fourth of the
+// window's side apart, each under a number of five bits that a cell can bear. It holds a way of a third more than that
+// side: of a cell that is older the number stands for a place where the robot has been since. Cost: O(1).
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace curbline {
+
+class Viewpoints {
+ public:
+  static constexpr int numbers = 32;
+
+  struct Place {
+    float x_m = 0.0f, y_m = 0.0f;  ///< map frame
+  };
+
+  void init(float window_side_m) {
+    *this = Viewpoints{};
+    apart_m_ = window_side_m * (1.0f / 24);
+  }
+
+  /// The laser is there.
+  void look_from(const Place& place) {
+    const float dx_m = place.x_m - began_.x_m, dy_m = place.y_m - began_.y_m;
+    if (!looks_ || dx_m * dx_m + dy_m * dy_m > apart_m_ * apart_m_) {
+      moved_ = looks_;  // not by the first
+      newest_ = looks_ ? (newest_ + 1) % numbers : 0;
+      began_ = place;
+      looks_ = true;
+    }
+    at_[static_cast<std::size_t>(newest_)] = {0.5f * (began_.x_m + place.x_m), 0.5f * (began_.y_m + place.y_m)};
+  }
+
+  /// Has it left the first place?
+  bool moved() const { return moved_; }
+  /// Of what is seen now.
+  int newest() const { return newest_; }
+  /// The middle of the way on which that was the number. 0 <= number < numbers.
+  const Place& at(int number) const { return at_[static_cast<std::size_t>(number)]; }
+
+ private:
+  std::array<Place, numbers> at_{};
+  Place began_{};  ///< the newest
+  float apart_m_ = 0.0f;
+  int newest_ = 0;
+  bool looks_ = false, moved_ = false;
+};
+
+}  // namespace curbline
