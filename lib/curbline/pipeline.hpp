@@ -162,6 +162,9 @@ Status Pipeline<limits>::init(const Settings& settings) {
   if (settings.laser.beams > limits.beams) return Status::bad_laser;
   if (const Status status = check(settings); status != Status::ok) return status;
   settings_ = settings;
+  PlanePrior& prior = settings_.planes.prior;
+  const float by_range_m2 = 0.5f * square(settings.laser.range_sd_m);  // of the height, where rays fall at 45 degrees
+  if (prior.noise_m2 < by_range_m2) prior.noise_m2 = by_range_m2;
   counters_ = Counters{};
   planes_next_ = true;
   jumped_ = false;
@@ -173,9 +176,9 @@ Status Pipeline<limits>::init(const Settings& settings) {
   pose_track_.init(settings.pose);
   pose_offset_.init(settings.pose);
   line_projection_.init(settings);
-  dem_.init(window, settings.planes.prior);
-  segmentation_.init(settings.segmentation, settings.planes.prior);
-  plane_mixture_.init(settings.planes);
+  dem_.init(window, prior);
+  segmentation_.init(settings.segmentation, prior);
+  plane_mixture_.init(settings_.planes);
   common_noise_.init();
   label_field_.init(settings.labels);
   curb_tracer_.init(settings.curbs);

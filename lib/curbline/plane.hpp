@@ -29,7 +29,9 @@ struct PlaneMoments {
 
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
 struct PlanePrior {
-  float noise_m2 = 0.01f * 0.01f;  ///< expected noise of a point of weight 1: repeatability of the range-finder
+  /// Expected noise of a point of weight 1: repeatability of the range-finder. The pipeline takes no less than half of
+  /// LaserSettings::range_sd_m squared.
+  float noise_m2 = 0.01f * 0.01f;
   float texture_m2 =
       0.005f * 0.005f;   ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
   float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean

@@ -152,6 +152,18 @@ TEST_CASE("pipeline: settings beyond the limits, or bad, are refused with the st
   CHECK(init([](Settings&) {}) == Status::ok);
 }
 
+TEST_CASE("pipeline: heights are expected to err by no less than ranges make them, where rays fall at 45 degrees") {
+  const auto noise_m = [](float range_sd_m, float expected_m) {
+    Settings settings = NoddingLaser::settings();
+    settings.laser.range_sd_m = range_sd_m;
+    settings.planes.prior.noise_m2 = expected_m * expected_m;
+    return std::sqrt(double{started(settings)->dem().prior().noise_m2});
+  };
+  CHECK(noise_m(0.03f, 0.01f) == Approx(0.0212).epsilon(0.01));
+  CHECK(noise_m(0.03f, 0.025f) == Approx(0.025));
+  CHECK(noise_m(0.012f, 0.01f) == Approx(0.01));
+}
+
 TEST_CASE("pipeline: before init, and after a refused one, it takes nothing and answers so") {
   const auto pipeline = std::make_unique<FullPipeline>();
   const std::vector<float> ranges(10, 2.0f);
