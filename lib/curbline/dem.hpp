@@ -172,7 +172,7 @@ class Dem {
   /// The laser is there, in the map frame: what is seen from now on is seen from there.
   void look_from(float x_m, float y_m) {
     viewpoints_.look_from({x_m, y_m});
-    flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + touched_bit + marked_bit + sweep_bit);
+    flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
   }
   /// From where a cell was seen last: from `now`, with the laser in another place.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
@@ -215,6 +215,7 @@ class Dem {
  private:
   static constexpr int growth_scale = 1024;
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
+  static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
   static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
   void clear_all(std::uint8_t bit) {
     for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~bit);
@@ -242,8 +243,8 @@ class Dem {
   Viewpoints viewpoints_{};
   /// The bits, of this sweep the third; above them the number of the viewpoint that the cell was seen from last.
   std::array<std::uint8_t, capacity> touched_{};
-  std::uint8_t flags_ = touched_bit + marked_bit + sweep_bit;  ///< of a cell that is seen now
-  std::array<std::int16_t, capacity> growth_{};                ///< in 1 / growth_scale m/s
+  std::uint8_t flags_ = seen_bits;                   ///< of a cell that is seen now
+  std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   bool any_touched_ = false;
 };
@@ -255,7 +256,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   common_m2_ = prior.common_m2();
   cells_.fill(Cell{});
   touched_.fill(0);
-  flags_ = touched_bit + marked_bit + sweep_bit;
+  flags_ = seen_bits;
   const float along_x_m = static_cast<float>(settings.rows) * settings.cell_x_m;
   const float along_y_m = static_cast<float>(settings.cols) * settings.cell_y_m;
   viewpoints_.init(along_x_m > along_y_m ? along_x_m : along_y_m);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace curbline {
 
@@ -24,19 +25,17 @@ class Viewpoints {
   /// The laser is there.
   void look_from(const Place& place) {
     const float dx_m = place.x_m - began_.x_m, dy_m = place.y_m - began_.y_m;
-    if (!looks_ || dx_m * dx_m + dy_m * dy_m > apart_m_ * apart_m_) {
-      moved_ = looks_;  // not by the first
-      newest_ = looks_ ? (newest_ + 1) % numbers : 0;
+    if (places_ == 0 || dx_m * dx_m + dy_m * dy_m > apart_m_ * apart_m_) {
       began_ = place;
-      looks_ = true;
+      ++places_;
     }
-    at_[static_cast<std::size_t>(newest_)] = {0.5f * (began_.x_m + place.x_m), 0.5f * (began_.y_m + place.y_m)};
+    at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + place.x_m), 0.5f * (began_.y_m + place.y_m)};
   }
 
   /// Has it left the first place?
-  bool moved() const { return moved_; }
-  /// Of what is seen now.
-  int newest() const { return newest_; }
+  bool moved() const { return places_ > 1; }
+  /// Of what is seen now; after look_from().
+  int newest() const { return static_cast<int>((places_ - 1) % numbers); }
   /// The middle of the way on which that was the number. 0 <= number < numbers.
   const Place& at(int number) const { return at_[static_cast<std::size_t>(number)]; }
 
@@ -44,8 +43,7 @@ class Viewpoints {
   std::array<Place, numbers> at_{};
   Place began_{};  ///< the newest
   float apart_m_ = 0.0f;
-  int newest_ = 0;
-  bool looks_ = false, moved_ = false;
+  std::uint32_t places_ = 0;  ///< that there have been; 2^32 are 700,000 km in windows of 4 m
 };
 
 }  // namespace curbline

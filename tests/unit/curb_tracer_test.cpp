@@ -39,20 +39,6 @@ double total_length_m(std::span<const Curb> curbs) {
   return sum;
 }
 
-/// Points every 2 cm of the window.
-template <typename Height>
-std::vector<Point> fine_grid(Height&& height_m) {
-  std::vector<Point> points;
-  for (int i = 0; i < 120; ++i) {
-    for (int j = 0; j < 120; ++j) {
-      const double x = 0.02 * i + 0.01, y = 0.02 * j + 0.01;
-      points.push_back({static_cast<float>(x), static_cast<float>(y),
-                        static_cast<float>(height_m(x, y) + ((i + j) % 2 == 0 ? 0.002 : -0.002)), 1e-4f});
-    }
-  }
-  return points;
-}
-
 double up(double x, double) {
   return x < 1.4 ? 0.0 : 0.12;
 }
@@ -98,7 +84,9 @@ std::unique_ptr<Stages<>> seen_over_an_edge() {
   auto stages = std::make_unique<Stages<>>(small_settings());
   const double hidden_m = 2.0 * 0.12 / (1.0 - 0.12);
   stages->dem.look_from(-0.8f, 1.2f);
-  for (const Point& p : fine_grid([](double x, double) { return x < 1.2 ? 0.12 : 0.0; })) {
+  Noise noise;
+  const auto height_m = [](double x, double) { return x < 1.2 ? 0.12 : 0.0; };
+  for (const Point& p : test::sample({0.0, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, height_m)) {
     if (p.x_m < 1.2f || p.x_m > 1.2 + hidden_m) stages->dem.add(p);
   }
   for (int pass = 0; pass < 3; ++pass) stages->infer(true);
