@@ -27,6 +27,26 @@ struct PlaneMoments {
   void scale(float share);
 };
 
+inline void PlaneMoments::add_cell(const PlaneMoments& cell) {
+  const float sum = weight + cell.weight;
+  if (!(cell.weight > 0.0f)) return;
+  const float dx = cell.x - x, dy = cell.y - y, dz = cell.z - z;
+  const float share = cell.weight / sum;
+  const float between = weight * share;
+  x += share * dx;
+  y += share * dy;
+  z += share * dz;
+  xx += between * dx * dx;
+  xy += between * dx * dy;
+  yy += between * dy * dy;
+  xz += between * dx * dz;
+  yz += between * dy * dz;
+  zz += cell.zz + between * dz * dz;
+  weight = sum;
+  points += cell.points;
+  cells += cell.cells;
+}
+
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
 struct PlanePrior {
   /// Expected noise of a point of weight 1: repeatability of the range-finder. The pipeline takes no less than half of

@@ -66,26 +66,6 @@ void PlaneMoments::add(const PlaneMoments& other) {
   cells += other.cells;
 }
 
-void PlaneMoments::add_cell(const PlaneMoments& cell) {
-  const float sum = weight + cell.weight;
-  if (!(cell.weight > 0.0f)) return;
-  const float dx = cell.x - x, dy = cell.y - y, dz = cell.z - z;
-  const float share = cell.weight / sum;
-  const float between = weight * share;
-  x += share * dx;
-  y += share * dy;
-  z += share * dz;
-  xx += between * dx * dx;
-  xy += between * dx * dy;
-  yy += between * dy * dy;
-  xz += between * dx * dz;
-  yz += between * dy * dz;
-  zz += cell.zz + between * dz * dz;
-  weight = sum;
-  points += cell.points;
-  cells += cell.cells;
-}
-
 void PlaneMoments::scale(float share) {
   points *= share;
   cells *= share;
