@@ -330,8 +330,7 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
   int changed = 0;
   for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.place[static_cast<std::size_t>(n)]);
   dem.for_each_valid([&](int i, int j, int s) {
-    const auto flag = flag_[static_cast<std::size_t>(s)];
-    if (flag == quiet || (flag & visited) != 0) return;
+    if ((flag_[static_cast<std::size_t>(s)] & (visited | heard)) != heard) return;
     Place heard_only = place(dem, i, j, s);
     hear_neighbours(heard_only);
     changed += follow_belief(heard_only);
