@@ -113,6 +113,12 @@ class Dem {
   /// Do they spread by two standard deviations of that noise? Then it holds more than one surface, or a steep one, or
   /// one after another.
   bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
+  /// Do the heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. Of
+  /// several, the sums of their spreads and weights.
+  bool steep(float spread, float weight) const {
+    return spread > (1.0f / 12) * settings_.cell_x_m * settings_.cell_y_m * weight;
+  }
+  bool steep(const Cell& cell) const { return steep(spread_m2(cell), cell.weight); }
   /// Variance of the heights of a plane within a cell.
   float slope_m2(const Plane& plane) const {
     const float rise_x_m = plane.slope_x * settings_.cell_x_m, rise_y_m = plane.slope_y * settings_.cell_y_m;

@@ -112,7 +112,6 @@ class Ground {
       return most(strip_cells) &&
              mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
     }
-    bool obstacle(float cell_area_m2) const { return spread_m2 > cell_area_m2 * (1.0f / 12) * weight; }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
     bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
@@ -379,7 +378,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
   PlaneFlags obstacle{}, high{}, drops{};
   for (std::size_t l = 0; l < obstacle.size(); ++l) {
-    obstacle[l] = tallies[l].obstacle(cell_area_m2);
+    obstacle[l] = dem.steep(tallies[l].spread_m2, tallies[l].weight);
     high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
   const Plane* ground = largest(planes, obstacle);

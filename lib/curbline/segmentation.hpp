@@ -1,7 +1,7 @@
 // Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher
 // 2004) inside each block of 4 x 4 cells; regions, leaves merged by evidence (region_graph.hpp). A scan line re-cuts
 // the blocks that it touched, dissolves the regions that it touched and their neighbours into leaves and merges again:
-// that is how a region splits. What no line touched stands.
+// that is how a region splits. What no line touched stands. What stands on the ground parts no regions.
 #pragma once
 
 #include <array>
@@ -56,9 +56,11 @@ class Segmentation {
     std::array<Region, limits.regions> region_of_node;
   };
 
-  /// Follows the cells that were touched, in working memory that is the caller's. Cost: passes over the window, 16
-  /// cells a touched block, and the merging; nothing if no cell was touched.
-  void update(const Dem<limits>& dem, Work& work, Counters& counters);
+  /// Follows the cells that were touched, in working memory that is the caller's. What is covered(slot) parts no
+  /// regions: those on both sides are neighbours too. Cost: passes over the window, 16 cells a touched block, and the
+  /// merging; nothing if no cell was touched.
+  template <typename Covered>
+  void update(const Dem<limits>& dem, Work& work, Covered&& covered, Counters& counters);
 
   Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
 
@@ -77,7 +79,8 @@ class Segmentation {
 
   void cut_touched_blocks(const Dem<limits>& dem);
   void dissolve_neighbours(const Dem<limits>& dem);
-  void build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const;
+  template <typename Covered>
+  void build_graph(const Dem<limits>& dem, Work& work, Covered&& covered, Counters& counters) const;
   void name_regions(const Dem<limits>& dem, Work& work);
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
   Region representative(std::size_t s) const {
@@ -92,12 +95,13 @@ class Segmentation {
 };
 
 template <Limits limits>
-void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, Counters& counters) {
+template <typename Covered>
+void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, Covered&& covered, Counters& counters) {
   if (!dem.any_touched()) return;
   evidence_.set_common_share(dem.prior().common_share);
   cut_touched_blocks(dem);
   dissolve_neighbours(dem);
-  build_graph(dem, work, counters);
+  build_graph(dem, work, covered, counters);
   counters.evidences += static_cast<std::uint32_t>(work.graph.merge(evidence_));
   name_regions(dem, work);
 }
@@ -134,7 +138,8 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
   IndexSet<Dem<limits>::capacity> neighbours;
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Region a = region_[link.from], b = region_[link.to];
-    if (a == b || a == none || b == none) return;
+    if (a == b) return;
+    if (a == none || b == none) return;
     if (dissolved_.contains(a)) neighbours.insert(b);
     if (dissolved_.contains(b)) neighbours.insert(a);
   });
@@ -142,7 +147,9 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
 }
 
 template <Limits limits>
-void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Counters& counters) const {
+template <typename Covered>
+void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Covered&& covered,
+                                       Counters& counters) const {
   RegionGraph<limits>& graph = work.graph;
   graph.clear(dem.cell_x_m(), dem.cell_y_m());
   work.node_of_cell.fill(no_node);
@@ -157,17 +164,22 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Count
     graph.moments(node).add_cell(dem.moments(i, j, dem.cell(s)));
     work.node_of_cell[static_cast<std::size_t>(s)] = last = node;
   });
+  const auto join = [&](Node a, Node b) {
+    const Node end = graph.link(a, b);
+    counters.links_full += end == no_node;
+    return end;
+  };
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
     if (a == b) return;
-    const Node end = graph.link(a, b);
-    if (end == no_node) {
-      ++counters.links_full;
-    } else if (link.distance == 1) {
-      const Cell& from = dem.cell(static_cast<int>(link.from));
-      const Cell& to = dem.cell(static_cast<int>(link.to));
-      graph.add_pair(end, link.axis, to.height_m - from.height_m);
-    }
+    const Cell& from = dem.cell(static_cast<int>(link.from));
+    const Cell& to = dem.cell(static_cast<int>(link.to));
+    const Node end = join(a, b);
+    if (end != no_node && link.distance == 1) graph.add_pair(end, link.axis, to.height_m - from.height_m);
+    if (!covered(static_cast<int>(link.to)) || covered(static_cast<int>(link.from))) return;
+    const int beyond = beyond_cover(dem, link, settings_.link_reach, covered);
+    if (beyond < 0) return;
+    if (const Node c = work.node_of_cell[static_cast<std::size_t>(beyond)]; c != a) join(a, c);
   });
 }
 

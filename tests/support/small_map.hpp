@@ -52,7 +52,8 @@ struct Stages {
   }
   void segment() {
     segmented = &work.segmentation();
-    segmentation.update(dem, *segmented, counters);
+    const auto covered = [this](int slot) { return dem.steep(dem.cell(slot)) || mixture.covered(slot); };
+    segmentation.update(dem, *segmented, covered, counters);
   }
   /// What it changes can be asked until the next one.
   void mix() {

@@ -320,6 +320,32 @@ TEST_CASE("dem: each pair of neighbours is linked once, with its distance") {
   CHECK(links[{slot(1, 0), slot(1, 2)}] == 2);
 }
 
+TEST_CASE("dem: a link goes on to the ground behind what stands on it, within reach and wherever the ring begins") {
+  Map dem = make_map(moving());
+  for (int moves = 0; moves < 6; ++moves) {
+    dem.follow(0.4f * static_cast<float>(moves), 0.4f * static_cast<float>(moves), [](int) {});
+    const auto see = [&](int i, int j, double z) {
+      const double x = static_cast<double>(dem.origin_x_m()) + 0.1 * i + 0.05;
+      const double y = static_cast<double>(dem.origin_y_m()) + 0.1 * j + 0.05;
+      REQUIRE(dem.add(at(x, y, z)));
+    };
+    for (const int n : {5, 6, 8, 9}) {
+      const bool post = n == 6 || n == 8;
+      for (const double z : {0.0, 0.4}) see(n, 2, post ? z : 0.0), see(2, n, post ? z : 0.0);
+    }
+    int links = 0;
+    for_each_link(dem, 4, [&](const Link& link) {
+      const bool along_x = link.axis == 0;
+      if ((along_x ? link.i : link.j) != 5 || (along_x ? link.j : link.i) != 2) return;
+      ++links;
+      const auto posts = [&](int slot) { return dem.steep(dem.cell(slot)); };
+      CHECK(beyond_cover(dem, link, 4, posts) == (along_x ? dem.slot(9, 2) : dem.slot(2, 9)));
+      CHECK(beyond_cover(dem, link, 3, posts) == -1);
+    });
+    CHECK(links == 2);
+  }
+}
+
 TEST_CASE("dem: what was touched is told until it is cleared") {
   Map dem = make_map(moving());
   dem.add(at(0.05, 0.05));

@@ -157,6 +157,27 @@ TEST_CASE("segmentation: regions reach across gaps as far as links do, and no fu
   CHECK(regions(*stages).size() == (gap == 5 ? 1 : 2));
 }
 
+//  ________####________    a box across the window: the ground on both sides of it is one, as far as links reach
+TEST_CASE("segmentation: what stands on the ground does not part it, nor join what a step parts") {
+  const auto together = [](double step_m, int rows) {
+    auto stages = std::make_unique<Stages<>>(small_settings());
+    const double end = 1.0 + 0.1 * rows;
+    fill(stages->dem, [=](double x, double) { return x < end ? 0.0 : step_m; });
+    for (int i = 10; i < 10 + rows; ++i) {
+      for (int j = 0; j < 24; ++j) {
+        const float x_m = 0.1f * static_cast<float>(i) + 0.05f, y_m = 0.1f * static_cast<float>(j) + 0.05f;
+        for (const float z_m : {0.2f, 0.4f, 0.6f, 0.8f}) stages->dem.add({x_m, y_m, z_m, 1e-4f});
+      }
+    }
+    stages->segment();
+    return stages->region_at(2, 12) == stages->region_at(22, 12);
+  };
+  CHECK(together(0.0, 3));
+  CHECK(together(0.0, 9));
+  CHECK_FALSE(together(0.0, 10));
+  CHECK_FALSE(together(0.12, 3));
+}
+
 TEST_CASE("segmentation: a full store joins leaves, counts, and still gives each cell a region") {
   constexpr Limits tight{.rows = 24, .cols = 24, .planes = 6, .regions = 4, .links = 2};
   const auto stages = std::make_unique<Stages<tight>>(small_settings());

@@ -162,7 +162,8 @@ void belief_messages(benchmark::State& state) {
   segmentation.init(street().settings.segmentation, street().settings.planes.prior);
   Workspace<board_limits> workspace;
   auto& work = workspace.segmentation();
-  segmentation.update(dem, work, counters);
+  segmentation.update(
+      dem, work, [&](int slot) { return dem.steep(dem.cell(slot)); }, counters);
   mixture.init(street().settings.planes);
   mixture.update(
       dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
