@@ -27,6 +27,7 @@
 #include "curbline/plane.hpp"            // moments, evidence, fit
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/common_noise.hpp"     // what their cells err alike
+#include "curbline/obstacles.hpp"        // which planes are of what stands on the ground
 #include "curbline/ground.hpp"           // which planes are ground
 #include "curbline/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/label_field.hpp"      // belief propagation

@@ -2,8 +2,7 @@
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
 //     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
 //     sides makes.
-//   - an obstacle: a region within whose cells the heights spread as on a slope of more than 45 degrees. Or the top of
-//     one: level, less than a square metre, higher above the ground than a kerb or a stair, and no stair that leads on.
+//   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
 //     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp, or
 //     falls there at least half as steeply as the rays, as about an edge that is bent, or is so narrow that its slope
@@ -26,6 +25,7 @@
 #include <span>
 
 #include "curbline/dem.hpp"
+#include "curbline/obstacles.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
@@ -58,12 +58,9 @@ class Ground {
   /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
   /// beam is on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
-  static constexpr float beam_rad = 0.01f;       ///< divergence of a beam
-  static constexpr int widest_gap = 2;           ///< between a strip and the planes beside it, in cells
-  static constexpr float narrow = 1.5f;          ///< cells: a wider strip has cells of its own
-  static constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
-  static constexpr float usual_step_m = 0.2f;    ///< few kerbs or stairs are as high
-  static constexpr float way_m = 1.0f;           ///< a square of ground that lies higher is no smaller: stairs lead on
+  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
+  static constexpr int widest_gap = 2;      ///< between a strip and the planes beside it, in cells
+  static constexpr float narrow = 1.5f;     ///< cells: a wider strip has cells of its own
 
   /// How far something falls from its end near the laser to the far one, and how far the rays there do.
   struct Fall {
@@ -84,19 +81,13 @@ class Ground {
   };
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
-    float cells = 0.0f, spread_m2 = 0.0f, weight = 0.0f;  ///< spread: scatter beyond the noise of the points
-    bool at_edge = false;                                 ///< of the window
+    float cells = 0.0f;
     float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
     std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
     std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
-    void add(float cell_spread_m2, float cell_weight) {
-      cells += 1.0f;
-      spread_m2 += cell_spread_m2;
-      weight += cell_weight;
-    }
     template <typename Run>
     void add_strip(const Run& run, float step) {
       strips += 1.0f;
@@ -193,13 +184,10 @@ class Ground {
     }
   };
 
-  static float height_above(const Plane& ground, const Plane& plane) {
-    return plane.z_m - ground.height_m(plane.x_m, plane.y_m);
-  }
   /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the more of it they hold the
   /// higher: the strip leans, or all of it is higher than a kerb. A level one below that is a surface.
   static bool stands_out(const Plane& plane, const Plane& ground) {
-    const float above_m = height_above(ground, plane);
+    const float above_m = plane.above_m(ground);
     const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
     return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
   }
@@ -208,69 +196,23 @@ class Ground {
   static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
     return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
-  static bool no_ramp(const Plane& plane) {
-    return plane.slope_x * plane.slope_x + plane.slope_y * plane.slope_y > steepest_ramp * steepest_ramp;
-  }
   /// Does it fall away from the laser, and more steeply than a ramp?
   static bool drops_off(const Plane& plane, const Viewpoint& view) {
-    return no_ramp(plane) && plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
+    return plane.steeper_than_ramp() &&
+           plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
   }
-  static const Plane* largest(std::span<const Plane> planes, const PlaneFlags& obstacle);
-  static bool stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
-                           const Plane& ground);
-  static void add_tops(const Tallies& tallies, std::span<const Plane> planes, const Plane& ground, float cell_area_m2,
-                       PlaneFlags& obstacle, PlaneFlags& high);
   template <typename LabelType, typename LabelOf, typename EndRun>
   static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelType, typename LabelOf>
   static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
-                         LabelOf&& label_of, const PlaneFlags& high, const PlaneFlags& drops, Tallies& tallies);
+                         LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
+                         Tallies& tallies);
   static Kind kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
                       const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
 
   std::array<Kind, limits.planes> kind_{};
 };
-
-/// What the others are measured against: the largest plane that is no obstacle, null if there is none.
-template <Limits limits>
-const Plane* Ground<limits>::largest(std::span<const Plane> planes, const PlaneFlags& obstacle) {
-  const Plane* found = nullptr;
-  for (std::size_t l = 0; l < planes.size(); ++l) {
-    if (!planes[l].alive() || obstacle[l]) continue;
-    if (found == nullptr || planes[l].cells > found->cells) found = &planes[l];
-  }
-  return found;
-}
-
-/// Is a plane level and higher above the ground than a step, and next to it none as much higher again as a stair's?
-template <Limits limits>
-bool Ground<limits>::stands_alone(const Plane& plane, std::span<const Plane> planes, const PlaneFlags& obstacle,
-                                  const Plane& ground) {
-  const float above_m = height_above(ground, plane);
-  if (!(above_m > usual_step_m) || no_ramp(plane)) return false;
-  for (std::size_t l = 0; l < planes.size(); ++l) {
-    if (!planes[l].alive() || obstacle[l]) continue;
-    if (height_above(ground, planes[l]) < above_m + 0.5f * usual_step_m) continue;
-    const float dx_m = planes[l].x_m - plane.x_m, dy_m = planes[l].y_m - plane.y_m;
-    if (dx_m * dx_m + dy_m * dy_m < way_m * way_m) return false;
-  }
-  return true;
-}
-
-/// Adds the tops of things that stand on the ground: small planes that do not reach the window's edge.
-template <Limits limits>
-void Ground<limits>::add_tops(const Tallies& tallies, std::span<const Plane> planes, const Plane& ground,
-                              float cell_area_m2, PlaneFlags& obstacle, PlaneFlags& high) {
-  PlaneFlags top{};
-  for (std::size_t l = 0; l < top.size(); ++l) {
-    const bool small = planes[l].alive() && tallies[l].cells * cell_area_m2 < way_m * way_m;
-    top[l] = small && !obstacle[l] && !tallies[l].at_edge && stands_alone(planes[l], planes, obstacle, ground);
-  }
-  for (std::size_t l = 0; l < top.size(); ++l) {
-    if (top[l]) obstacle[l] = high[l] = true;
-  }
-}
 
 /// Calls end_run(before, run, next, line) for each run of cells along x (axis 0) or along y (axis 1); the label of a
 /// run that is not there is `none`.
@@ -311,8 +253,8 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                LabelType none, LabelOf&& label_of, const PlaneFlags& high, const PlaneFlags& drops,
-                                Tallies& tallies) {
+                                LabelType none, LabelOf&& label_of, const Obstacles<limits>& obstacles,
+                                const PlaneFlags& drops, Tallies& tallies) {
   const std::array<Sight, 2> sights{
       {{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}, {view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m}}};
   for (std::size_t axis = 0; axis < sights.size(); ++axis) {
@@ -330,8 +272,8 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
              if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, none, across, aside_m);
            }
            if (run.length() > longest_strip) return;
-           const bool after_high = before.label != none && high[before.label] && run.first == before.last + 1;
-           const bool before_high = next.label != none && high[next.label] && next.first == run.last + 1;
+           const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;
+           const bool before_high = next.label != none && obstacles.high(next.label) && next.first == run.last + 1;
            if (after_high || before_high) tally.fringe_cells[axis] += cells;
            if (leads) tally.add_strip(run, next.first_height_m - before.last_height_m);
          });
@@ -350,7 +292,7 @@ auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstac
   const bool fringe = tally.fringe() && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
-  const bool steep = no_ramp(plane);
+  const bool steep = plane.steeper_than_ramp();
   // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
@@ -363,30 +305,14 @@ template <Limits limits>
 template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             LabelType none, LabelOf&& label_of, Changed&& changed) {
+  const Obstacles<limits> obstacles(dem, planes, none, label_of);
+  PlaneFlags drops{};
+  for (std::size_t l = 0; l < drops.size(); ++l) drops[l] = !obstacles.is(l) && drops_off(planes[l], view);
   Tallies tallies{};
-  dem.for_each_valid([&](int, int, int s) {
-    const LabelType label = label_of(s);
-    if (label != none) tallies[label].add(dem.spread_m2(dem.cell(s)), dem.cell(s).weight);
-  });
-  const auto note_edge = [&](int i, int j) {
-    const int s = dem.slot(i, j);
-    const LabelType label = dem.cell(s).valid() ? label_of(s) : none;
-    if (label != none) tallies[label].at_edge = true;
-  };
-  for (int i = 0; i < dem.rows(); ++i) note_edge(i, 0), note_edge(i, dem.cols() - 1);
-  for (int j = 0; j < dem.cols(); ++j) note_edge(0, j), note_edge(dem.rows() - 1, j);
-  const float cell_area_m2 = dem.cell_x_m() * dem.cell_y_m();
-  PlaneFlags obstacle{}, high{}, drops{};
-  for (std::size_t l = 0; l < obstacle.size(); ++l) {
-    obstacle[l] = dem.steep(tallies[l].spread_m2, tallies[l].weight);
-    high[l] = obstacle[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
-  }
-  const Plane* ground = largest(planes, obstacle);
-  if (ground != nullptr) add_tops(tallies, planes, *ground, cell_area_m2, obstacle, high);
-  for (std::size_t l = 0; l < drops.size(); ++l) drops[l] = !obstacle[l] && drops_off(planes[l], view);
-  tally_runs(dem, planes, view, none, label_of, high, drops, tallies);
+  for (std::size_t l = 0; l < tallies.size(); ++l) tallies[l].cells = obstacles.cells(l);
+  tally_runs(dem, planes, view, none, label_of, obstacles, drops, tallies);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const Kind kind = kind_of(planes[l], tallies[l], obstacle[l], ground, view);
+    const Kind kind = kind_of(planes[l], tallies[l], obstacles.is(l), obstacles.ground(), view);
     const Kind before = kind_[l];
     kind_[l] = kind;
     if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<LabelType>(l));

@@ -140,6 +140,10 @@ struct Plane {
   bool alive() const { return cells > 0.0f; }
   float height_m(float px_m, float py_m) const { return z_m + slope_x * (px_m - x_m) + slope_y * (py_m - y_m); }
 
+  /// How far its centroid lies above another plane.
+  float above_m(const Plane& other) const { return z_m - other.height_m(x_m, y_m); }
+  bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
+
   /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell
   /// share their errors of tilt and mount.
   float height_variance_m2(float px_m, float py_m) const {

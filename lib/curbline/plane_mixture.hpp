@@ -191,7 +191,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   for (std::size_t l = 0; l < clean.size(); ++l) {
     clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
     clean[l].wide = planes_[l].cells >= wide_cells;
-    clean[l].steep = square(planes_[l].slope_x) + square(planes_[l].slope_y) > square(steepest_ramp);
+    clean[l].steep = planes_[l].steeper_than_ramp();
     clean[l].slope_m2 = dem.slope_m2(planes_[l]);
   }
   dem.for_each_valid([&](int i, int j, int s) {

@@ -23,9 +23,7 @@ std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
   fill(stages.dem, height_m);
   for (int pass = 0; pass < 3; ++pass) stages.infer(true);
   std::set<int> labels;
-  for (int i = 0; i < 24; ++i) {
-    for (int j = 0; j < 24; ++j) labels.insert(stages.label_at(i, j));
-  }
+  stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
   return labels.size();
 }
 
@@ -114,6 +112,21 @@ TEST_CASE("ground: the steps of a stair are as small as boxes, and the next one 
           if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
           return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : 0.42;
         }) == 4);
+}
+
+//             ___
+//          __|            the last that is seen
+//  _______|
+TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, but one that stands apart is") {
+  const auto steps = [](double gap_m) {
+    return [=](double x, double y) {
+      if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
+      if (x > 1.8 + gap_m) return std::nan("");  // not seen
+      return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : x < 1.5 + gap_m ? 0.0 : 0.42;
+    };
+  };
+  CHECK(borne(steps(0.0)) == 4);
+  CHECK(borne(steps(0.3)) == 2);
 }
 
 //  o
