@@ -82,26 +82,28 @@ class Ground {
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
     float cells = 0.0f;
-    float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_scatter_m2 = 0.0f, strip_weight = 0.0f;
+    float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
     std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
     std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
+    /// Its cells spread beyond what noise makes by as much more than those of the quieter plane beside it.
     template <typename Run>
-    void add_strip(const Run& run, float step) {
+    void add_strip(const Run& before, const Run& run, const Run& next) {
+      const float step = next.first_height_m - before.last_height_m;
+      const float one_m2 = before.scatter_m2 / before.weight, other_m2 = next.scatter_m2 / next.weight;
       strips += 1.0f;
       strip_cells += static_cast<float>(run.length());
       step_m += step < 0.0f ? -step : step;
-      strip_scatter_m2 += run.scatter_m2;
+      strip_spread_m2 += run.scatter_m2 - run.weight * (one_m2 < other_m2 ? one_m2 : other_m2);
       strip_weight += run.weight;
     }
     bool face() const {
       const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
       // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within
       // each.
-      return most(strip_cells) &&
-             mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_scatter_m2;
+      return most(strip_cells) && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
     }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
@@ -275,7 +277,7 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
            const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;
            const bool before_high = next.label != none && obstacles.high(next.label) && next.first == run.last + 1;
            if (after_high || before_high) tally.fringe_cells[axis] += cells;
-           if (leads) tally.add_strip(run, next.first_height_m - before.last_height_m);
+           if (leads) tally.add_strip(before, run, next);
          });
   }
 }

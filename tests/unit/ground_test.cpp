@@ -39,6 +39,25 @@ TEST_CASE("ground: the cells in which a curb's face stands are left to both side
   CHECK(borne([](double x, double) { return x < 1.15 ? 0.0 : 0.12; }) == 2);
 }
 
+//           ______
+//         /            a strip of three cells, on ground as even as a floor, by a laser of 1 cm
+//  ______/
+TEST_CASE("ground: a strip that rises is ground, not the face of a curb, however much the laser's readings spread") {
+  const auto is_ground = [](double from_x_m) {
+    Settings settings = small_settings();
+    settings.planes.prior.common_share = 0.01f;
+    Stages<small_limits> stages(settings);
+    const auto rising = [&](double x, double) {
+      return x < from_x_m ? 0.0 : x < 1.3 ? 0.05 * (x - from_x_m) / (1.3 - from_x_m) : 0.05;
+    };
+    for (int scan = 0; scan < 16; ++scan) fill(stages.dem, rising, 0.01);
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    return stages.mixture.on_ground(stages.dem.slot(12, 12));
+  };
+  CHECK(is_ground(1.0));
+  CHECK_FALSE(is_ground(1.2));  // a cell wide
+}
+
 //             ______
 //       _____|         a strip of three cells, level
 //  ____|
