@@ -205,8 +205,9 @@ auto CurbTracer<limits>::deviations_of(const Stages& stages, const Border& borde
                                        float shadow_m) -> Deviations {
   const float up = height_m < 0.0f ? -1.0f : 1.0f;
   const float beyond_cells = -0.5f * up * shadow_m / piece.cell_m;
-  return {deviation(piece.beside_low, stages.mixture.plane(border.low), -up, -beyond_cells),
-          deviation(piece.beside_high, stages.beyond(border), up, beyond_cells)};
+  const float common_m2 = stages.dem.prior().common_m2();
+  return {deviation(piece.beside_low, stages.mixture.plane(border.low), -up, -beyond_cells, common_m2),
+          deviation(piece.beside_high, stages.beyond(border), up, beyond_cells, common_m2)};
 }
 
 /// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
