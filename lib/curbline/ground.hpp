@@ -209,7 +209,7 @@ class Ground {
   static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
                          LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
                          Tallies& tallies);
-  static Kind kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
+  static Kind kind_of(std::size_t label, const Plane& plane, const Tally& tally, const Obstacles<limits>& obstacles,
                       const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
 
@@ -282,16 +282,16 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
   }
 }
 
-/// `ground`: the largest plane that is no obstacle, null if there is none. Veils are only seen from well above it: else
-/// the viewpoint is not where the points were seen from, as of a cloud whose origin lies on the ground, and a plane
-/// that holds it may be a pavement.
+/// Veils are only seen from well above the ground: else the viewpoint is not where the points were seen from, as of a
+/// cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
 template <Limits limits>
-auto Ground<limits>::kind_of(const Plane& plane, const Tally& tally, bool obstacle, const Plane* ground,
-                             const Viewpoint& view) -> Kind {
+auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const Tally& tally,
+                             const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
   if (tally.face()) return Kind::mixture;
-  if (obstacle) return Kind::cover;
+  if (obstacles.is(label)) return Kind::cover;
+  const Plane* ground = obstacles.ground();
   if (ground == nullptr || !plane.alive()) return Kind::ground;
-  const bool fringe = tally.fringe() && stands_out(plane, *ground);
+  const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
   const bool steep = plane.steeper_than_ramp();
@@ -314,7 +314,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   for (std::size_t l = 0; l < tallies.size(); ++l) tallies[l].cells = obstacles.cells(l);
   tally_runs(dem, planes, view, none, label_of, obstacles, drops, tallies);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const Kind kind = kind_of(planes[l], tallies[l], obstacles.is(l), obstacles.ground(), view);
+    const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
     const Kind before = kind_[l];
     kind_[l] = kind;
     if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<LabelType>(l));

@@ -27,6 +27,8 @@ class Obstacles {
   bool is(std::size_t label) const { return is_[label]; }
   /// Is it one that is higher than a step?
   bool high(std::size_t label) const { return high_[label]; }
+  /// Is it small, level and higher than most steps, but part of a way?
+  bool way(std::size_t label) const { return way_[label]; }
   /// In how many cells a plane's region lies.
   float cells(std::size_t label) const { return cells_[label]; }
   /// The largest plane that is none, null if there is none: what the others are measured against.
@@ -46,7 +48,7 @@ class Obstacles {
   template <typename LabelType, typename LabelOf>
   static Neighbours neighbours(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, const PlaneFlags& asked);
 
-  PlaneFlags is_{}, high_{};
+  PlaneFlags is_{}, high_{}, way_{};
   std::array<float, limits.planes> cells_{};
   const Plane* ground_ = nullptr;
 };
@@ -99,6 +101,7 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
       });
       if (!top[l] || !way) continue;
       top[l] = false;
+      way_[l] = true;
       changed = true;
     }
   }

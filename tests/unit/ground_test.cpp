@@ -148,6 +148,19 @@ TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, 
   CHECK(borne(steps(0.3)) == 2);
 }
 
+//               ___
+//            __/          two cells deep, beside a face over which readings spread by 20 cm
+//         __|
+//  ______|
+TEST_CASE("ground: a step of a stair beside a face that is blurred is no fringe of it") {
+  CHECK(borne([](double x, double y) {
+          if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
+          if (x > 1.8) return std::nan("");  // not seen
+          const double blur_m = static_cast<int>(y * 100) % 10 < 5 ? -0.1 : 0.1;
+          return x < 1.2 ? 0.16 : x < 1.4 ? 0.32 : x < 1.5 ? 0.4 + blur_m : 0.48;
+        }) == 4);
+}
+
 //  o
 //  ____________
 //              --__       the edge and the road behind, mixed, in the shadow of the step
