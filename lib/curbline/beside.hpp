@@ -32,7 +32,7 @@ struct Beside {
 /// and the variance of that. Below 0 it lies nearer.
 struct Deviation {
   float away_m = 0.0f, variance_m2 = 0.0f;
-  float common_m2 = 0.0f;  ///< variance that the cells may have in common, as of a scan line along the border
+  float common_m2 = 0.0f;  ///< as much of it as the cells may have in common: errors of a scan line along the border
 
   /// It lies farther by three standard deviations, and by more than one of what does not average out: the ground beside
   /// the border is not the plane's.
@@ -51,8 +51,8 @@ struct Deviation {
 };
 
 /// Of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow. `away` is 1 if
-/// the other side lies below, -1 if above. Each cell is one observation, but for a variance that they may have in
-/// common; of no border it is 0.
+/// the other side lies below, -1 if above. Each cell is one observation, but for the common_m2 of its variance that
+/// points of a place may share; of no border it is 0.
 Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2);
 
 }  // namespace curbline

@@ -115,8 +115,8 @@ class Dem {
   bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
   /// Do the heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. Of
   /// several, the sums of their spreads and weights.
-  bool steep(float spread, float weight) const {
-    return spread > (1.0f / 12) * settings_.cell_x_m * settings_.cell_y_m * weight;
+  bool steep(float spread_m2, float weight) const {
+    return spread_m2 > (1.0f / 12) * settings_.cell_x_m * settings_.cell_y_m * weight;
   }
   bool steep(const Cell& cell) const { return steep(spread_m2(cell), cell.weight); }
   /// Variance of the heights of a plane within a cell.

@@ -1,7 +1,7 @@
 // Which planes are ground. A region may fit a plane and be none that a wheel could stand on:
 //   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
-//     cells spread over most of the step: it is narrower than a cell and a half, and its plane is what mixing both
-//     sides makes.
+//     cells spread over most of the step, beyond what noise makes in the planes beside it: it is narrower than a cell
+//     and a half, and its plane is what mixing both sides makes.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
 //     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than a ramp, or

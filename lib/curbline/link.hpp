@@ -17,7 +17,8 @@ struct Link {
   int i, j;              ///< row and column of `from`
 };
 
-/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
+/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart. Most
+/// cells have both; told so, the compiler spares the worst line of a Cortex-R5F 30,000 instructions (tools/budget).
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   dem.for_each_valid([&](int i, int j, int s) {
