@@ -17,25 +17,24 @@ struct Link {
   int i, j;              ///< row and column of `from`
 };
 
-/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart. Most
-/// cells have both; told so, the compiler spares the worst line of a Cortex-R5F 30,000 instructions (tools/budget).
+/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   dem.for_each_valid([&](int i, int j, int s) {
     const auto from = static_cast<std::size_t>(s);
-    if (const int g = dem.next_valid(s, 0, reach); g > 0) [[likely]]
+    if (const int g = dem.next_valid(s, 0, reach); g > 0)
       visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g, 0, i, j});
-    if (const int g = dem.next_valid(s, 2, reach); g > 0) [[likely]]
+    if (const int g = dem.next_valid(s, 2, reach); g > 0)
       visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g, 1, i, j});
   });
 }
 
-/// The first cell from link.to on, the way that a link leads, that is not covered(slot); -1 if none is at most `reach`
-/// cells from link.from.
-template <Limits limits, typename Covered>
-int beyond_cover(const Dem<limits>& dem, const Link& link, int reach, Covered&& covered) {
+/// The first cell from link.to on, the way that a link leads, that is not obstructed(slot); -1 if none is at most
+/// `reach` cells from link.from.
+template <Limits limits, typename Obstructed>
+int beyond_obstacle(const Dem<limits>& dem, const Link& link, int reach, Obstructed&& obstructed) {
   auto slot = static_cast<int>(link.to);
-  for (int distance = link.distance; covered(slot);) {
+  for (int distance = link.distance; obstructed(slot);) {
     const int g = dem.next_valid(slot, direction(link.axis, 1), reach - distance);
     if (g == 0) return -1;
     distance += g;

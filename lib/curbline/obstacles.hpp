@@ -90,19 +90,21 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
   const PlaneFlags edge = at_edge(dem, none, label_of);
   const Neighbours beside = neighbours(dem, none, label_of, level);
   for (std::size_t l = 0; l < top.size(); ++l) top[l] = top[l] && !edge[l];
-  for (bool changed = true; changed;) {
+  const auto leads_on = [&](std::size_t l) {
+    bool found = false;
+    beside[l].for_each([&](int m) {
+      const auto other = static_cast<std::size_t>(m);
+      const float apart_m = planes[other].above_m(*ground_) - planes[l].above_m(*ground_);
+      found = found || !top[other] || square(apart_m) > square(0.5f * usual_step_m);
+    });
+    return found;
+  };
+  for (bool changed = true; changed;) {  // a way that is found may make one of what lies beside it
     changed = false;
     for (std::size_t l = 0; l < top.size(); ++l) {
-      bool way = false;
-      beside[l].for_each([&](int m) {
-        const auto other = static_cast<std::size_t>(m);
-        const float apart_m = planes[other].above_m(*ground_) - planes[l].above_m(*ground_);
-        way = way || !top[other] || square(apart_m) > square(0.5f * usual_step_m);
-      });
-      if (!top[l] || !way) continue;
+      if (!top[l] || !leads_on(l)) continue;
       top[l] = false;
-      way_[l] = true;
-      changed = true;
+      way_[l] = changed = true;
     }
   }
   for (std::size_t l = 0; l < top.size(); ++l) {

@@ -366,8 +366,8 @@ int Pipeline<limits>::settle(int passes) {
 template <Limits limits>
 void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
-  const auto covered = [this](int slot) { return dem_.steep(dem_.cell(slot)) || plane_mixture_.covered(slot); };
-  segmentation_.update(dem_, work, covered, counters_);
+  segmentation_.update(
+      dem_, work, [this](int slot) { return plane_mixture_.obstructed(dem_, slot); }, counters_);
   plane_mixture_.update(
       dem_, work, view(), [this](int slot) { return label_field_.label(slot); }, counters_);
   label_field_.note_touched(dem_);

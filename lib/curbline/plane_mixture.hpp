@@ -82,6 +82,8 @@ class PlaneMixture {
   bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
   /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.
   bool covered(int slot) const { return region_label(slot) != none && ground_.covers(region_label(slot)); }
+  /// Does something stand in it: do its heights spread as on 45 degrees, or is its ground covered?
+  bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }
   bool any_fresh() const { return any_fresh_; }
   bool any_relabelled() const { return any_relabelled_; }
   PlaneUpdate mode() const { return settings_.update; }

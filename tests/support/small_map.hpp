@@ -52,8 +52,8 @@ struct Stages {
   }
   void segment() {
     segmented = &work.segmentation();
-    const auto covered = [this](int slot) { return dem.steep(dem.cell(slot)) || mixture.covered(slot); };
-    segmentation.update(dem, *segmented, covered, counters);
+    segmentation.update(
+        dem, *segmented, [this](int slot) { return mixture.obstructed(dem, slot); }, counters);
   }
   /// What it changes can be asked until the next one.
   void mix() {

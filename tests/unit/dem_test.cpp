@@ -339,8 +339,8 @@ TEST_CASE("dem: a link goes on to the ground behind what stands on it, within re
       if ((along_x ? link.i : link.j) != 5 || (along_x ? link.j : link.i) != 2) return;
       ++links;
       const auto posts = [&](int slot) { return dem.steep(dem.cell(slot)); };
-      CHECK(beyond_cover(dem, link, 4, posts) == (along_x ? dem.slot(9, 2) : dem.slot(2, 9)));
-      CHECK(beyond_cover(dem, link, 3, posts) == -1);
+      CHECK(beyond_obstacle(dem, link, 4, posts) == (along_x ? dem.slot(9, 2) : dem.slot(2, 9)));
+      CHECK(beyond_obstacle(dem, link, 3, posts) == -1);
     });
     CHECK(links == 2);
   }

@@ -160,11 +160,11 @@ void belief_messages(benchmark::State& state) {
   dem.init(street().settings.window, street().settings.planes.prior);
   for (const Point& p : street().points) dem.add(p);
   segmentation.init(street().settings.segmentation, street().settings.planes.prior);
+  mixture.init(street().settings.planes);
   Workspace<board_limits> workspace;
   auto& work = workspace.segmentation();
   segmentation.update(
-      dem, work, [&](int slot) { return dem.steep(dem.cell(slot)); }, counters);
-  mixture.init(street().settings.planes);
+      dem, work, [&](int slot) { return mixture.obstructed(dem, slot); }, counters);
   mixture.update(
       dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
   auto& visits = workspace.visits();
