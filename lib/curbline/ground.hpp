@@ -307,7 +307,7 @@ template <Limits limits>
 template <typename LabelType, typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             LabelType none, LabelOf&& label_of, Changed&& changed) {
-  const Obstacles<limits> obstacles(dem, planes, none, label_of);
+  const Obstacles<limits> obstacles(dem, planes, view, none, label_of);
   PlaneFlags drops{};
   for (std::size_t l = 0; l < drops.size(); ++l) drops[l] = !obstacles.is(l) && drops_off(planes[l], view);
   Tallies tallies{};

@@ -1,8 +1,9 @@
 // What stands on the ground: which planes are of obstacles. A region within whose cells the heights spread as on a
-// slope of more than 45 degrees; and the top of one: level, less than a square metre, higher above the ground than a
-// kerb or a stair, and no way that leads on. A way has beside it, as high above the ground, one that is no top, or lies
-// higher or lower by as much as the next step of a stair does. Cost: a pass over the window, and two more where there
-// may be tops.
+// slope of more than 45 degrees; and the top of one: level, higher above the ground than a kerb or a stair, smaller
+// than a square metre or narrower than shoulders, and no way that leads on. A way has beside it, as high above the
+// ground, one that is no top, or lies higher or lower by as much as the next step of a stair does. What reaches the
+// window's end may be larger than it looks, and wider what begins there or where nothing is seen before it.
+// Cost: a pass over the window, and two more where there may be tops.
 #pragma once
 
 #include <array>
@@ -11,7 +12,9 @@
 
 #include "curbline/dem.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/math.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/point.hpp"
 
 namespace curbline {
 
@@ -22,7 +25,8 @@ class Obstacles {
  public:
   /// label_of(slot) is the plane of a valid cell's region, `none` if it has none.
   template <typename LabelType, typename LabelOf>
-  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, LabelType none, LabelOf&& label_of);
+  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
+            LabelOf&& label_of);
 
   bool is(std::size_t label) const { return is_[label]; }
   /// Is it one that is higher than a step?
@@ -39,12 +43,27 @@ class Obstacles {
   using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
   static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
   static constexpr float way_m = 1.0f;         ///< a square of ground that lies higher is no smaller: stairs lead on
+  static constexpr float shoulders_m = 0.5f;   ///< nor is it narrower: it would be a wall
   static constexpr int widest_gap = 2;         ///< between planes that lie beside each other, in cells: a face
 
+  /// Of a plane's region.
+  struct Extent {
+    bool reaches_end = false;           ///< of the window
+    std::array<float, 2> thin_cells{};  ///< of runs shorter than shoulders, along x and along y
+
+    bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
+  };
+  using Extents = std::array<Extent, limits.planes>;
+
   template <typename LabelType, typename LabelOf>
-  void add_tops(const Dem<limits>& dem, std::span<const Plane> planes, LabelType none, LabelOf&& label_of);
+  void add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
+                LabelOf&& label_of);
   template <typename LabelType, typename LabelOf>
-  static PlaneFlags at_edge(const Dem<limits>& dem, LabelType none, LabelOf&& label_of);
+  static Extents extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
+                            const PlaneFlags& asked);
+  template <typename SameRegion>
+  static bool thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
+                   SameRegion&& same_region);
   template <typename LabelType, typename LabelOf>
   static Neighbours neighbours(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, const PlaneFlags& asked);
 
@@ -55,8 +74,8 @@ class Obstacles {
 
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
-Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, LabelType none,
-                             LabelOf&& label_of) {
+Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                             LabelType none, LabelOf&& label_of) {
   std::array<float, limits.planes> spread{}, weight{};
   dem.for_each_valid([&](int, int, int s) {
     const LabelType label = label_of(s);
@@ -71,25 +90,32 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
     if (!planes[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes[l].cells > ground_->cells) ground_ = &planes[l];
   }
-  if (ground_ != nullptr) add_tops(dem, planes, none, label_of);
+  if (ground_ != nullptr) add_tops(dem, planes, view, none, label_of);
 }
 
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
-void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> planes, LabelType none,
-                                 LabelOf&& label_of) {
-  PlaneFlags level{}, top{};  // and above the ground by more than a step
+void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                                 LabelType none, LabelOf&& label_of) {
+  PlaneFlags level{}, asked{};  // and above the ground by more than a step; and no larger than a wall may be
+  const float longest_m =
+      static_cast<float>(dem.rows()) * dem.cell_x_m() + static_cast<float>(dem.cols()) * dem.cell_y_m();
+  const float cell_m2 = dem.cell_x_m() * dem.cell_y_m();
   bool any = false;
   for (std::size_t l = 0; l < planes.size(); ++l) {
     level[l] =
         planes[l].alive() && !is_[l] && !planes[l].steeper_than_ramp() && planes[l].above_m(*ground_) > usual_step_m;
-    top[l] = level[l] && cells_[l] * dem.cell_x_m() * dem.cell_y_m() < way_m * way_m;
-    any = any || top[l];
+    asked[l] = level[l] && cells_[l] * cell_m2 < shoulders_m * longest_m;
+    any = any || asked[l];
   }
   if (!any) return;
-  const PlaneFlags edge = at_edge(dem, none, label_of);
+  const Extents extents = extents_of(dem, view, none, label_of, asked);
   const Neighbours beside = neighbours(dem, none, label_of, level);
-  for (std::size_t l = 0; l < top.size(); ++l) top[l] = top[l] && !edge[l];
+  PlaneFlags top{};
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
+    top[l] = asked[l] && (small || extents[l].narrow(cells_[l]));
+  }
   const auto leads_on = [&](std::size_t l) {
     bool found = false;
     beside[l].for_each([&](int m) {
@@ -112,16 +138,44 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
   }
 }
 
-/// Which planes reach the end of the window.
 template <Limits limits>
 template <typename LabelType, typename LabelOf>
-auto Obstacles<limits>::at_edge(const Dem<limits>& dem, LabelType none, LabelOf&& label_of) -> PlaneFlags {
-  PlaneFlags found{};
+auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
+                                   const PlaneFlags& asked) -> Extents {
+  Extents found{};
   dem.for_each_valid([&](int i, int j, int s) {
-    if (i > 0 && j > 0 && i < dem.rows() - 1 && j < dem.cols() - 1) return;
-    if (const LabelType label = label_of(s); label != none) found[label] = true;
+    const LabelType label = label_of(s);
+    if (label == none || !asked[label]) return;
+    Extent& extent = found[label];
+    if (i == 0 || j == 0 || i == dem.rows() - 1 || j == dem.cols() - 1) extent.reaches_end = true;
+    const auto same = [&](int slot) { return label_of(slot) == label; };
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      extent.thin_cells[axis] += thin(dem, view, i, j, axis, same) ? 1.0f : 0.0f;
   });
   return found;
+}
+
+/// Is the run of cells of one region through (i, j), along x or y, shorter than shoulders? Not one that goes on beyond
+/// the window's end, or perhaps toward the laser, where nothing is seen.
+template <Limits limits>
+template <typename SameRegion>
+bool Obstacles<limits>::thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
+                             SameRegion&& same_region) {
+  const float cell_m = axis == 0 ? dem.cell_x_m() : dem.cell_y_m(), eye_m = axis == 0 ? view.x_m : view.y_m;
+  const int count = axis == 0 ? dem.rows() : dem.cols(), at = axis == 0 ? i : j;
+  const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
+  int length = 1;
+  for (const int step : {toward, -toward}) {
+    for (int k = at + step;; k += step) {
+      if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= count) return false;
+      const int slot = axis == 0 ? dem.slot(k, j) : dem.slot(i, k);
+      const bool seen = dem.cell(slot).valid();
+      if (!seen && step == toward) return false;
+      if (!seen || !same_region(slot)) break;
+      ++length;
+    }
+  }
+  return true;
 }
 
 /// Of the planes that are asked for, which lie beside which, on a row or a column.

@@ -120,6 +120,15 @@ TEST_CASE("program: each step of a flight is found with cells of 10 cm") {
   check_steps("0.1");
 }
 
+TEST_CASE("program: garden walls are no curbs, the pavement beside them has one") {
+  const Recording logs("low_walls", "lms200");
+  replay(logs);
+  const nlohmann::json figures = evaluate(logs);
+  check_curbs(figures);
+  CHECK(figures.at("steps").at(1).at("tolerance_m") == 0.1);
+  CHECK(figures.at("steps").at(1).at("precision").get<double>() > 0.95);
+}
+
 TEST_CASE("program: a ramp has edges and no step") {
   const Recording logs("ramp", "utm30lx");
   replay(logs);

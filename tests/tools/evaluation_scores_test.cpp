@@ -205,6 +205,19 @@ TEST_CASE("scores: calibration is by each piece's own sd, and by length") {
   CHECK(c.within_2_sd == Approx(1));
 }
 
+TEST_CASE("scores: of a step that grows along the way what counts is how high it is beside a piece") {
+  Truth growing = step_of(0.1);
+  growing.curbs[0].from_step_m = 0.0;  // 5 cm in the middle
+  const Calibration c = scores_of({piece(2, -0.01, 0.01, 0.05)}, growing).calibration;
+  CHECK(c.mean_square == Approx(0).margin(1e-9));
+  const Seen upper_half = seen_in([] {
+    std::vector<LabelledCell> cells = cells_of(truth);
+    std::erase_if(cells, [](const LabelledCell& cell) { return cell.y_m < 0; });
+    return cells;
+  }());
+  CHECK(match_steps({{}, {}, {}}, growing, upper_half).at(0).step_m == Approx(0.075).margin(0.003));
+}
+
 TEST_CASE("scores: a curb's match is of what could be seen of it") {
   const Seen half = seen_in([] {
     std::vector<LabelledCell> cells = cells_of(truth);

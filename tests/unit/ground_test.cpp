@@ -123,6 +123,21 @@ TEST_CASE("ground: the top of a box is an obstacle; lower than a stair, or at th
   CHECK(borne(block(0.28, 1.8)) == 2);
 }
 
+//     ||  wall, from end to end of the window     ___|  platform beyond it     ___   platform under the robot, which
+//  ___||___                                   ___|                                |___ sees only its edge
+TEST_CASE("ground: what is narrower than shoulders is a wall, unless it may go on where nothing is seen") {
+  const auto strip = [](double from_y_m, double to_y_m) {
+    return [=](double, double y) { return y > from_y_m && y < to_y_m ? 0.28 : 0.0; };
+  };
+  CHECK(borne(strip(0.9, 1.2)) == 2);  // the ground on both sides
+  CHECK(borne(strip(0.9, 1.6)) == 3);
+  CHECK(borne(strip(2.0, 9.0)) == 2);
+  const auto aslant = [](double x, double y) { return y - 0.3 * x > 0.6 && y - 0.3 * x < 0.95 ? 0.28 : 0.0; };
+  CHECK(borne(aslant) == 2);
+  const auto underfoot = [](double x, double) { return x < 0.6 ? std::nan("") : x < 0.9 ? 0.28 : 0.0; };
+  CHECK(borne_from({0.0f, 1.2f, 1.0f}, underfoot) == 2);
+}
+
 //             ______
 //          __|         between two walls, 1.2 m apart
 //  _______|

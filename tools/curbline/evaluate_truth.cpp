@@ -73,7 +73,6 @@ Evaluation evaluate_recording(const EvaluateOptions& options) {
 /// One true step, as the first table and "curbs" have it.
 struct CurbRow {
   Segment line;
-  double step_m;  ///< in the middle
   CurbMatch match;
   Detections::Detection detection;
   bool found() const { return match.covered >= found_share; }
@@ -86,10 +85,8 @@ std::vector<CurbRow> curb_rows(const Evaluation& e) {
     if (matches[k].visible_m < least_visible_m) continue;
     const TruthCurb& c = e.truth.curbs[k];
     const bool known = e.run && k < e.run->detections.size();
-    rows.push_back({{c.from.x, c.from.y, c.to.x, c.to.y},
-                    0.5 * std::abs(c.from_step_m + c.to_step_m),
-                    matches[k],
-                    known ? e.run->detections[k] : Detections::Detection{}});
+    rows.push_back(
+        {{c.from.x, c.from.y, c.to.x, c.to.y}, matches[k], known ? e.run->detections[k] : Detections::Detection{}});
   }
   return rows;
 }
@@ -99,7 +96,7 @@ void print_rows(const std::vector<CurbRow>& rows) {
       "  true curb                              step     found       position error   covered       seen to found\n");
   for (const CurbRow& row : rows) {
     const Segment& s = row.line;
-    std::printf("  (%6.2f %6.2f) - (%6.2f %6.2f)  %6.1f cm ", s.x0_m, s.y0_m, s.x1_m, s.y1_m, 100 * row.step_m);
+    std::printf("  (%6.2f %6.2f) - (%6.2f %6.2f)  %6.1f cm ", s.x0_m, s.y0_m, s.x1_m, s.y1_m, 100 * row.match.step_m);
     if (!row.found()) {
       std::printf("  missed\n");
       continue;
@@ -115,7 +112,7 @@ void print_rows(const std::vector<CurbRow>& rows) {
 nlohmann::json rows_json(const std::vector<CurbRow>& rows) {
   nlohmann::json out = nlohmann::json::array();
   for (const CurbRow& row : rows) {
-    nlohmann::json json{{"step_m", row.step_m},
+    nlohmann::json json{{"step_m", row.match.step_m},
                         {"found", row.found()},
                         {"height_m", row.match.height_m},
                         {"position_error_m", row.match.position_error_m},

@@ -33,11 +33,13 @@ class Nearest {
       const double dx = p.x - s.at.x, dy = p.y - s.at.y;
       if (std::abs(dx) > 0.35 || std::abs(dy) > 0.35) continue;
       const double across = dx * s.to_left.x + dy * s.to_left.y, along = dx * s.to_left.y - dy * s.to_left.x;
-      const double beyond = std::max(0.0, std::abs(along) - spacing_m / 2);
-      const double distance = std::hypot(across, beyond);
+      const double on_sample = std::clamp(along, -spacing_m / 2, spacing_m / 2);
+      const double distance = std::hypot(across, along - on_sample);
       if (distance >= out.distance_m) continue;
       out.distance_m = distance;
-      out.height_error_m = robot_ ? height_m - signed_step_m(s, *robot_) : std::abs(height_m) - s.height_m();
+      TruthSample there = s;
+      there.step_m += s.rise * on_sample;
+      out.height_error_m = robot_ ? height_m - signed_step_m(there, *robot_) : std::abs(height_m) - there.height_m();
     }
     return out;
   }
@@ -135,14 +137,13 @@ Errors errors_of(std::vector<double> values) {
 
 std::vector<CurbMatch> match_steps(const Found& found, const Truth& truth, const Seen& seen) {
   struct Samples {
-    std::vector<double> position, height;
-    int visible = 0;
+    std::vector<double> step, position, height;
   };
   const std::vector<TruthSample> all = truth_samples(truth);
   std::vector<Samples> of_curb(truth.curbs.size());
   for (const TruthDistance& s : truth_distances(all, found, seen)) {
     Samples& samples = of_curb[s.curb];
-    ++samples.visible;
+    samples.step.push_back(s.height_m);
     if (s.distance_m > band_tolerance_m) continue;
     samples.position.push_back(s.distance_m);
     samples.height.push_back(s.found_height_m);
@@ -150,8 +151,10 @@ std::vector<CurbMatch> match_steps(const Found& found, const Truth& truth, const
   std::vector<CurbMatch> out(truth.curbs.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     const Samples& samples = of_curb[k];
-    out[k].visible_m = spacing_m * samples.visible;
-    if (samples.visible > 0) out[k].covered = static_cast<double>(samples.position.size()) / samples.visible;
+    const auto visible = static_cast<double>(samples.step.size());
+    out[k].visible_m = spacing_m * visible;
+    out[k].step_m = errors_of(samples.step).median;
+    if (visible > 0) out[k].covered = static_cast<double>(samples.position.size()) / visible;
     out[k].position_error_m = errors_of(samples.position).median;
     out[k].height_m = errors_of(samples.height).median;
   }

@@ -69,6 +69,7 @@ struct CurbScores {
 /// One true curb: how it was found.
 struct CurbMatch {
   double visible_m = 0;         ///< length of it that could be found
+  double step_m = 0;            ///< median of the true height there, without sign
   double covered = 0;           ///< share of that with a found step within 0.1 m
   double position_error_m = 0;  ///< median distance to the nearest found step, of what is covered
   double height_m = 0;          ///< median of what was found there, without sign

@@ -18,11 +18,12 @@ std::vector<TruthSample> truth_samples(const Truth& truth) {
     const double dx = curb.to.x - curb.from.x, dy = curb.to.y - curb.from.y, length = std::hypot(dx, dy);
     if (curb.kind != "step" || length <= 0) continue;
     const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
+    const double rise_m = curb.to_step_m - curb.from_step_m;
     for (int i = 0; i < n; ++i) {
       const double t = (i + 0.5) / n;
       const Point2 at{curb.from.x + t * dx, curb.from.y + t * dy};
       if (truth.obstacle_at(at.x, at.y)) continue;
-      out.push_back({k, at, {-dy / length, dx / length}, curb.from_step_m + t * (curb.to_step_m - curb.from_step_m)});
+      out.push_back({k, at, {-dy / length, dx / length}, curb.from_step_m + t * rise_m, rise_m / length});
     }
   }
   return out;

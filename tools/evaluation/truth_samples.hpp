@@ -18,6 +18,7 @@ struct TruthSample {
   Point2 at;
   Point2 to_left;     ///< unit vector across, to the left side
   double step_m = 0;  ///< left less right
+  double rise = 0;    ///< of step_m, per metre to the right of to_left
   double height_m() const { return step_m < 0 ? -step_m : step_m; }
 };
 
