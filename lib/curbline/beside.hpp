@@ -37,9 +37,9 @@ struct Deviation {
   /// It lies farther by three standard deviations, and by more than one of what does not average out: the ground beside
   /// the border is not the plane's.
   bool found() const { return away_m > 0.0f && square(away_m) > gate * variance_m2 && square(away_m) > common_m2; }
-  /// Variance of the side's height there. The cells' own if they tell it, else what they lie off the plane beyond that:
-  /// it may be as wrong.
-  float height_variance_m2() const { return found() ? variance_m2 : beyond_m2(); }
+  /// Variance of the side's height there. The cells' own if they tell it; else the plane may be wrong by up to half of
+  /// what they lie off it beyond that, evenly.
+  float height_variance_m2() const { return found() ? variance_m2 : (1.0f / 12) * beyond_m2(); }
   /// Of that what makes the planes lie farther apart than the ground does.
   float too_far_m2() const { return away_m < 0.0f ? beyond_m2() : 0.0f; }
 

@@ -5,7 +5,9 @@
 // first-order autoregression). Each patch of 10 x 10 cells is asked, about a plane of its own: of a step by which no
 // planes are parted yet only the patches that it crosses show anything. What the points of a cell err each on its own
 // is counted too, the less the more there are. What is not known of the tilt's latency moves a whole sweep: the cells
-// of a single one do not show it, and it is added.
+// of a single one do not show it, and it is added. Errors of the tilt and of poses grow with the distance, so each
+// patch tells, too, how much its cells share for theirs: a plane far away errs by more than the evenest patches, near
+// the robot, show.
 #pragma once
 
 #include <array>
@@ -47,13 +49,16 @@ class CommonNoise {
 
   /// Looks at the next row of patches; after the last it begins anew with the first. About 45 operations a cell of
   /// these ten rows.
-  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
+  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view);
 
   /// What the points of a cell share: of the patches, each weighed by its cells, the one that a quarter of them lie
   /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least
   /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
   /// as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
+  /// That per Viewpoint::reach_m4(), of the middle one of the patches: no curb is missed for it; 0 as long as there is
+  /// no plane.
+  float per_m2() const;
 
  private:
   static constexpr int side = PatchResiduals::side;
@@ -69,17 +74,19 @@ class CommonNoise {
   struct Patch {
     float cells = 0.0f;  ///< 0: too few to tell
     float common_m2 = 0.0f;
+    float per_m2 = 0.0f;        ///< that per Viewpoint::reach_m4()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
+  float quantile(float Patch::*of, float share) const;
 
   std::array<Patch, patch_rows * patches_in_row> patches_{};
   int first_row_ = 0;  ///< of those that are next
 };
 
 template <Limits limits>
-void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
+void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view) {
   std::array<PatchResiduals, patches_in_row> residuals{};
-  std::array<float, patches_in_row> growth_m2_s2{};
+  std::array<float, patches_in_row> growth_m2_s2{}, height_m{};
   std::array<Seen, limits.cols> last{};  // of each column
   const auto visit = [&](int i, int j, int s) {
     const LabelType label = mixture.region_label(s);
@@ -90,7 +97,8 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     const Seen now{label, i, dem.above_m(i, j, cell, plane)};
     const auto k = static_cast<std::size_t>(j / side);
     residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
-    growth_m2_s2[k] += dem.growth_m_s(s) * dem.growth_m_s(s);
+    growth_m2_s2[k] += square(dem.growth_m_s(s));
+    height_m[k] = cell.height_m;
     const auto column = static_cast<std::size_t>(j);
     const auto neighbour = [&](std::size_t axis, const Seen& other, int row) {
       if (other.label == label && other.i == row) residuals[k].add_rise(axis, now.above_m - other.above_m);
@@ -105,7 +113,10 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
   for (std::size_t k = 0; k < patches_in_row; ++k, ++patch) {
     *patch = Patch{};
     if (residuals[k].cells < PatchResiduals::least_cells) continue;
-    *patch = {residuals[k].cells, residuals[k].common_m2(), growth_m2_s2[k]};
+    const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
+    const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
+    const float common_m2 = residuals[k].common_m2(), reach_m4 = view.reach_m4(x_m, y_m, height_m[k], 0.0f);
+    *patch = {residuals[k].cells, common_m2, reach_m4 > 0.0f ? common_m2 / reach_m4 : 0.0f, growth_m2_s2[k]};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -113,26 +124,38 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
 
 template <Limits limits>
 float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s) const {
-  auto left = patches_;
   float cells = 0.0f, growth_m2_s2 = 0.0f;
-  for (const Patch& patch : left) {
+  for (const Patch& patch : patches_) {
     cells += patch.cells;
     growth_m2_s2 += patch.growth_m2_s2;
   }
   if (!(cells > 0.0f)) return prior.common_m2();
-  float common_m2 = 0.0f;
-  for (float passed = 0.0f; 4.0f * passed < cells;) {  // the least first, each once
-    Patch* least = nullptr;
-    for (Patch& patch : left) {
-      if (patch.cells > 0.0f && (least == nullptr || patch.common_m2 < least->common_m2)) least = &patch;
-    }
-    common_m2 = least->common_m2;
-    passed += least->cells;
-    least->cells = 0.0f;
-  }
-  common_m2 += latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
+  const float common_m2 = quantile(&Patch::common_m2, 0.25f) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
   const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
   return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
+}
+
+template <Limits limits>
+float CommonNoise<limits>::per_m2() const {
+  return quantile(&Patch::per_m2, 0.5f);
+}
+
+/// Of what patches show, each weighed by its cells, what a share of them lie below; 0 if there is none.
+template <Limits limits>
+float CommonNoise<limits>::quantile(float Patch::*of, float share) const {
+  std::array<float, patch_rows * patches_in_row> left{};  // cells
+  float cells = 0.0f, found = 0.0f;
+  for (std::size_t k = 0; k < left.size(); ++k) cells += left[k] = patches_[k].cells;
+  for (float passed = 0.0f; passed < share * cells;) {  // the least first, each once
+    std::size_t least = left.size();
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      if (left[k] > 0.0f && (least == left.size() || patches_[k].*of < patches_[least].*of)) least = k;
+    }
+    found = patches_[least].*of;
+    passed += left[least];
+    left[least] = 0.0f;
+  }
+  return found;
 }
 
 }  // namespace curbline

@@ -62,6 +62,7 @@ class CurbTracer {
   float leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last, const Curb& curb,
                      Piece& piece) const;
   static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
+  static float more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece);
   struct Deviations {
     Deviation low, high;
   };
@@ -212,7 +213,7 @@ auto CurbTracer<limits>::deviations_of(const Stages& stages, const Border& borde
 
 /// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
 /// the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to a
-/// quarter of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane, have
+/// sixth of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane, have
 /// no part in the fit. Behind a brink as much again as is seen, `hidden_m`, may be hidden, or less, evenly.
 template <Limits limits>
 float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border& border, const Piece& piece,
@@ -221,8 +222,17 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
   const Plane& high = stages.beyond(border);
   const float slope =
       (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
-  return piece.variance_m2 + square(slope) * piece.place_variance_m2 + square(piece.off_m) * (1.0f / 48) +
-         square(hidden_m) * (1.0f / 3);
+  return piece.variance_m2 + more_from_afar_m2(stages, low, piece) + more_from_afar_m2(stages, high, piece) +
+         square(slope) * piece.place_variance_m2 + square(piece.off_m) * (1.0f / 108) + square(hidden_m) * (1.0f / 3);
+}
+
+/// By how much more a plane errs beside a piece than its fit says, which takes what cells share for the same wherever
+/// they lie.
+template <Limits limits>
+float CurbTracer<limits>::more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece) {
+  const float reach_m4 = stages.view.reach_m4(plane.x_m, plane.y_m, plane.z_m, plane.scatter_m2());
+  const float more_m2 = stages.dem.common_m2(reach_m4) - plane.fit_variance_m2;
+  return more_m2 > 0.0f ? more_m2 / plane.fit_variance_m2 * plane.height_variance_m2(piece.x_m, piece.y_m) : 0.0f;
 }
 
 /// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. Returns

@@ -68,9 +68,15 @@ class Dem {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
   float common_m2() const { return common_m2_; }
+  /// Of cells that lie at a distance, see Viewpoint::reach_m4(): no less.
+  float common_m2(float reach_m4) const {
+    const float there_m2 = common_per_m2_ * reach_m4;
+    return there_m2 > common_m2_ ? there_m2 : common_m2_;
+  }
   /// As evidence it is no less than the ground's texture.
-  void set_common_m2(float found_m2) {
+  void set_common(float found_m2, float found_per_m2) {
     common_m2_ = found_m2;
+    common_per_m2_ = found_per_m2;
     prior_.common_share = (found_m2 > prior_.texture_m2 ? found_m2 : prior_.texture_m2) / prior_.noise_m2;
   }
 
@@ -241,7 +247,7 @@ class Dem {
 
   WindowSettings settings_{};
   PlanePrior prior_{};
-  float common_m2_ = 0.0f;
+  float common_m2_ = 0.0f, common_per_m2_ = 0.0f;
   float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
@@ -260,6 +266,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   settings_ = settings;
   prior_ = prior;
   common_m2_ = prior.common_m2();
+  common_per_m2_ = 0.0f;
   cells_.fill(Cell{});
   touched_.fill(0);
   flags_ = seen_bits;

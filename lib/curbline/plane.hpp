@@ -142,6 +142,8 @@ struct Plane {
 
   /// How far its centroid lies above another plane.
   float above_m(const Plane& other) const { return z_m - other.height_m(x_m, y_m); }
+  /// Mean square of how far its cells lie from the centroid, along x and y together.
+  float scatter_m2() const { return (pxx + pyy) / (cells * (pxx * pyy - square(pxy))); }
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
 
   /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell

@@ -1,6 +1,8 @@
 // A point on its way from the laser into a cell, and where it was seen from.
 #pragma once
 
+#include "curbline/math.hpp"
+
 namespace curbline {
 
 /// No tilt makes ground grow faster: 3 rad/s, seen 10 m away. What does is a wrong reading's.
@@ -27,6 +29,14 @@ struct Viewpoint {
   /// Of a robot that drives, the window's size: what lies in it was seen from as far away as its end. 0 of one that
   /// stands.
   float end_x_m = 0.0f, end_y_m = 0.0f;
+
+  /// How the variance of cells about (px_m, py_m, pz_m), of which the places scatter by `scatter_m2`, grows with their
+  /// distance by what scan lines err in tilt and pose: each line by the square of how far it falls from the laser, and
+  /// a cell holds the fewer of them, the farther it is. r^2 (r^2 + h^2), r along the ground.
+  float reach_m4(float px_m, float py_m, float pz_m, float scatter_m2) const {
+    const float away_m2 = square(px_m - x_m) + square(py_m - y_m) + scatter_m2;
+    return away_m2 * (away_m2 + square(z_m - pz_m));
+  }
 };
 
 }  // namespace curbline

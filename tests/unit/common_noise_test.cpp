@@ -47,14 +47,18 @@ class Unevenness {
   std::array<std::array<double, side>, side> at_{};
 };
 
-/// What is found once every patch has been looked at.
-float share_of(const Stages<limits>& stages, const PlanePrior& prior, float latency_sd_s = 0.0f) {
+/// Once every patch has been looked at.
+CommonNoise<limits> noise_of(const Stages<limits>& stages) {
   CommonNoise<limits> common_noise;
   common_noise.init();
   for (int row = 0; row < stages.dem.rows(); row += PatchResiduals::side) {
-    common_noise.follow(stages.dem, stages.mixture);
+    common_noise.follow(stages.dem, stages.mixture, stages.view);
   }
-  return common_noise.common_m2(prior, latency_sd_s) / prior.noise_m2;
+  return common_noise;
+}
+
+float share_of(const Stages<limits>& stages, const PlanePrior& prior, float latency_sd_s = 0.0f) {
+  return noise_of(stages).common_m2(prior, latency_sd_s) / prior.noise_m2;
 }
 
 /// Share found on a map of such heights, where it may be anything.
@@ -159,6 +163,24 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
   }
   stages.infer(true);
   CHECK(share_of(stages, PlanePrior{}) == Approx(0.12).epsilon(0.4));  // 0.16 of all patches, 0.48 with correlations
+}
+
+TEST_CASE("common noise: what grows with the distance is found as that, not as what the evenest, near patches share") {
+  constexpr double eye_m = 1.2;
+  const Unevenness even(1.0, 0.0, 0.0);
+  Stages<limits> stages(map_settings());
+  stages.view = {0.0f, 2.0f, static_cast<float>(eye_m)};
+  const auto sd_m = [&](double x_m, double y_m) {  // of 0.1 mm^2 per m^4
+    const double away_m2 = x_m * x_m + (y_m - 2.0) * (y_m - 2.0);
+    return std::sqrt(1e-7 * away_m2 * (away_m2 + eye_m * eye_m));
+  };
+  test::fill(stages.dem, [&](double x_m, double y_m) { return sd_m(x_m, y_m) * even(x_m, y_m); });
+  stages.infer(true);
+  const CommonNoise<limits> noise = noise_of(stages);
+  CHECK(noise.per_m2() == Approx(1e-7).epsilon(0.5));
+  const float there_m2 = noise.per_m2() * stages.view.reach_m4(3.5f, 2.0f, 0.0f, 0.0f);
+  CHECK(there_m2 == Approx(sd_m(3.5, 2.0) * sd_m(3.5, 2.0)).epsilon(0.5));
+  CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * there_m2);
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {

@@ -320,13 +320,13 @@ TEST_CASE("curb tracer: the ground beside a border is carried on to it, and foun
   CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
 }
 
-TEST_CASE("curb tracer: a plane may be as wrong beside a border as its cells lie off it beyond their own errors") {
+TEST_CASE("curb tracer: a plane may be wrong beside a border by up to half of what its cells lie off it beyond their errors") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
-  CHECK(lying(0.004f).height_variance_m2() == Approx(1.6e-5 - 5e-6));
+  CHECK(lying(0.004f).height_variance_m2() == Approx((1.6e-5 - 5e-6) / 12));
   CHECK(lying(0.004f).too_far_m2() == 0.0f);  // the other side lies below
-  CHECK(lying(-0.02f).height_variance_m2() == Approx(4e-4 - 5e-6));
+  CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 5e-6) / 12));
   CHECK(lying(-0.02f).too_far_m2() == Approx(4e-4 - 5e-6));
   CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // by chance
   CHECK(lying(-0.002f).too_far_m2() == 0.0f);
@@ -339,6 +339,19 @@ TEST_CASE("curb tracer: cells beside the border that lie off their planes make t
   REQUIRE(flat->tracer.curbs().size() == 1);
   REQUIRE(worn->tracer.curbs().size() == 1);
   CHECK(worn->tracer.curbs()[0].height_sd_m > 1.05f * flat->tracer.curbs()[0].height_sd_m);
+}
+
+TEST_CASE("curb tracer: the height of a step is less certain the farther it is, where errors of the tilt are known") {
+  const auto deviation_m = [](float robot_x_m, float common_per_m2) {
+    const auto stages = traced(up);
+    stages->dem.set_common(1e-8f, common_per_m2);
+    stages->trace(robot_x_m, 1.2f);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    return stages->tracer.curbs()[0].height_sd_m;
+  };
+  const float known = deviation_m(0.0f, 0.0f);
+  CHECK(deviation_m(0.0f, 1e-5f) > 1.2f * known);
+  CHECK(deviation_m(-2.0f, 1e-5f) > 2.0f * deviation_m(0.0f, 1e-5f));
 }
 
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
