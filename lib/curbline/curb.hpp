@@ -44,6 +44,10 @@ inline bool is_step(const Curb& curb) {
   return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
 }
 
+/// How far a place beside a piece lies from its line, toward the far side; below 0 on the near one. Infinite beyond its
+/// ends.
+float to_far_side_m(const Curb& curb, float x_m, float y_m);
+
 /// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line.
 /// Else 0 or less.
 float overlap_m(const Curb& now, const Curb& before, float near_m);

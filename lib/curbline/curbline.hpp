@@ -40,6 +40,7 @@
 #include "curbline/shadow.hpp"           // of a step down
 #include "curbline/curb_piece.hpp"       // borders on one line
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
+#include "curbline/ground_label.hpp"     // which plane the ground under a cell is of
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/math.hpp"             // exp, log, sine: the same bits everywhere

@@ -17,6 +17,7 @@
 #include "curbline/counters.hpp"
 #include "curbline/curb_tracer.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/ground_label.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/line_projection.hpp"
@@ -93,11 +94,15 @@ class Pipeline {
     return ready_ && curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
-  /// Plane of a valid cell (i along x, j along y, from the window's lowest corner, 0 <= i < dem().rows(), 0 <= j <
-  /// dem().cols()); no_label<limits> for the others.
+  /// Plane that the readings in a valid cell are of (i along x, j along y, from the window's lowest corner, 0 <= i <
+  /// dem().rows(), 0 <= j < dem().cols()); no_label<limits> for the others.
   Label<limits> label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label<limits>; }
   /// Probability of that label; 0 before init().
   float label_probability(int i, int j) const;
+  /// Plane of the ground under the cell's middle: beside a step not always that of the readings. ground_label.hpp
+  Label<limits> ground_label(int i, int j) const {
+    return ready_ ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label<limits>;
+  }
   /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes: not
   /// no_label<limits>.
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }

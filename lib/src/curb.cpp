@@ -1,5 +1,7 @@
 #include "curbline/curb.hpp"
 
+#include <limits>
+
 #include "curbline/ground.hpp"
 #include "curbline/math.hpp"
 
@@ -35,6 +37,14 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
     return slope > least_ramp || slope < -least_ramp;
   };
   return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
+}
+
+float to_far_side_m(const Curb& curb, float x_m, float y_m) {
+  const float dx_m = curb.x1_m - curb.x0_m, dy_m = curb.y1_m - curb.y0_m;
+  const float length_m = square_root(dx_m * dx_m + dy_m * dy_m);
+  const float along = dx_m * (x_m - curb.x0_m) + dy_m * (y_m - curb.y0_m);
+  if (!(along >= 0.0f && along <= length_m * length_m)) return std::numeric_limits<float>::infinity();
+  return (dx_m * (y_m - curb.y0_m) - dy_m * (x_m - curb.x0_m)) / length_m;
 }
 
 float overlap_m(const Curb& now, const Curb& before, float near_m) {

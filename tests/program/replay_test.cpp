@@ -129,6 +129,14 @@ TEST_CASE("program: garden walls are no curbs, the pavement beside them has one"
   CHECK(figures.at("steps").at(1).at("precision").get<double>() > 0.95);
 }
 
+//   ____________
+//               |       the first cells of the road lie in the step's shadow, and hold readings of the pavement
+//               |_____
+TEST_CASE("program: cells beside a step down are told by the side that their middle is on") {
+  const Recording logs("unfavourable_viewpoint", "utm30lx");
+  CHECK(evaluate(logs).at("v").get<double>() > 0.95);
+}
+
 TEST_CASE("program: a ramp has edges and no step") {
   const Recording logs("ramp", "utm30lx");
   replay(logs);

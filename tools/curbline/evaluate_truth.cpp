@@ -165,6 +165,8 @@ void print_table(const Scored& here, const std::optional<Scored>& reference, con
   line(
       "V-measure of labels", [](const Scored& s) { return s.planes.v; }, 1, 3, paper_v);
   line(
+      "          of readings alone", [](const Scored& s) { return s.planes.v_readings; }, 1, 3, none);
+  line(
       "cell heights, RMSE, mm", [](const Scored& s) { return s.planes.cell_rmse_m; }, 1e3, 1, none);
   line(
       "planes, RMSE, mm", [](const Scored& s) { return s.planes.plane_rmse_m; }, 1e3, 1, none);

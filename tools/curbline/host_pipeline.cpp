@@ -84,6 +84,8 @@ class PipelineOf final : public HostPipeline {
     to.points = static_cast<int>(from.points);
     to.label = label == no_label<limits> ? -1 : label;
     to.probability = pipeline_.label_probability(i, j);
+    const auto ground = pipeline_.ground_label(i, j);
+    to.ground = ground == no_label<limits> ? -1 : ground;
     return to;
   }
 

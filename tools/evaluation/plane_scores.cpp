@@ -86,7 +86,8 @@ std::vector<int> parts_of(const Grid& grid, const Truth& truth) {
 
 /// Against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height on either
 /// side of a road are two. What hides the ground, a shadow or what stands on it, does not part it.
-double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
+template <typename LabelOf>
+double v_of(const std::vector<LabelledCell>& cells, const Truth& truth, LabelOf label_of) {
   if (cells.empty()) return nan;
   const Grid grid = grid_of(cells);
   const std::vector<int> parts = parts_of(grid, truth);
@@ -96,7 +97,7 @@ double v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
     const int part = parts[place_of(cell, grid)];
     if (part < 0 || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
     of_truth.push_back(part);
-    label.push_back(cell.cell.label);
+    label.push_back(label_of(cell.cell));
     ++cells_of[part];
   }
   const auto large = [&](const auto& part) {
@@ -149,6 +150,11 @@ double angle_rad(const Fit& a, const SurfacePlane& b) {
   return std::atan2(n.cross(m).norm(), n.dot(m));
 }
 
+double mean(const std::vector<double>& values) {
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  return values.empty() ? nan : sum / static_cast<double>(values.size());
+}
+
 struct SquareMean {
   double sum = 0;
   int n = 0;
@@ -161,9 +167,11 @@ struct SquareMean {
 PlaneScores score_planes(const Found& found, const Truth& truth) {
   PlaneScores out;
   SquareMean of_cells, of_planes;
-  std::vector<double> of_windows, height, slope;
+  std::vector<double> of_ground, of_readings, height, slope;
   for (const std::vector<LabelledCell>& window : found.windows) {
-    if (const double v = v_of(window, truth); !std::isnan(v)) of_windows.push_back(v);
+    if (const double v = v_of(window, truth, ground_of); !std::isnan(v)) of_ground.push_back(v);
+    const auto label_of = [](const MapCell& cell) { return cell.label; };
+    if (const double v = v_of(window, truth, label_of); !std::isnan(v)) of_readings.push_back(v);
     std::map<int, Cells> of_label;
     for (const LabelledCell& cell : window) {
       if (!on_ground(cell, truth)) continue;
@@ -181,8 +189,8 @@ PlaneScores score_planes(const Found& found, const Truth& truth) {
       slope.push_back(angle_rad(plane, of_truth));
     }
   }
-  const double v_sum = std::accumulate(of_windows.begin(), of_windows.end(), 0.0);
-  out.v = of_windows.empty() ? nan : v_sum / static_cast<double>(of_windows.size());
+  out.v = mean(of_ground);
+  out.v_readings = mean(of_readings);
   out.cell_rmse_m = of_cells.root();
   out.plane_rmse_m = of_planes.root();
   out.height_m = errors_of(height);
@@ -192,6 +200,7 @@ PlaneScores score_planes(const Found& found, const Truth& truth) {
 
 nlohmann::json to_json(const PlaneScores& s) {
   return {{"v", s.v},
+          {"v_readings", s.v_readings},
           {"height_rmse_m", s.cell_rmse_m},
           {"plane_rmse_m", s.plane_rmse_m},
           {"plane_height_error_median_m", s.height_m.median},

@@ -29,10 +29,12 @@ Errors errors_of(std::vector<double> values);
 
 /// Labels and planes. A plane is what least squares makes of its label's cells; the true one that of most of them.
 struct PlaneScores {
-  /// V-measure against connected parts of the true planes, mean over the windows in which two parts or more have 5 % of
-  /// the cells or more. NaN if there is none, or no cell bears a label (of a method that finds curbs alone). Parts are
-  /// connected over all ground between the lowest and the highest cell, seen or not; cells off obstacles count.
+  /// V-measure of the labels of the ground under the cells' middles, where the truth is asked, against connected parts
+  /// of the true planes, mean over the windows in which two parts or more have 5 % of the cells or more. NaN if there
+  /// is none, or no cell bears a label (of a method that finds curbs alone). Parts are connected over all ground
+  /// between the lowest and the highest cell, seen or not; cells off obstacles count.
   double v = 0;
+  double v_readings = 0;       ///< the same of the labels of what is seen in the cells
   double cell_rmse_m = 0;      ///< of cells about the true ground
   double plane_rmse_m = 0;     ///< of planes about the true ground, at the cells of their labels
   Errors height_m, slope_rad;  ///< of a plane at the middle of its cells, and of its normal

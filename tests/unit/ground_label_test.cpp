@@ -1,0 +1,90 @@
+// The plane under a cell's middle, by the side of a curb on which it lies.
+#include "curbline/ground_label.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/small_map.hpp"
+
+namespace curbline {
+namespace {
+
+using test::small_limits;
+using test::Stages;
+
+//          near    |    far        readings part at x = 1.4, as the laser sees them
+//  ______________
+//                |______________
+//  0            1.4              2.4
+class GroundLabelTest {
+ public:
+  GroundLabelTest() : stages_(test::small_settings()) {
+    test::fill(stages_.dem, [](double x, double) { return x < 1.4 ? 0.0 : -0.12; });
+    for (int pass = 0; pass < 3; ++pass) stages_.infer(true);
+    near_ = stages_.label_at(0, 0);
+    far_ = stages_.label_at(23, 0);
+    REQUIRE(near_ != far_);
+  }
+
+  /// A step at x, from y = 0.5 to 2; its near side, on the right of its way, is that of lower x.
+  Curb step_at(float x_m) const {
+    Curb curb;
+    curb.x0_m = curb.x1_m = x_m;
+    curb.y0_m = 2.0f;
+    curb.y1_m = 0.5f;
+    curb.height_m = -0.12f;
+    curb.kind = CurbKind::step_down;
+    curb.near_label = near_;
+    curb.far_label = far_;
+    return curb;
+  }
+  Label<small_limits> at(int i, int j, std::span<const Curb> curbs) const {
+    return ground_label(stages_.dem, stages_.mixture, stages_.field, curbs, i, j);
+  }
+  Label<small_limits> at(int i, int j, const Curb& curb) const { return at(i, j, std::span(&curb, 1)); }
+
+ protected:
+  Stages<small_limits> stages_;
+  Label<small_limits> near_, far_;
+};
+
+TEST_CASE_METHOD(GroundLabelTest,
+                 "ground label: the ground under a cell is of the side of the step that its middle is on") {
+  const Curb before = step_at(1.32f), beyond = step_at(1.48f);
+  CHECK(at(13, 10, before) == far_);  // its middle at 1.35
+  CHECK(at(12, 10, before) == near_);
+  CHECK(at(14, 10, beyond) == near_);
+  CHECK(at(15, 10, beyond) == far_);
+}
+
+TEST_CASE_METHOD(GroundLabelTest, "ground label: where no step is near, readings tell it") {
+  CHECK(at(13, 10, std::span<const Curb>{}) == near_);
+  CHECK(at(13, 2, step_at(1.32f)) == near_);   // beyond its end
+  CHECK(at(13, 10, step_at(1.10f)) == near_);  // more than two cells away
+  Curb crease = step_at(1.32f);
+  crease.kind = CurbKind::crease;
+  CHECK(at(13, 10, crease) == near_);
+  Curb brink = step_at(1.32f);
+  brink.far_label = no_label<small_limits>;
+  CHECK(at(13, 10, brink) == near_);
+}
+
+TEST_CASE_METHOD(GroundLabelTest,
+                 "ground label: the nearer of two steps tells it, and none that parts other planes or dead ones") {
+  const Curb steps[] = {step_at(1.30f), step_at(1.36f)};
+  CHECK(at(13, 10, steps) == near_);
+  std::uint16_t dead = 0;
+  while (stages_.mixture.plane(dead).alive()) ++dead;
+  Curb other = step_at(1.32f);
+  other.near_label = other.far_label = dead;
+  CHECK(at(13, 10, other) == near_);
+  other.near_label = near_;
+  CHECK(at(13, 10, other) == near_);
+}
+
+TEST_CASE_METHOD(GroundLabelTest, "ground label: of a cell that is not seen there is none") {
+  Stages<small_limits> unseen(test::small_settings());
+  CHECK(ground_label(unseen.dem, unseen.mixture, unseen.field, {}, 3, 3) == no_label<small_limits>);
+}
+
+}  // namespace
+}  // namespace curbline
