@@ -181,6 +181,8 @@ TEST_CASE("common noise: what grows with the distance is found as that, not as w
   const float there_m2 = noise.per_m2() * stages.view.reach_m4(3.5f, 2.0f, 0.0f, 0.0f);
   CHECK(there_m2 == Approx(sd_m(3.5, 2.0) * sd_m(3.5, 2.0)).epsilon(0.5));
   CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * there_m2);
+  stages.view.end_x_m = 4.0f;  // it drives
+  CHECK(stages.view.reach_m4(3.5f, 2.0f, 0.0f, 0.0f) == stages.view.reach_m4(0.5f, 2.0f, 0.0f, 0.0f));
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
