@@ -6,6 +6,24 @@
 #include "curbline/math.hpp"
 
 namespace curbline {
+namespace {
+
+/// Of a piece: how far a place lies along it from its first end, and aside, on its left, the far side.
+struct Line {
+  explicit Line(const Curb& curb)
+      : x0_m(curb.x0_m),
+        y0_m(curb.y0_m),
+        dx_m(curb.x1_m - curb.x0_m),
+        dy_m(curb.y1_m - curb.y0_m),
+        length_m(square_root(dx_m * dx_m + dy_m * dy_m)) {}
+
+  float along_m(float x_m, float y_m) const { return ((x_m - x0_m) * dx_m + (y_m - y0_m) * dy_m) / length_m; }
+  float left_m(float x_m, float y_m) const { return ((y_m - y0_m) * dx_m - (x_m - x0_m) * dy_m) / length_m; }
+
+  float x0_m, y0_m, dx_m, dy_m, length_m;
+};
+
+}  // namespace
 
 const char* to_string(CurbKind kind) {
   switch (kind) {
@@ -40,24 +58,19 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
 }
 
 float to_far_side_m(const Curb& curb, float x_m, float y_m) {
-  const float dx_m = curb.x1_m - curb.x0_m, dy_m = curb.y1_m - curb.y0_m;
-  const float length_m = square_root(dx_m * dx_m + dy_m * dy_m);
-  const float along = dx_m * (x_m - curb.x0_m) + dy_m * (y_m - curb.y0_m);
-  if (!(along >= 0.0f && along <= length_m * length_m)) return std::numeric_limits<float>::infinity();
-  return (dx_m * (y_m - curb.y0_m) - dy_m * (x_m - curb.x0_m)) / length_m;
+  const Line line(curb);
+  const float along_m = line.along_m(x_m, y_m);
+  return along_m >= 0.0f && along_m <= line.length_m ? line.left_m(x_m, y_m) : std::numeric_limits<float>::infinity();
 }
 
 float overlap_m(const Curb& now, const Curb& before, float near_m) {
-  const float dx = before.x1_m - before.x0_m, dy = before.y1_m - before.y0_m;
-  const float length = square_root(dx * dx + dy * dy);
-  if (!(length > 0.0f)) return 0.0f;
-  const auto along = [&](float x, float y) { return ((x - before.x0_m) * dx + (y - before.y0_m) * dy) / length; };
-  const float x = 0.5f * (now.x0_m + now.x1_m), y = 0.5f * (now.y0_m + now.y1_m);
-  const float aside = ((x - before.x0_m) * dy - (y - before.y0_m) * dx) / length;
-  if (aside > near_m || aside < -near_m) return 0.0f;
-  const float a = along(now.x0_m, now.y0_m), b = along(now.x1_m, now.y1_m);
+  const Line line(before);
+  if (!(line.length_m > 0.0f)) return 0.0f;
+  const float aside_m = line.left_m(0.5f * (now.x0_m + now.x1_m), 0.5f * (now.y0_m + now.y1_m));
+  if (aside_m > near_m || aside_m < -near_m) return 0.0f;
+  const float a = line.along_m(now.x0_m, now.y0_m), b = line.along_m(now.x1_m, now.y1_m);
   const float from = a < b ? a : b, to = a < b ? b : a;
-  return (to < length ? to : length) - (from > 0.0f ? from : 0.0f);
+  return (to < line.length_m ? to : line.length_m) - (from > 0.0f ? from : 0.0f);
 }
 
 }  // namespace curbline

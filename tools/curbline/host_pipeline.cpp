@@ -75,17 +75,16 @@ class PipelineOf final : public HostPipeline {
     const Dem<limits>& dem = pipeline_.dem();
     const Cell& from = dem.cell(dem.slot(i, j));
     if (!from.valid()) return {};
-    const auto label = pipeline_.label(i, j);
+    const auto number = [](Label<limits> label) { return label == no_label<limits> ? -1 : int{label}; };
     MapCell to;
     to.x_m = dem.origin_x_m() + dem.centroid_x_m(i, from);
     to.y_m = dem.origin_y_m() + dem.centroid_y_m(j, from);
     to.height_m = from.height_m;
     to.variance_m2 = from.variance_m2(pipeline_.settings().segmentation.cell);
     to.points = static_cast<int>(from.points);
-    to.label = label == no_label<limits> ? -1 : label;
+    to.label = number(pipeline_.label(i, j));
     to.probability = pipeline_.label_probability(i, j);
-    const auto ground = pipeline_.ground_label(i, j);
-    to.ground = ground == no_label<limits> ? -1 : ground;
+    to.ground = number(pipeline_.ground_label(i, j));
     return to;
   }
 

@@ -84,28 +84,34 @@ std::vector<int> parts_of(const Grid& grid, const Truth& truth) {
   return parts;
 }
 
+/// NaN where there is nothing to be measured.
+struct VMeasures {
+  double ground = nan, readings = nan;
+};
+
 /// Against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height on either
 /// side of a road are two. What hides the ground, a shadow or what stands on it, does not part it.
-template <typename LabelOf>
-double v_of(const std::vector<LabelledCell>& cells, const Truth& truth, LabelOf label_of) {
-  if (cells.empty()) return nan;
+VMeasures v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
+  if (cells.empty()) return {};
   const Grid grid = grid_of(cells);
   const std::vector<int> parts = parts_of(grid, truth);
-  std::vector<int> of_truth, label;
+  std::vector<int> of_truth, ground, readings;
   std::map<int, std::size_t> cells_of;
   for (const LabelledCell& cell : cells) {
     const int part = parts[place_of(cell, grid)];
     if (part < 0 || truth.obstacle_at(cell.x_m, cell.y_m)) continue;
     of_truth.push_back(part);
-    label.push_back(label_of(cell.cell));
+    ground.push_back(ground_of(cell.cell));
+    readings.push_back(cell.cell.label);
     ++cells_of[part];
   }
   const auto large = [&](const auto& part) {
-    return static_cast<double>(part.second) >= 0.05 * static_cast<double>(label.size());
+    return static_cast<double>(part.second) >= 0.05 * static_cast<double>(of_truth.size());
   };
-  const bool labelled = std::any_of(label.begin(), label.end(), [](int l) { return l >= 0; });
+  const bool labelled = std::any_of(readings.begin(), readings.end(), [](int l) { return l >= 0; });
   const bool parted = std::count_if(cells_of.begin(), cells_of.end(), large) >= 2;
-  return labelled && parted ? v_measure(of_truth, label) : nan;
+  if (!labelled || !parted) return {};
+  return {v_measure(of_truth, ground), v_measure(of_truth, readings)};
 }
 
 bool on_ground(const LabelledCell& cell, const Truth& truth) {
@@ -169,9 +175,10 @@ PlaneScores score_planes(const Found& found, const Truth& truth) {
   SquareMean of_cells, of_planes;
   std::vector<double> of_ground, of_readings, height, slope;
   for (const std::vector<LabelledCell>& window : found.windows) {
-    if (const double v = v_of(window, truth, ground_of); !std::isnan(v)) of_ground.push_back(v);
-    const auto label_of = [](const MapCell& cell) { return cell.label; };
-    if (const double v = v_of(window, truth, label_of); !std::isnan(v)) of_readings.push_back(v);
+    if (const VMeasures v = v_of(window, truth); !std::isnan(v.ground)) {
+      of_ground.push_back(v.ground);
+      of_readings.push_back(v.readings);
+    }
     std::map<int, Cells> of_label;
     for (const LabelledCell& cell : window) {
       if (!on_ground(cell, truth)) continue;
