@@ -221,8 +221,6 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   Border border = border_at(gap.line, along_m);
   border.probability = 1.0f - same_plane(gap);
   border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap.line);
-  border.off_m = above_m(gap.line, high.along, mixture_.plane(high.label)) -
-                 above_m(gap.line, low.along, mixture_.plane(low.label));
   border.low = low.label;
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);

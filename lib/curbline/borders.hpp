@@ -22,7 +22,6 @@ class Borders {
     float x_m, y_m;                  ///< in the window's frame
     float probability;               ///< that the cells on both sides lie on different planes
     float half_gap_m;                ///< between the cells of the one and the other
-    float off_m;                     ///< by how much more the cell on `high` lies above its plane than that on `low`
     float drop_m;                    ///< of a brink: to the lowest that is seen behind it; else 0
     Beside beside_low, beside_high;  ///< of the sides of `low` and `high`
     LabelType low, high;  ///< the planes, low < high by number; high is no_label at the end of a face and at a brink

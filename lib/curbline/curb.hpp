@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "curbline/line_fit.hpp"
+#include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {
@@ -42,6 +43,11 @@ struct Curb {
 
 inline bool is_step(const Curb& curb) {
   return curb.kind == CurbKind::step_up || curb.kind == CurbKind::step_down;
+}
+
+/// Metres.
+inline float length_of(const Curb& curb) {
+  return square_root(square(curb.x1_m - curb.x0_m) + square(curb.y1_m - curb.y0_m));
 }
 
 /// How far a place beside a piece lies from its line, toward the far side; below 0 on the near one. Infinite beyond its

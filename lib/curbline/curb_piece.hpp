@@ -48,7 +48,7 @@ struct CurbPiece {
   LineFit::Segment line{};
   float x_m = 0.0f, y_m = 0.0f;             ///< mean of the borders
   float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
-  float probability = 0.0f, half_gap_m = 0.0f, off_m = 0.0f;
+  float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
   float place_variance_m2 = 0.0f;      ///< of the borders, across the line
   float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
@@ -99,7 +99,6 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.variance_m2 += each * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += each * border.probability;
     piece.half_gap_m += each * border.half_gap_m;
-    piece.off_m += each * border.off_m;
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;

@@ -69,6 +69,7 @@ class CurbTracer {
   static Deviations deviations_of(const Stages& stages, const Border& border, const Piece& piece, float height_m,
                                   float shadow_m);
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
+  static void tell_once(Work& work, float cell_m);
   void keep_ids(Work& work, float near_m);
 
   CurbSettings settings_{};
@@ -87,7 +88,30 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(stages, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
-  keep_ids(work, dem.cell_x_m() > dem.cell_y_m() ? 2.0f * dem.cell_x_m() : 2.0f * dem.cell_y_m());
+  const float cell_m = dem.cell_x_m() > dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m();
+  tell_once(work, cell_m);
+  keep_ids(work, 2.0f * cell_m);
+}
+
+/// Cells that an edge crosses may bear a third plane, and part it from one of the others: a second step, of another
+/// height, within a cell of the first. Of steps that lie along each other the longer one is told.
+template <Limits limits>
+void CurbTracer<limits>::tell_once(Work& work, float cell_m) {
+  const auto lies_along = [&](const Curb& one, const Curb& other) {
+    const float length_m = length_of(one);
+    return length_of(other) > length_m && overlap_m(one, other, cell_m) > length_m - cell_m;
+  };
+  int kept = 0;
+  for (int n = 0; n < work.curbs; ++n) {
+    const Curb& curb = work.curb[static_cast<std::size_t>(n)];
+    bool again = false;
+    for (int o = 0; o < work.curbs && !again && is_step(curb); ++o) {
+      const Curb& other = work.curb[static_cast<std::size_t>(o)];
+      again = is_step(other) && lies_along(curb, other);
+    }
+    if (!again) work.curb[static_cast<std::size_t>(kept++)] = curb;
+  }
+  work.curbs = kept;
 }
 
 /// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were
@@ -212,9 +236,7 @@ auto CurbTracer<limits>::deviations_of(const Stages& stages, const Border& borde
 }
 
 /// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
-/// the border's place does. What the cells beside the border lie off their planes may be the planes' fault too, up to a
-/// sixth of it, evenly: as a rule they hold points of both sides, and those that show it, or bear another plane, have
-/// no part in the fit. Behind a brink as much again as is seen, `hidden_m`, may be hidden, or less, evenly.
+/// the border's place does. Behind a brink as much again as is seen, `hidden_m`, may be hidden, or less, evenly.
 template <Limits limits>
 float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border& border, const Piece& piece,
                                              float hidden_m) {
@@ -223,7 +245,7 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
   const float slope =
       (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
   return piece.variance_m2 + more_from_afar_m2(stages, low, piece) + more_from_afar_m2(stages, high, piece) +
-         square(slope) * piece.place_variance_m2 + square(piece.off_m) * (1.0f / 108) + square(hidden_m) * (1.0f / 3);
+         square(slope) * piece.place_variance_m2 + square(hidden_m) * (1.0f / 3);
 }
 
 /// By how much more a plane errs beside a piece than its fit says, which takes what cells share for the same wherever

@@ -33,6 +33,7 @@
 #include "curbline/label_field.hpp"      // belief propagation
 #include "curbline/map_comparison.hpp"   // what a line says against the map: to tilt_latency, pose_offset
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
+#include "curbline/beside.hpp"           // the ground beside them
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell
 #include "curbline/curb.hpp"             // out: a curb
@@ -40,6 +41,7 @@
 #include "curbline/shadow.hpp"           // of a step down
 #include "curbline/curb_piece.hpp"       // borders on one line
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
+#include "curbline/crossed_cells.hpp"    // where steps go, for the planes of the next line
 #include "curbline/ground_label.hpp"     // which plane the ground under a cell is of
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share

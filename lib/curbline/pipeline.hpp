@@ -15,6 +15,7 @@
 
 #include "curbline/common_noise.hpp"
 #include "curbline/counters.hpp"
+#include "curbline/crossed_cells.hpp"
 #include "curbline/curb_tracer.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/ground_label.hpp"
@@ -374,7 +375,8 @@ void Pipeline<limits>::follow_regions() {
   segmentation_.update(
       dem_, work, [this](int slot) { return plane_mixture_.obstructed(dem_, slot); }, counters_);
   plane_mixture_.update(
-      dem_, work, view(), [this](int slot) { return label_field_.label(slot); }, counters_);
+      dem_, work, view(), crossed_cells(dem_, curbs()), [this](int slot) { return label_field_.label(slot); },
+      counters_);
   label_field_.note_touched(dem_);
   dem_.clear_touched();
 }

@@ -31,6 +31,7 @@ class PlaneMixture {
   using LabelType = Label<limits>;
   static constexpr LabelType none = no_label<limits>;
   static constexpr int capacity = limits.planes;
+  using Cells = IndexSet<Dem<limits>::capacity>;
 
   void init(const PlaneSettings& settings) {
     settings_ = settings;
@@ -43,10 +44,10 @@ class PlaneMixture {
   }
 
   /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
-  /// label_of(slot) is the cell's label up to now, none if it has none yet.
+  /// label_of(slot) is the cell's label up to now, none if it has none yet; `crossed` are those that steps cross.
   template <typename LabelOf>
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
-              LabelOf&& label_of, Counters& counters);
+              const Cells& crossed, LabelOf&& label_of, Counters& counters);
 
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
   /// responsibility) for each label that a cell may bear.
@@ -103,14 +104,15 @@ class PlaneMixture {
     std::array<LabelType, limits.planes> label;                                    ///< by rank
   };
   using Fitted = std::array<bool, limits.planes>;  ///< by label
-  /// Of as many one in twenty lies along a side: what is amiss there hardly moves the plane, and is not asked for.
-  static constexpr float wide_cells = 400.0f;
+  /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
+  static constexpr float wide_cells = 200.0f;
 
   void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
   void match(Ranking& ranking);
   Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
   template <typename LabelOf>
-  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, LabelOf&& label_of);
+  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const Cells& crossed,
+              LabelOf&& label_of);
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
   float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
 
@@ -126,7 +128,7 @@ class PlaneMixture {
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
-                                  const Viewpoint& view, LabelOf&& label_of, Counters& counters) {
+                                  const Viewpoint& view, const Cells& crossed, LabelOf&& label_of, Counters& counters) {
   if (!dem.any_touched()) return;
   Ranking ranking;
   rank_regions(work, ranking, counters);
@@ -157,7 +159,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   ground_.update(
       dem, planes_, view, none, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
-  refine(dem, view, fitted, label_of);
+  refine(dem, view, fitted, crossed, label_of);
 }
 
 /// Planes of whole regions. Not of responsibilities: these keep what they are.
@@ -176,13 +178,13 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -
 
 /// Fits planes that are ground to the mean heights of those cells of their regions that hold nothing else, and do not
 /// bear another plane on which they lie better: what mixes both sides of a step would tilt the plane of a small region
-/// toward the other. Where the step is low the heights within a cell do not show it; but beside a step down it lies too
-/// high, and all cells along the step do alike: together they are one observation, too high by up to the half of the
-/// step, anywhere.
+/// toward the other. Where the step is low the heights within a cell do not show it. A wide plane does without the
+/// cells that a step crosses; of a small one they say too much. Beside a step down a cell lies too high, and all along
+/// it do alike: together they are one observation, too high by up to the half of the step, anywhere.
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
-                                  LabelOf&& label_of) {
+                                  const Cells& crossed, LabelOf&& label_of) {
   struct Clean {
     bool wanted = false, wide = false, steep = false;
     float slope_m2 = 0.0f;  ///< Dem::slope_m2() of the region's plane
@@ -202,6 +204,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, of_plane.slope_m2)) return;
+    if (of_plane.wide && crossed.contains(s)) return;
     const LabelType borne = label_of(s);
     if (borne != label && borne != none && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);

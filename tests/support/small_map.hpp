@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "curbline/crossed_cells.hpp"
 #include "curbline/curb_tracer.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
@@ -59,7 +60,8 @@ struct Stages {
   void mix() {
     mixture.forget_changes();
     mixture.update(
-        dem, *segmented, view, [this](int slot) { return field.label(slot); }, counters);
+        dem, *segmented, view, crossed_cells(dem, tracer.curbs()), [this](int slot) { return field.label(slot); },
+        counters);
   }
   int label(bool all = true) {
     field.note_touched(dem);

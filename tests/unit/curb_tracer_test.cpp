@@ -320,7 +320,9 @@ TEST_CASE("curb tracer: the ground beside a border is carried on to it, and foun
   CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
 }
 
-TEST_CASE("curb tracer: a plane may be wrong beside a border by up to half of what its cells lie off it beyond their errors") {
+TEST_CASE(
+    "curb tracer: a plane may be wrong beside a border by up to half of what its cells lie off it beyond their "
+    "errors") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
@@ -335,10 +337,55 @@ TEST_CASE("curb tracer: a plane may be wrong beside a border by up to half of wh
 
 TEST_CASE("curb tracer: cells beside the border that lie off their planes make the height less certain") {
   const auto flat = traced(up),
-             worn = traced([](double x, double y) { return up(x, y) - (x > 1.4 && x < 1.5 ? 0.008 : 0.0); });
+             worn = traced([](double x, double y) { return up(x, y) - (x > 1.5 && x < 1.7 ? 0.008 : 0.0); });
   REQUIRE(flat->tracer.curbs().size() == 1);
   REQUIRE(worn->tracer.curbs().size() == 1);
   CHECK(worn->tracer.curbs()[0].height_sd_m > 1.05f * flat->tracer.curbs()[0].height_sd_m);
+}
+
+TEST_CASE("curb tracer: a low step through the middle of cells is told as high as it is") {
+  double rise_m2 = 0.0, along_m = 0.0;
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+    Stages<> stages(small_settings());
+    Noise noise(seed);
+    const auto ground = [](double x, double) { return x < 1.25 ? 0.0 : 0.02; };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.008, noise, ground)) stages.dem.add(p);
+    for (int pass = 0; pass < 4; ++pass) {
+      stages.infer(true);
+      stages.trace();
+      stages.dem.add({0.05f, 0.05f, 0.0f, 1e-4f});  // something is touched, or planes stay as they are
+    }
+    for (const Curb& c : stages.tracer.curbs()) {
+      rise_m2 += length_m(c) * c.height_m;
+      along_m += length_m(c);
+    }
+  }
+  CHECK(rise_m2 / along_m == Approx(0.02).margin(0.0003));
+}
+
+TEST_CASE("curb tracer: one edge is told once, though cells that it crosses bear a third plane") {
+  // A table and the ramp to it, and a pavement along both: halfway up the face lies the ramp's plane.
+  const double along_x = std::cos(0.8), along_y = std::sin(0.8);
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    Stages<> stages(small_settings());
+    Noise noise(seed);
+    const auto ground = [=](double x, double y) {
+      const double along = (x - 1.2) * along_x + (y - 1.2) * along_y,
+                   beside = (y - 1.2) * along_x - (x - 1.2) * along_y;
+      return beside > 0.0 ? 0.055 : along < 0.0 ? 0.0 : -0.06 * along;
+    };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.03, 0.008, noise, ground)) stages.dem.add(p);
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(2.4f, 0.0f);
+    const auto curbs = stages.tracer.curbs();
+    for (const Curb& one : curbs) {
+      for (const Curb& other : curbs) {
+        if (&one == &other || !is_step(one) || !is_step(other) || length_m(one) > length_m(other)) continue;
+        INFO(seed << ": " << one.height_m << " along " << other.height_m);
+        CHECK(overlap_m(one, other, 0.1f) < length_m(one) - 0.1);
+      }
+    }
+  }
 }
 
 TEST_CASE("curb tracer: the height of a step is less certain the farther it is, where errors of the tilt are known") {

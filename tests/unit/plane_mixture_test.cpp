@@ -94,7 +94,7 @@ TEST_CASE("plane mixture: cells that bear another plane do not tilt their region
     stages->dem.add({0.05f, 0.05f, 0.0f, 1e-4f});
     stages->segment();
     stages->mixture.update(
-        stages->dem, *stages->segmented, stages->view,
+        stages->dem, *stages->segmented, stages->view, {},
         [&](int slot) { return slot / small_settings().window.cols < 11 ? low : high; }, stages->counters);
     return stages->mixture.plane(low).slope_x;
   };
@@ -145,7 +145,7 @@ TEST_CASE("plane mixture: a region takes the label that most of its cells bore")
   }
   using LabelType = decltype(stages->mixture)::LabelType;
   stages->mixture.update(
-      stages->dem, *stages->segmented, stages->view,
+      stages->dem, *stages->segmented, stages->view, {},
       [&](int slot) { return static_cast<LabelType>(old[static_cast<std::size_t>(slot)]); }, stages->counters);
   CHECK(stages->mixture.region_label(stages->dem.slot(0, 0)) == 3);
   CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == 0);

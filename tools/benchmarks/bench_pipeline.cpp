@@ -166,7 +166,7 @@ void belief_messages(benchmark::State& state) {
   segmentation.update(
       dem, work, [&](int slot) { return mixture.obstructed(dem, slot); }, counters);
   mixture.update(
-      dem, work, Viewpoint{}, [&](int slot) { return field.label(slot); }, counters);
+      dem, work, Viewpoint{}, {}, [&](int slot) { return field.label(slot); }, counters);
   auto& visits = workspace.visits();
   for (auto _ : state) benchmark::DoNotOptimize(field.update(dem, mixture, FieldScope::window, visits, counters));
   state.counters["messages_per_second"] = benchmark::Counter(counters.messages, benchmark::Counter::kIsRate);
