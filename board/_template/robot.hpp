@@ -5,10 +5,15 @@
 #include "curbline/limits.hpp"
 #include "curbline/settings.hpp"
 
-inline constexpr curbline::Limits limits{};  // 40 x 40 cells, 16 planes, 1081 beams: 160 KiB
+/// 40 x 40 cells, 16 planes, 1081 beams: 160 KiB. What is smaller here is smaller in the settings.
+inline constexpr curbline::Limits limits{};
 
 inline curbline::Settings robot_settings() {
-  curbline::Settings settings;             // a Hokuyo UTM-30LX
+  curbline::Settings settings;  // a Hokuyo UTM-30LX
+  settings.window.rows = limits.rows;
+  settings.window.cols = limits.cols;
+  settings.window.origin_y_m = -0.5f * static_cast<float>(limits.cols) * settings.window.cell_y_m;
+  settings.laser.beams = limits.beams;
   settings.tilt.T_base_tilt.z_m = 1.1f;    // the tilt axis above the ground
   settings.tilt.T_tilt_laser.z_m = 0.05f;  // the laser above the axis
   settings.pose.still = true;              // false once Port::pose() has something to give

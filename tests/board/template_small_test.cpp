@@ -1,0 +1,18 @@
+// The template's settings fit limits smaller than the template's: the pipeline starts, its window in the middle ahead.
+#include <cstdio>
+
+#include "curbline/pipeline.hpp"
+#include "robot.hpp"
+
+int main() {
+  static_assert(limits.rows == 24 && limits.beams == 361, "robot.hpp of the template, its limits replaced");
+  static curbline::Pipeline<limits> pipeline;
+  const curbline::Status status = pipeline.init(robot_settings());
+  if (status != curbline::Status::ok) {
+    std::fprintf(stderr, "init() says: %s\n", curbline::to_string(status));
+    return 1;
+  }
+  const auto& dem = pipeline.dem();
+  const float middle_m = dem.origin_y_m() + 0.5f * static_cast<float>(dem.cols()) * dem.cell_y_m();
+  return middle_m > -0.01f && middle_m < 0.01f ? 0 : 2;
+}
