@@ -71,7 +71,7 @@ void put_lines(JsonLine& json, const Report& s) {
   put(json, "covered", s.lines.covered);
   put(json, "overdue", s.lines.overdue);
   put(json, "crowded", s.lines.crowded);
-  put(json, "dropped", s.lines.dropped + s.lines.too_long);
+  put(json, "dropped", s.lines.dropped + s.lines.too_long + s.lines.bad_time);
   json.close('}');
 }
 

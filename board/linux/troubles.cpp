@@ -72,7 +72,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
       {s.tilt_latency == nullptr ? 0 : s.tilt_latency->steps(), "the tilt frames are late by another time"},
       {s.not_recorded, "tilt frames that the recording does not have"},
-      {std::uint64_t{s.lines.dropped} + s.lines.too_long + s.lines.crowded,
+      {std::uint64_t{s.lines.dropped} + s.lines.too_long + s.lines.bad_time + s.lines.crowded,
        "scan lines came faster than they are taken"},
       {scanner.other_beams, "scan lines whose beams are not those of the robot's laser, dropped"},
       {scanner.damaged, "damaged telegrams of the scanner"},

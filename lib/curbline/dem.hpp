@@ -12,6 +12,7 @@
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
+#include "curbline/pose_track.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/viewpoints.hpp"
 
@@ -59,9 +60,9 @@ class Dem {
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
-  /// Takes a point into its cell; false if it lies outside the window or has a value that is not finite, or no variance
-  /// at all. Its weight is the expected noise over its variance plus the ground's texture. The first of a sweep makes
-  /// what a cell of more than one surface has of earlier ones fade. O(1).
+  /// Takes a point into its cell; false if it lies outside the window, beyond Pose::furthest_m above or below, or has a
+  /// value that is not finite, or no variance at all. Its weight is the expected noise over its variance plus the
+  /// ground's texture. The first of a sweep makes what a cell of more than one surface has of earlier ones fade. O(1).
   bool add(const Point& point);
 
   /// What is known before any point; PlanePrior::common_share by what was found last.
@@ -377,8 +378,8 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
 
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
-  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !is_finite(point.z_m) || !is_finite(point.variance_m2))
-    return false;
+  const bool near = point.z_m >= -Pose::furthest_m && point.z_m <= Pose::furthest_m;  // not of no number
+  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !near || !is_finite(point.variance_m2)) return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
   const Place place = place_at(point.place_x_m(), point.place_y_m());

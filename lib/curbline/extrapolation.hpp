@@ -15,7 +15,7 @@ int sample_for_rate(std::int64_t time_ns, int end, int inward, int size, TimeOf&
   const auto apart = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };
   const std::int64_t end_ns = time_of(end), beyond_ns = apart(time_ns, end_ns);
   for (int k = end + inward; k >= 0 && k < size; k += inward) {
-    if (2 * apart(time_of(k), end_ns) >= beyond_ns) return k;
+    if (apart(time_of(k), end_ns) >= beyond_ns - beyond_ns / 2) return k;
   }
   return -1;
 }

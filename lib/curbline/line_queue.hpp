@@ -16,6 +16,7 @@
 #include <span>
 
 #include "curbline/limits.hpp"
+#include "curbline/rising_times.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
 
@@ -29,6 +30,7 @@ struct LineQueueCounters {
   std::uint32_t crowded = 0;   ///< given out early, because the queue was full
   std::uint32_t dropped = 0;   ///< the oldest of a full queue from which nobody took
   std::uint32_t too_long = 0;  ///< refused: more beams than the limits have
+  std::uint32_t bad_time = 0;  ///< refused: a stamp beyond RisingTimes::furthest_ns
 };
 
 template <Limits limits, int capacity>
@@ -40,9 +42,9 @@ class LineQueue {
   /// is lost.
   void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
 
-  /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused for its length.
-  /// If the queue is full the oldest line is dropped: pop() until it has nothing to give after each push(), and none
-  /// is.
+  /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length
+  /// or its stamp. If the queue is full the oldest line is dropped: pop() until it has nothing to give after each
+  /// push(), and none is.
   bool push(const ScanLine& line, std::int64_t now_ns);
 
   /// The oldest line, if a tilt reading covers its last beam, if it has waited long enough, or if the queue is full.
@@ -86,6 +88,10 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
   const std::size_t beams = line.ranges_m.size();
   if (beams > static_cast<std::size_t>(limits.beams)) {
     ++counters_.too_long;
+    return false;
+  }
+  if (!RisingTimes::is_time(line.time_ns)) {
+    ++counters_.bad_time;
     return false;
   }
   if (size_ == capacity) {

@@ -42,11 +42,15 @@ template <Limits limits>
 class Pipeline {
  public:
   static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
-  static_assert(limits.planes >= 2 && limits.planes <= 255 && limits.borders < 65535);
+  static_assert(limits.planes >= 2 && limits.planes <= 255, "a label is a byte, of which 255 says none");
+  static_assert(limits.borders >= 1 && limits.borders < 65535,
+                "a border's number is 16 bits, of which 65535 says none");
+  static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
+                "every store has room for one at least");
 
   /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then
-  /// takes nothing and knows of no curb, label or ground to drive on. May be called again to start afresh, at any time
-  /// but beside add_tilt() of another thread.
+  /// takes nothing and knows of no curb, label or ground to drive on. May be called again to start afresh, with the
+  /// interrupt that calls add_tilt() masked, and not beside that of another thread.
   Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
@@ -78,8 +82,9 @@ class Pipeline {
   /// Regions, planes, labels and curbs follow what was observed since. As often as time allows.
   void infer();
 
-  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes` is
-  /// reached: what a finished map wants. Returns the passes made.
+  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes`, 1 at
+  /// least, is reached: what a finished map wants. What cells share of their noise stays as it was: few lines of one
+  /// sweep do not tell it. Returns the passes made.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. Valid until the next take(), infer(), settle() or init().

@@ -13,9 +13,11 @@ class RisingTimes {
   /// 126 years either way, so that the difference of two times, and a little more, is one: beyond, it is damaged.
   static constexpr std::int64_t furthest_ns = 4'000'000'000'000'000'000;
 
+  static constexpr bool is_time(std::int64_t time_ns) { return time_ns <= furthest_ns && time_ns >= -furthest_ns; }
+
   /// May a time follow the newest? Counts it if not.
   bool admits(std::int64_t time_ns) {
-    if (time_ns > furthest_ns || time_ns < -furthest_ns) return false;
+    if (!is_time(time_ns)) return false;
     if (time_ns > newest_ns_) return true;
     refused_ = refused_ > 0 && time_ns > last_refused_ns_ ? refused_ + 1 : 1;
     last_refused_ns_ = time_ns;

@@ -80,7 +80,7 @@ enum class PlaneUpdate : unsigned char {
 
 struct PlaneSettings {
   PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 4.0f;  ///< >= 3; fewer make no plane, nor fit one anew: one more than it has parameters
+  float min_cells = 4.0f;  ///< >= 3; fewer make no plane: one more than it has parameters
   PlaneUpdate update = PlaneUpdate::regions;
 };
 

@@ -66,7 +66,8 @@ class TiltTrack {
                 "tilt_samples must be a power of two, 2 at least: the count of readings wraps");
 
  public:
-  /// Forgets all readings. Must not run beside push() of another thread.
+  /// Forgets all readings. Before the interrupt that calls push() is enabled, or with it masked; not beside push() of
+  /// another thread.
   void init(const TiltSettings& settings) {
     settings_ = settings;
     written_.store(0, std::memory_order_relaxed);
@@ -96,7 +97,7 @@ class TiltTrack {
   };
   TiltSettings settings_{};
   std::array<Entry, limits.tilt_samples> entries_{};
-  std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32
+  std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32 but never 0 again
   std::atomic<std::uint32_t> dropped_{0};
   RisingTimes times_{};  ///< the writer's
 };
@@ -115,7 +116,8 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
   entry.time_low.store(static_cast<std::uint32_t>(time), std::memory_order_relaxed);
   entry.time_high.store(static_cast<std::uint32_t>(time >> 32), std::memory_order_relaxed);
   entry.angle.store(std::bit_cast<std::uint32_t>(reading.angle_rad), std::memory_order_relaxed);
-  written_.store(n + 1, std::memory_order_release);
+  // 0 is an empty ring: after 2^32 - 1 comes a full one. A snapshot taken meanwhile may lose its readings.
+  written_.store(n + 1 != 0 ? n + 1 : limits.tilt_samples, std::memory_order_release);
   return true;
 }
 

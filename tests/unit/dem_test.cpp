@@ -209,6 +209,13 @@ TEST_CASE("dem: NaN and infinity are refused in every coordinate of a point") {
   CHECK(picture(dem).find('#') == std::string::npos);
 }
 
+TEST_CASE("dem: a height that no map has is refused: its square would be infinite, and no plane fit") {
+  Map dem = make_map(moving());
+  CHECK_FALSE(dem.add(at(0.5, 0.0, -1e25)));
+  CHECK_FALSE(dem.add(at(0.5, 0.0, 1.1e6)));
+  CHECK(dem.add(at(0.5, 0.0, 0.9e6)));
+}
+
 TEST_CASE("dem: a variance that is negative or no number is refused") {
   Map dem = make_map(moving());
   CHECK_FALSE(dem.add(at(0.5, 0.0, 0.0, -1e-4f)));

@@ -37,7 +37,8 @@ struct Line {
 
 bool adds_up(const Queue& q) {
   const LineQueueCounters& c = q.counters();
-  return c.pushed == c.covered + c.overdue + c.crowded + c.dropped + c.too_long + static_cast<std::uint32_t>(q.size());
+  return c.pushed ==
+         c.covered + c.overdue + c.crowded + c.dropped + c.too_long + c.bad_time + static_cast<std::uint32_t>(q.size());
 }
 
 TEST_CASE("line queue: a line is given out when a reading is at or after its last beam") {
@@ -140,6 +141,19 @@ TEST_CASE("line queue: a line with more beams than the limits is refused and cou
   CHECK_FALSE(q.push(Line(0, 12).line(), t0));
   CHECK(q.size() == 0);
   CHECK(q.counters().too_long == 1);
+  CHECK(adds_up(q));
+}
+
+TEST_CASE("line queue: a line with a stamp that is no time is refused and counted") {
+  Queue q = queue();
+  for (const std::int64_t damaged : {INT64_MAX, INT64_MIN}) {
+    Line line(0, 5);
+    ScanLine stamped = line.line();
+    stamped.time_ns = damaged;
+    CHECK_FALSE(q.push(stamped, t0));
+  }
+  CHECK(q.size() == 0);
+  CHECK(q.counters().bad_time == 2);
   CHECK(adds_up(q));
 }
 

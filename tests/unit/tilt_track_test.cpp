@@ -1,6 +1,7 @@
 // The tilt servo's readings: interpolation and its bounds, bad readings, and a reader beside a writer that never waits.
 #include "curbline/tilt_track.hpp"
 
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -71,6 +72,13 @@ TEST_CASE("tilt track: two stamps that lie close together do not tell the rate f
   CHECK(beyond.source == Source::extrapolated);
   CHECK(beyond.angle_rad == Approx(-0.2 + 0.081).margin(1e-4));
   CHECK(beyond.rate_rad_s == Approx(0.3).epsilon(0.01));
+}
+
+TEST_CASE("tilt track: the sample that tells the rate is found between stamps as far apart as any") {
+  const std::array<std::int64_t, 2> times{-3'000'000'000'000'000'000, 3'000'000'000'000'000'000};
+  const auto time_of = [&](int k) { return times[static_cast<std::size_t>(k)]; };
+  CHECK(sample_for_rate(times[1] + 10 * ms, 1, -1, 2, time_of) == 0);
+  CHECK(sample_for_rate(times[0] - 10 * ms, 0, 1, 2, time_of) == 1);
 }
 
 TEST_CASE("tilt track: readings a moment apart alone tell no rate") {
