@@ -60,8 +60,8 @@ struct TiltSettings {
 /// The robot's pose, T_map_base. A robot that stands gives none.
 struct PoseSettings {
   bool still = true;                 ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;          ///< of z between two poses, >= 0
-  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, >= 0
+  float height_sd_m = 0.0f;          ///< of z between two poses, >= 0; if it stands, by how much it sways
+  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, >= 0; the same
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 
