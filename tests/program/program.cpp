@@ -15,8 +15,8 @@ extern char** environ;
 namespace curbline::tools::testing {
 namespace {
 
-pid_t start(const Words& arguments, const std::string& out_file, const std::string& err_file) {
-  Words words{CURBLINE_PROGRAM};
+pid_t start(const char* program, const Words& arguments, const std::string& out_file, const std::string& err_file) {
+  Words words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -28,9 +28,9 @@ pid_t start(const Words& arguments, const std::string& out_file, const std::stri
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t child = 0;
-  const int failed = ::posix_spawn(&child, CURBLINE_PROGRAM, &files, nullptr, argv.data(), environ);
+  const int failed = ::posix_spawn(&child, program, &files, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  if (failed != 0) throw std::runtime_error("the program cannot be started: " CURBLINE_PROGRAM);
+  if (failed != 0) throw std::runtime_error(std::string("the program cannot be started: ") + program);
   return child;
 }
 
@@ -41,11 +41,11 @@ Words operator+(Words arguments, const Words& more) {
   return arguments;
 }
 
-Outcome curbline(const Words& arguments, const std::string& out_file) {
+Outcome run(const char* program, const Words& arguments, const std::string& out_file) {
   const TemporaryDirectory outputs;
   const std::string out = out_file.empty() ? outputs.path("out") : out_file;
   const auto began = std::chrono::steady_clock::now();
-  const pid_t child = start(arguments, out, outputs.path("err"));
+  const pid_t child = start(program, arguments, out, outputs.path("err"));
   int status = 0;
   rusage used{};
   if (::wait4(child, &status, 0, &used) != child) throw std::runtime_error("the program cannot be waited for");
@@ -56,6 +56,10 @@ Outcome curbline(const Words& arguments, const std::string& out_file) {
   if (out_file.empty()) outcome.out = read_file(out);
   outcome.err = read_file(outputs.path("err"));
   return outcome;
+}
+
+Outcome curbline(const Words& arguments, const std::string& out_file) {
+  return run(CURBLINE_PROGRAM, arguments, out_file);
 }
 
 Words lines_of(const std::string& text) {

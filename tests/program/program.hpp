@@ -26,8 +26,9 @@ struct Outcome {
   long peak_kib = 0;  ///< of memory
 };
 
-/// Runs the program to its end; its standard output goes to a file if one is given.
+/// Runs the program, or another one, to its end; its standard output goes to a file if one is given.
 Outcome curbline(const Words& arguments, const std::string& out_file = {});
+Outcome run(const char* program, const Words& arguments, const std::string& out_file = {});
 
 Words lines_of(const std::string& text);
 

@@ -28,7 +28,7 @@ void check_apart(const NamedFile& output, const NamedFile& other) {
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
     if (output->path == "-")
-      throw CLI::ValidationError(output->option, "-; expected a file name: standard output is for --curbs alone");
+      throw CLI::ValidationError(output->option, "-; expected a file name: standard output is not for it");
     for (const NamedFile& input : inputs) check_apart(*output, input);
     for (auto before = outputs.begin(); before != output; ++before) check_apart(*output, *before);
   }

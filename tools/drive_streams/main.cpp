@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "curbline/outputs.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
@@ -17,7 +18,11 @@ int main(int argc, char** argv) {
   write->add_option("--can", files.can, "tilt frames, candump log");
   write->add_option("--poses", files.poses, "robot poses, TUM trajectory");
   write->add_option("--out", files.out, "the stream")->required();
-  write->callback([&] { write_drive(files); });
+  write->callback([&] {
+    check_outputs({{"--out", files.out}},
+                  {{"--robot", files.robot}, {"--scans", files.scans}, {"--can", files.can}, {"--poses", files.poses}});
+    write_drive(files);
+  });
   std::string results;
   auto* curbs = app.add_subcommand("curbs", "results to the curbs after the last scan line, as CSV");
   curbs->add_option("RESULTS", results)->required();
