@@ -82,3 +82,25 @@ TEST_CASE("atomic file: a full disk is an error at commit") {
   file.stream() << std::string(100'000, 'x');
   CHECK(error_of([&] { file.commit(); }).find("cannot be written") != std::string::npos);
 }
+
+TEST_CASE("atomic file: what was too large for its place is refused with the reason, however it was written") {
+  if (!fs::exists("/dev/full")) return;
+  const std::string text(1'000'000, 'x');
+  const std::string full =
+      "/dev/full: cannot be written: No space left on device; expected a file name in a folder to write to";
+  const auto error_after = [](auto write) {
+    AtomicFile file("/dev/full");
+    write(file.stream());
+    try {
+      file.commit();
+    } catch (const BadInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(error_after([&](std::ostream& out) { out << text; }) == full);
+  CHECK(error_after([](std::ostream& out) { out << "few"; }) == full);
+  CHECK(error_after([](std::ostream& out) {
+          for (int k = 0; k < 100'000; ++k) out << k << '\n';
+        }) == full);
+}

@@ -41,11 +41,25 @@ void remove_uncommitted(int signal) {
   ::raise(signal);
 }
 
-std::string reason() {
-  return std::string(": cannot be written: ") + std::strerror(errno) + "; expected a file name in a folder to write to";
+std::string reason(int error) {
+  return std::string(": cannot be written: ") + std::strerror(error) + "; expected a file name in a folder to write to";
 }
 
 }  // namespace
+
+FileBuffer::int_type FileBuffer::overflow(int_type c) {
+  errno = 0;
+  const int_type done = std::filebuf::overflow(c);
+  if (done == traits_type::eof() && error_ == 0) error_ = errno;
+  return done;
+}
+
+std::streamsize FileBuffer::xsputn(const char* text, std::streamsize size) {
+  errno = 0;
+  const std::streamsize done = std::filebuf::xsputn(text, size);
+  if (done != size && error_ == 0) error_ = errno;
+  return done;
+}
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
   std::error_code none;
@@ -55,24 +69,27 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
   if (!fs::exists(status) || fs::is_regular_file(status)) temporary_ = temporary_beside(target_);
   if (!temporary_.empty()) replace(nullptr, temporary_.c_str());
   errno = 0;
-  stream_.open(temporary_.empty() ? target_ : temporary_, std::ios::binary);
-  if (!stream_) {
+  if (buffer_.open(temporary_.empty() ? target_ : temporary_, std::ios::out | std::ios::binary) == nullptr) {
     replace(temporary_.c_str(), nullptr);
-    throw BadInput(path_ + reason());
+    throw BadInput(path_ + reason(errno));
   }
 }
 
 AtomicFile::~AtomicFile() {
-  stream_.close();
+  buffer_.close();
   std::error_code none;
   if (!temporary_.empty()) fs::remove(temporary_, none);
   replace(temporary_.c_str(), nullptr);
 }
 
+void AtomicFile::flush() {
+  if (!stream_.flush()) throw BadInput(path_ + reason(buffer_.error()));
+}
+
 void AtomicFile::commit() {
+  flush();
   errno = 0;
-  stream_.close();
-  if (!stream_) throw BadInput(path_ + reason());
+  if (buffer_.close() == nullptr) throw BadInput(path_ + reason(errno));
   if (temporary_.empty()) return;
   std::error_code error;
   fs::rename(temporary_, target_, error);

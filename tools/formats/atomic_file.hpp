@@ -3,11 +3,25 @@
 #pragma once
 
 #include <fstream>
+#include <ostream>
 #include <string>
 
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
+
+/// Keeps why a file could not be written until somebody asks: a stream says only that it could not.
+class FileBuffer : public std::filebuf {
+ public:
+  int error() const { return error_; }  ///< the first errno; 0: none
+
+ protected:
+  int_type overflow(int_type c) override;
+  std::streamsize xsputn(const char* text, std::streamsize size) override;
+
+ private:
+  int error_ = 0;
+};
 
 class AtomicFile {
  public:
@@ -20,6 +34,10 @@ class AtomicFile {
 
   std::ostream& stream() { return stream_; }
 
+  /// Throws BadInput unless all that was written so far could be: asked of each of several files before any takes its
+  /// place.
+  void flush();
+
   /// Throws BadInput if not everything could be written: then nothing is left of it.
   void commit();
 
@@ -27,7 +45,8 @@ class AtomicFile {
   std::string path_;       ///< as given, for errors
   std::string target_;     ///< behind symbolic links
   std::string temporary_;  ///< empty: writes to the target
-  std::ofstream stream_;
+  FileBuffer buffer_;
+  std::ostream stream_{&buffer_};
 };
 
 /// For main(): from now on what is not committed is removed as well when a signal ends the program, Ctrl-C or a closed
