@@ -423,11 +423,28 @@ TEST_CASE("simulate: a fixed tilt writes no CAN log, nor leaves an earlier one")
 
 TEST_CASE("simulate: what was found in an earlier recording does not stay beside a new one") {
   const TemporaryPath out("stale");
-  fs::create_directories(out.path);
+  simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
   for (const char* file : {"labels.csv", "curbs.csv"}) std::ofstream(out.path / file) << "of another scene\n";
   simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
   CHECK_FALSE(fs::exists(out.path / "labels.csv"));
   CHECK_FALSE(fs::exists(out.path / "curbs.csv"));
+}
+
+TEST_CASE("simulate: a file that no simulation left is neither replaced nor removed") {
+  for (const char* file :
+       {"robot.toml", "scene.toml", "scans.carmen", "can.log", "poses.tum", "regions.gt", "labels.csv", "curbs.csv"}) {
+    const TemporaryPath out("own");
+    fs::create_directories(out.path);
+    std::ofstream(out.path / file) << "mine\n";
+    try {
+      simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
+      FAIL(file << " was taken for a simulation's");
+    } catch (const BadInput& error) {
+      CHECK(std::string(error.what()).starts_with((out.path / file).string() + ": "));
+    }
+    CHECK(bytes_of(out.path / file) == "mine\n");
+    CHECK(std::distance(fs::directory_iterator(out.path), fs::directory_iterator()) == 1);
+  }
 }
 
 TEST_CASE("simulate: without a duration a standing robot nods once and a driving one goes the whole way") {

@@ -20,7 +20,11 @@ void add_simulate(CLI::App& app) {
   command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, random:SEED or random-drive:SEED")
       ->required();
   command->add_option("--robot", o->robot, "robot description")->required();
-  command->add_option("--out", o->out, "directory to write to")->required();
+  command
+      ->add_option(
+          "--out", o->out,
+          "directory to write to; the files of an earlier run in it, those that replay left there too, are replaced")
+      ->required();
   command->add_option("--seed", o->simulation.seed, "of the noise")->capture_default_str();
   command->add_option("--duration", o->simulation.duration_s,
                       "seconds; without: one nod, or the whole way of a robot that drives");

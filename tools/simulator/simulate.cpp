@@ -24,16 +24,30 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Throws BadInput if a recording would take away what none has left there. Of an earlier one truth.json is there.
+void check_own(const std::string& dir) {
+  std::error_code none;
+  if (std::filesystem::exists(dir + "/truth.json", none)) return;
+  for (const char* name :
+       {"scans.carmen", "can.log", "poses.tum", "regions.gt", "scene.toml", "robot.toml", "labels.csv", "curbs.csv"}) {
+    if (std::filesystem::exists(dir + "/" + name, none))
+      throw BadInput(dir + "/" + name + ": no file of a simulation, for no truth.json is beside it; expected a " +
+                     "directory without it");
+  }
+}
+
 /// The files of one recording. What this recording lacks is taken away if an earlier one left it there, and so is what
 /// was found in that one.
 class Recording {
  public:
   Recording(const std::string& dir, const Robot& robot, bool with_poses) : dir_(dir), robot_(robot) {
+    check_own(dir);
     std::error_code failed;
     std::filesystem::create_directories(dir, failed);
     if (failed) {
       throw BadInput(dir + ": " + failed.message() + "; expected a directory to write to");
     }
+    truth_ = open("truth.json");  // the first to take its place: of what is cut off, the next run knows what it is
     scans_ = open("scans.carmen");
     can_ = robot.tilt.fixed ? leave_out("can.log") : open("can.log");
     poses_ = with_poses ? open("poses.tum") : leave_out("poses.tum");
@@ -58,6 +72,8 @@ class Recording {
         std::count_if(line.ranges_m.begin(), line.ranges_m.end(), [](float r) { return std::isfinite(r); });
   }
 
+  void take(const Truth& truth) { write_truth(*truth_, truth); }
+
   void take(const can::Frame& frame) {
     write_can_frame(*can_, frame, "can0");
     ++summary.tilt_frames;
@@ -71,6 +87,7 @@ class Recording {
   }
 
   void commit() {
+    for (AtomicFile& file : files_) file.flush();
     for (AtomicFile& file : files_) file.commit();
     for (const char* name : left_out_) std::filesystem::remove(dir_ + "/" + name);
   }
@@ -87,7 +104,7 @@ class Recording {
   const Robot& robot_;
   std::list<AtomicFile> files_;
   std::vector<const char*> left_out_;
-  std::ostream *scans_ = nullptr, *can_ = nullptr, *poses_ = nullptr;
+  std::ostream *truth_ = nullptr, *scans_ = nullptr, *can_ = nullptr, *poses_ = nullptr;
   CarmenLine scan_;
 };
 
@@ -105,7 +122,7 @@ SimulationSummary simulate(const Scene& scene, const std::string& robot_file, co
   while (const std::optional<SimulatedEvent> event = simulation.next()) {
     std::visit([&](const auto& sample) { recording.take(sample); }, *event);
   }
-  write_truth(*recording.open("truth.json"), truth);
+  recording.take(truth);
   write_regions(*recording.open("regions.gt"), drawn_regions(truth));
   *recording.open("scene.toml") << scene.source;
   *recording.open("robot.toml") << robot_text;

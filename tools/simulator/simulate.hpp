@@ -5,7 +5,9 @@
 //   truth.json     planes, regions, curbs, obstacles (truth.hpp)
 //   regions.gt     the regions' polygons, the topmost first
 //   scene.toml robot.toml   what it was made from
-// labels.csv and curbs.csv, found in an earlier recording, are removed: evaluate would score them.
+// In the directory of an earlier recording, which its truth.json tells, these are replaced; what this one has not is
+// removed, and labels.csv and curbs.csv too: evaluate would score them. Any other directory that has one of these files
+// is refused: they are somebody's own.
 // All or nothing is written. The same input and seed give the same bytes. About 1 s for a nod of 263 lines of 1081
 // beams.
 #pragma once
@@ -29,7 +31,7 @@ struct SimulationSummary {
 };
 
 /// Makes the directory if it is not there. Throws BadInput if the robot's description is bad, the robot stands on
-/// nothing, or the directory cannot be written.
+/// nothing, or the directory cannot be written or has such files that no recording left there.
 SimulationSummary simulate(const Scene& scene, const std::string& robot_file, const std::string& out_dir,
                            const SimulationOptions& options = {});
 
