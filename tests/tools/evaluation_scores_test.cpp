@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "evaluation/scores.hpp"
-#include "formats/bad_input.hpp"
+#include "formats_support.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -116,10 +116,12 @@ TEST_CASE("scores: two pavements of one height on either side of a road are two"
   CHECK(score_planes({{cells}, {}, {}}, road).v == Approx(1));
 }
 
-TEST_CASE("scores: labels so far apart that no window holds them are refused") {
+TEST_CASE("scores: labels so far apart that no window holds them are refused with the line of one") {
   std::vector<LabelledCell> cells = cells_of(truth);
-  cells.back().x_m = 1e300;
-  CHECK_THROWS_AS(score_planes({{cells}, {}, {}}, truth), BadInput);
+  cells[2].y_m = 1e300;
+  CHECK(testing::error_of([&] {
+          score_planes({{cells}, {}, {}}, truth);
+        }) == "labels.csv:4: y_m lies too far from that of the other rows; expected rows of one window");
 }
 
 TEST_CASE("scores: a window with one true plane says nothing of V, and does not count") {

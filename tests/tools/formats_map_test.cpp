@@ -103,6 +103,11 @@ TEST_CASE("labels and curbs: other columns and bad values are refused") {
   };
   CHECK(curb_error(curbs + "0,0,0,0,0,0,0.5,kerb\n") ==
         "c.csv:2: kind is \"kerb\"; expected step_up, step_down, crease or ramp_edge");
+  CHECK(
+      curb_error(curbs + "0,0,1e10,0,0,0,0.5,crease\n").starts_with("c.csv:2: x1_m is \"10000000000.000\"; expected"));
+  CHECK(curb_error(curbs + "0,0,1,0,0,0,0.5,crease\n-9e3,0,9e3,0,0,0,0.5,crease\n") ==
+        "c.csv:3: the length is \"18000.000\"; expected a piece of curb of 10 km at most");
+  CHECK(label_error(labels + "0,-1e10,0,0,1,1,0.5\n").starts_with("l.csv:2: y_m is \"-10000000000.000\"; expected"));
   survive_damage(
       curbs + "1.0,2.0,3.5,-4.0,0.12,0.004,0.97,step_up\n", "c.csv", [](const std::string& path) { read_curbs(path); },
       1000);

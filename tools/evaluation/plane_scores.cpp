@@ -39,11 +39,26 @@ Axis axis_of(const std::vector<LabelledCell>& cells, double LabelledCell::*axis)
   return {at.front(), steps > 0 ? whole_m / steps : 1, steps + 1};
 }
 
+/// The line of labels.csv, below its header, that lies farthest from the middle one of the rows.
+long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*axis) {
+  std::vector<double> at;
+  for (const LabelledCell& cell : cells) at.push_back(cell.*axis);
+  const auto middle = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
+  std::nth_element(at.begin(), middle, at.end());
+  const auto nearer = [&](const LabelledCell& a, const LabelledCell& b) {
+    return std::abs(a.*axis - *middle) < std::abs(b.*axis - *middle);
+  };
+  return std::max_element(cells.begin(), cells.end(), nearer) - cells.begin() + 2;
+}
+
 /// From the lowest to the highest cell.
 Grid grid_of(const std::vector<LabelledCell>& cells) {
   const Axis x = axis_of(cells, &LabelledCell::x_m), y = axis_of(cells, &LabelledCell::y_m);
   if (x.count * y.count > most_places) {
-    throw BadInput("labels.csv: rows that lie too far apart for their distance; expected those of one window");
+    const bool along_x = x.count > y.count;
+    throw BadInput("labels.csv", line_far_off(cells, along_x ? &LabelledCell::x_m : &LabelledCell::y_m),
+                   std::string(along_x ? "x_m" : "y_m") +
+                       " lies too far from that of the other rows; expected rows of one window");
   }
   return {x.low_m - x.pitch_m / 2,   y.low_m - y.pitch_m / 2,  x.pitch_m, y.pitch_m,
           static_cast<int>(x.count), static_cast<int>(y.count)};

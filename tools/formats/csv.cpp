@@ -14,10 +14,18 @@ namespace {
 constexpr std::string_view label_columns = "x_m,y_m,height_m,variance_m2,points,label,probability";
 constexpr std::string_view curb_columns = "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind";
 constexpr int places = 6;
+constexpr double furthest_m = 1e8;  ///< coordinates of a national grid are some 1e6
+constexpr double longest_m = 1e4;   ///< of a curb: beyond that it is a slip of the pen, and takes long to score
 
 void expect_header(LineReader& source, std::string_view columns) {
   const auto header = source.next();
   if (header != columns) source.fail("other columns; expected " + std::string(columns));
+}
+
+double read_place(Fields& fields, std::string_view name) {
+  const double metres = fields.number(name);
+  if (std::abs(metres) > furthest_m) fields.fail(name, decimals(metres, 3), "metres in [-1e8, 1e8]");
+  return metres;
 }
 
 double read_probability(Fields& fields) {
@@ -90,8 +98,8 @@ std::vector<LabelledCell> read_labels(const std::string& path) {
   return read_rows<LabelledCell>(path, label_columns, [](Fields& fields) {
     constexpr std::int64_t most = std::numeric_limits<int>::max();
     LabelledCell row;
-    row.x_m = fields.number("x_m");
-    row.y_m = fields.number("y_m");
+    row.x_m = read_place(fields, "x_m");
+    row.y_m = read_place(fields, "y_m");
     row.cell.height_m = fields.number("height_m");
     row.cell.variance_m2 = fields.number("variance_m2");
     row.cell.points = static_cast<int>(fields.whole("points", 1, most));
@@ -104,10 +112,12 @@ std::vector<LabelledCell> read_labels(const std::string& path) {
 std::vector<MapCurb> read_curbs(const std::string& path) {
   return read_rows<MapCurb>(path, curb_columns, [](Fields& fields) {
     MapCurb curb;
-    curb.x0_m = fields.number("x0_m");
-    curb.y0_m = fields.number("y0_m");
-    curb.x1_m = fields.number("x1_m");
-    curb.y1_m = fields.number("y1_m");
+    curb.x0_m = read_place(fields, "x0_m");
+    curb.y0_m = read_place(fields, "y0_m");
+    curb.x1_m = read_place(fields, "x1_m");
+    curb.y1_m = read_place(fields, "y1_m");
+    if (const double length_m = std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m); length_m > longest_m)
+      fields.fail("the length", decimals(length_m, 3), "a piece of curb of 10 km at most");
     curb.height_m = fields.number("height_m");
     curb.height_sd_m = fields.number("height_sd_m");
     curb.probability = read_probability(fields);
