@@ -1,4 +1,7 @@
 // curbline-drive-log: logs to what boards are fed, and what they give back to curbs.
+#include <cstdlib>
+
+#include "drive_log/drive_log.hpp"
 #include "program.hpp"
 
 namespace curbline::tools::testing {
@@ -29,6 +32,47 @@ TEST_CASE("drive log: the stream takes the place of no log that it is made of") 
   check_wrong_usage(drive_log(write_of(drive) + Words{"--out", drive.path("poses.tum")}), "is also --poses");
   CHECK(names_in(logs.folder()) == names);
   CHECK(drive_log(write_of(logs) + Words{"--out", logs.path("drive")}).status == 0);
+}
+
+TEST_CASE("drive log: nothing is left of what a signal ends") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.5"});
+  const TemporaryDirectory dir;
+  // The scan lines are a pipe that stays open behind the last of them.
+  const std::string fifo = dir.path("scans");
+  std::filesystem::create_directory(dir.path("out"));
+  REQUIRE(std::system(("mkfifo " + fifo).c_str()) == 0);
+  const std::string write = std::string(CURBLINE_DRIVE_LOG) + " write --robot " + logs.path("robot.toml") + " --can " +
+                            logs.path("can.log") + " --scans " + fifo + " --out " + dir.path("out/drive");
+  const std::string feed = "(cat " + logs.path("scans.carmen") + "; sleep 2) > " + fifo + " & ";
+  const std::string run = "{ " + feed + write + " & program=$!; sleep 1; ls " + dir.path("out") + " > " +
+                          dir.path("during") + "; kill -TERM $program; wait $program; echo $? > " + dir.path("status") +
+                          "; wait; } 2> " + dir.path("err");
+  REQUIRE(std::system(run.c_str()) == 0);
+  CHECK(read_file(dir.path("during")).find(".part") != std::string::npos);
+  CHECK(read_file(dir.path("status")) == "143\n");
+  CHECK(names_in(dir.path("out")) == Words{});
+}
+
+TEST_CASE("drive log: results that cannot be read or are none are refused") {
+  const TemporaryDirectory dir;
+  check_refused(drive_log({"curbs", dir.path("none")}), dir.path("none") + ": ", "cannot be read");
+  check_refused(drive_log({"curbs", dir.path("")}), dir.path("") + ": ", "cannot be read");
+  check_refused(drive_log({"curbs", dir.write("empty", "")}), dir.path("empty") + ": ", "empty");
+  check_refused(drive_log({"curbs", dir.write("cut", "1234")}), dir.path("cut") + ": ", "cut");
+}
+
+/// What a board says of a line without curbs.
+std::string result_without_curbs() {
+  const drive_log::Result<0> result({}, Status::ok, {}, {});
+  return {reinterpret_cast<const char*>(result.bytes().data()), result.bytes().size()};
+}
+
+TEST_CASE("drive log: standard output that cannot be written is an error") {
+  const TemporaryDirectory dir;
+  const std::string results = dir.write("results", result_without_curbs());
+  CHECK(drive_log({"curbs", results}).out == "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind\n");
+  if (std::filesystem::exists("/dev/full"))
+    check_refused(drive_log({"curbs", results}, "/dev/full"), "standard output: ", "cannot be written");
 }
 
 }  // namespace

@@ -1,31 +1,9 @@
 // curbline: simulate, replay, map, evaluate, dbc.
-#include <CLI/CLI.hpp>
-#include <exception>
-#include <iostream>
-
 #include "curbline/commands.hpp"
-#include "formats/atomic_file.hpp"
-#include "formats/bad_input.hpp"
-
-namespace {
-
-/// CLI11 says of an unknown command only that one is required.
-void check_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  std::string commands;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == argv[1]) return;
-    commands += (commands.empty() ? "" : ", ") + command->get_name();
-  }
-  throw CLI::ParseError(std::string(argv[1]) + " is no command; expected one of " + commands,
-                        CLI::ExitCodes::ExtrasError);
-}
-
-}  // namespace
+#include "curbline/run_program.hpp"
 
 int main(int argc, char** argv) {
   using namespace curbline::tools;
-  remove_uncommitted_at_signals();
   CLI::App app("Finds curbs in the scan lines of a nodding laser.", "curbline");
   app.require_subcommand(1);
   add_simulate(app);
@@ -33,21 +11,5 @@ int main(int argc, char** argv) {
   add_map(app);
   add_evaluate(app);
   add_dbc(app);
-  try {
-    check_command(app, argc, argv);
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const BadInput& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
-  } catch (const std::exception& error) {
-    std::cerr << "curbline: " << error.what() << '\n';
-    return 1;
-  }
-  if (!std::cout.flush()) {
-    std::cerr << "standard output: cannot be written; expected room for it\n";
-    return 1;
-  }
-  return 0;
+  return run_program(app, argc, argv);
 }

@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "curbline/outputs.hpp"
+#include "curbline/run_program.hpp"
 #include "drive_streams/drive_streams.hpp"
-#include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
 
 int main(int argc, char** argv) {
@@ -27,13 +27,5 @@ int main(int argc, char** argv) {
   auto* curbs = app.add_subcommand("curbs", "results to the curbs after the last scan line, as CSV");
   curbs->add_option("RESULTS", results)->required();
   curbs->callback([&] { write_curbs(std::cout, read_last_curbs(results)); });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const BadInput& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return run_program(app, argc, argv);
 }

@@ -1,6 +1,6 @@
+#include <array>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
@@ -24,12 +24,23 @@ MapCurb curb_at(const std::vector<char>& bytes, std::size_t at) {
   return {f(0), f(1), f(2), f(3), f(4), f(5), f(6), to_string(kind)};
 }
 
+std::vector<char> bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> bytes;
+  std::array<char, 65536> part{};
+  do {
+    file.read(part.data(), part.size());
+    bytes.insert(bytes.end(), part.begin(), part.begin() + file.gcount());
+  } while (file);
+  if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected results of a drive");
+  return bytes;
+}
+
 }  // namespace
 
 std::vector<MapCurb> read_last_curbs(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path + ": cannot be read; expected results of a drive");
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::vector<char> bytes = bytes_of(path);
+  if (bytes.empty()) throw BadInput(path + ": empty; expected results of a drive");
   std::vector<MapCurb> curbs;
   for (std::size_t at = 0; at < bytes.size();) {
     const auto cut = [&](std::size_t needed) {
