@@ -34,6 +34,11 @@ TEST_CASE("drive log: the stream takes the place of no log that it is made of") 
   CHECK(drive_log(write_of(logs) + Words{"--out", logs.path("drive")}).status == 0);
 }
 
+TEST_CASE("drive log: an empty file name is wrong usage") {
+  check_wrong_usage(drive_log({"write", "--robot", "r", "--scans", "s", "--out", "o", "--can", ""}),
+                    "--can: empty; expected a file name\n");
+}
+
 TEST_CASE("drive log: nothing is left of what a signal ends") {
   const Recording logs("street", "utm30lx", {"--duration", "0.5"});
   const TemporaryDirectory dir;

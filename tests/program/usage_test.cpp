@@ -83,6 +83,33 @@ TEST_CASE("program: an unknown method or edge and the values that there are") {
   }
 }
 
+TEST_CASE("program: an empty file name, as an unset variable of a shell gives, is wrong usage") {
+  const auto refused = [](const Words& arguments, const std::string& option) {
+    check_wrong_usage(curbline(arguments + Words{option, ""}), option + ": empty; expected a file name\n");
+  };
+  for (const std::string option : {"--labels", "--curbs", "--picture"}) {
+    refused({"map", "a.xyz"}, option);
+    refused({"replay", "--scans", "s", "--robot", "r"}, option);
+  }
+  for (const std::string option : {"--can", "--poses", "--line-costs"})
+    refused({"replay", "--scans", "s", "--robot", "r"}, option);
+  refused({"simulate", "--scene", "street", "--robot", "r"}, "--out");
+  refused({"evaluate", "d"}, "--picture");
+  refused({"evaluate"}, "--paper");
+  refused({"dbc"}, "--robot");
+  check_wrong_usage(curbline({"map", ""}), "empty; expected a file name");
+}
+
+TEST_CASE("program: a seed that is no whole number of 64 bits is wrong usage") {
+  const TemporaryDirectory dir;
+  for (const std::string bad : {"-1", "18446744073709551616", "1.5", "x", ""}) {
+    check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
+                                dir.path("o"), "--seed", bad}),
+                      "--seed: " + bad + "; expected a whole number from 0 to 18446744073709551615\n");
+  }
+  CHECK(names_in(dir.path("")).empty());
+}
+
 TEST_CASE("program: a number that makes no sense is wrong usage and named") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");

@@ -15,12 +15,16 @@ void add_evaluate(CLI::App& app) {
   };
   auto* command = app.add_subcommand("evaluate", "Scores against truth");
   auto o = std::make_shared<Options>();
-  auto* dir = command->add_option("dir", o->truth.dir,
-                                  "directory that simulate wrote; results of replay in it are scored, or made");
-  auto* paper = command->add_option("--paper", o->paper, "folder of clouds with regions: the paper's tables");
+  auto* dir = command
+                  ->add_option("dir", o->truth.dir,
+                               "directory that simulate wrote; results of replay in it are scored, or made")
+                  ->check(file_name());
+  auto* paper =
+      command->add_option("--paper", o->paper, "folder of clouds with regions: the paper's tables")->check(file_name());
   dir->excludes(paper);
   add_method_option(*command, o->method);
-  auto* picture = command->add_option("--picture", o->truth.picture, "PNG or SVG of the map with truth and robot");
+  auto* picture = command->add_option("--picture", o->truth.picture, "PNG or SVG of the map with truth and robot")
+                      ->check(file_name());
   paper->excludes(command->get_option("--method"))->excludes(picture);
   command->add_flag("--json", o->json, "figures as JSON on stdout instead of a table");
   command->callback([o, command] {

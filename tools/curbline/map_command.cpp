@@ -44,7 +44,7 @@ void add_map(CLI::App& app) {
     MapOptions map;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("cloud", o->cloud, "point cloud: .xyz .csv .pcd .bin")->required();
+  command->add_option("cloud", o->cloud, "point cloud: .xyz .csv .pcd .bin")->check(file_name())->required();
   add_map_options(*command, o->map);
   command->callback([o] {
     check_outputs(outputs_of(o->map), {{"the cloud", o->cloud}});

@@ -96,9 +96,9 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   command.add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
       ->check(within(std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a finite number above 0"))
       ->capture_default_str();
-  command.add_option("--labels", options.labels, "CSV of the valid cells");
-  command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout");
-  command.add_option("--picture", options.picture, "PNG or SVG");
+  command.add_option("--labels", options.labels, "CSV of the valid cells")->check(file_name());
+  command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout")->check(file_name());
+  command.add_option("--picture", options.picture, "PNG or SVG")->check(file_name());
   command.add_flag("--json", options.json, "summary on stdout");
 }
 

@@ -1,6 +1,5 @@
 #include "curbline/outputs.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 namespace curbline::tools {
@@ -24,6 +23,11 @@ void check_apart(const NamedFile& output, const NamedFile& other) {
 }
 
 }  // namespace
+
+CLI::Validator file_name() {
+  return CLI::Validator(
+      [](const std::string& name) { return name.empty() ? std::string("empty; expected a file name") : ""; }, "");
+}
 
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {

@@ -1,14 +1,31 @@
 #include <unistd.h>
 
+#include <charconv>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 
 #include "curbline/commands.hpp"
+#include "curbline/outputs.hpp"
 #include "formats/decimals.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/simulate.hpp"
 
 namespace curbline::tools {
+namespace {
+
+/// Of 64 bits. CLI11 takes -1 for the greatest.
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = problem == std::errc{} && end == text.data() + text.size();
+    return good ? "" : text + "; expected a whole number from 0 to 18446744073709551615";
+  };
+  return CLI::Validator(check, "");
+}
+
+}  // namespace
 
 void add_simulate(CLI::App& app) {
   struct Options {
@@ -19,13 +36,14 @@ void add_simulate(CLI::App& app) {
   auto o = std::make_shared<Options>();
   command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, random:SEED or random-drive:SEED")
       ->required();
-  command->add_option("--robot", o->robot, "robot description")->required();
+  command->add_option("--robot", o->robot, "robot description")->check(file_name())->required();
   command
       ->add_option(
           "--out", o->out,
           "directory to write to; the files of an earlier run in it, those that replay left there too, are replaced")
+      ->check(file_name())
       ->required();
-  command->add_option("--seed", o->simulation.seed, "of the noise")->capture_default_str();
+  command->add_option("--seed", o->simulation.seed, "of the noise")->check(whole_number())->capture_default_str();
   command->add_option("--duration", o->simulation.duration_s,
                       "seconds; without: one nod, or the whole way of a robot that drives");
   command->callback([o] {

@@ -13,11 +13,11 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   DriveFiles files;
   auto* write = app.add_subcommand("write", "logs to a stream");
-  write->add_option("--robot", files.robot, "robot description")->required();
-  write->add_option("--scans", files.scans, "scan lines, CARMEN log")->required();
-  write->add_option("--can", files.can, "tilt frames, candump log");
-  write->add_option("--poses", files.poses, "robot poses, TUM trajectory");
-  write->add_option("--out", files.out, "the stream")->required();
+  write->add_option("--robot", files.robot, "robot description")->check(file_name())->required();
+  write->add_option("--scans", files.scans, "scan lines, CARMEN log")->check(file_name())->required();
+  write->add_option("--can", files.can, "tilt frames, candump log")->check(file_name());
+  write->add_option("--poses", files.poses, "robot poses, TUM trajectory")->check(file_name());
+  write->add_option("--out", files.out, "the stream")->check(file_name())->required();
   write->callback([&] {
     check_outputs({{"--out", files.out}},
                   {{"--robot", files.robot}, {"--scans", files.scans}, {"--can", files.can}, {"--poses", files.poses}});
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   });
   std::string results;
   auto* curbs = app.add_subcommand("curbs", "results to the curbs after the last scan line, as CSV");
-  curbs->add_option("RESULTS", results)->required();
+  curbs->add_option("RESULTS", results)->check(file_name())->required();
   curbs->callback([&] { write_curbs(std::cout, read_last_curbs(results)); });
   return run_program(app, argc, argv);
 }
