@@ -110,6 +110,15 @@ TEST_CASE("program: a seed that is no whole number of 64 bits is wrong usage") {
   CHECK(names_in(dir.path("")).empty());
 }
 
+TEST_CASE("program: an option that is given twice is wrong usage") {
+  check_wrong_usage(curbline({"map", "a.xyz", "--cell", "0.1", "--cell", "0.2"}),
+                    "--cell: given twice, or empty; expected once\n");
+  for (const Words& twice : {Words{"--cell", "0.1", "0.2", "--cell", "0.2"},
+                             {"--labels", "a", "--labels", "b"},
+                             {"--max-height", "1", "--max-height", "2"}})
+    check_wrong_usage(curbline(Words{"map", "a.xyz"} + twice), twice.front());
+}
+
 TEST_CASE("program: a number that makes no sense is wrong usage and named") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");

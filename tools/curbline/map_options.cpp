@@ -65,6 +65,14 @@ CLI::Validator within(double low, double high, const std::string& expected) {
   return CLI::Validator(check, "");
 }
 
+/// For an option of one value or two, which would take the values of two such options for its own; CLI11 puts an empty
+/// one between them where it is told to inject a separator.
+CLI::Validator once() {
+  return CLI::Validator(
+      [](const std::string& text) { return text.empty() ? std::string("given twice, or empty; expected once") : ""; },
+      "");
+}
+
 }  // namespace
 
 void add_method_option(CLI::App& command, MapMethod& method) {
@@ -86,7 +94,10 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
   origin->needs(size);
   size->needs(origin);
-  command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")->expected(1, 2);
+  command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")
+      ->expected(1, 2)
+      ->check(once())
+      ->inject_separator();
   command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(place);
   add_method_option(command, options.method);
   add_choice<reference::EdgePotential>(
