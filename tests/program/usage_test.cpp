@@ -83,6 +83,18 @@ TEST_CASE("program: an unknown method or edge and the values that there are") {
   }
 }
 
+TEST_CASE("program: what only other methods heed is refused") {
+  for (const Words& method : {Words{}, {"--method", "curbline"}, {"--method", "canny"}, {"--method", "gradient"}}) {
+    check_wrong_usage(curbline(Words{"map", "a.xyz", "--edge", "eq10"} + method),
+                      "--edge: of another method; expected --method crf-em\n");
+    check_wrong_usage(curbline(Words{"map", "a.xyz", "--segment-scale", "50"} + method),
+                      "--segment-scale: of another method; expected --method crf-em, em or segment\n");
+  }
+  check_wrong_usage(curbline({"map", "a.xyz", "--edge", "potts", "--method", "em"}), "--edge: of another method");
+  check_wrong_usage(curbline({"replay", "--scans", "s", "--robot", "r", "--edge", "eq10"}),
+                    "--edge: of another method");
+}
+
 TEST_CASE("program: an empty file name, as an unset variable of a shell gives, is wrong usage") {
   const auto refused = [](const Words& arguments, const std::string& option) {
     check_wrong_usage(curbline(arguments + Words{option, ""}), option + ": empty; expected a file name\n");

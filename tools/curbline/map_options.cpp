@@ -42,8 +42,8 @@ int whole_blocks(int cells) {
 
 /// An option that is one of a few words.
 template <typename Choice>
-void add_choice(CLI::App& command, const std::string& option, Choice& choice,
-                const CLI::TransformPairs<Choice>& choices, const std::string& help) {
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Choice& choice,
+                        const CLI::TransformPairs<Choice>& choices, const std::string& help) {
   const auto choose = [&choice, option, choices](const std::string& word) {
     std::string words;
     for (const auto& [name, value] : choices) {
@@ -53,7 +53,7 @@ void add_choice(CLI::App& command, const std::string& option, Choice& choice,
     if (std::none_of(choices.begin(), choices.end(), [&](const auto& each) { return each.first == word; }))
       throw CLI::ValidationError(option, word + "; expected one of " + words);
   };
-  command.add_option_function<std::string>(option, choose, help);
+  return command.add_option_function<std::string>(option, choose, help);
 }
 
 /// Numbers in [low, high].
@@ -100,17 +100,29 @@ void add_map_options(CLI::App& command, MapOptions& options) {
       ->inject_separator();
   command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(place);
   add_method_option(command, options.method);
-  add_choice<reference::EdgePotential>(
+  auto* edge = add_choice<reference::EdgePotential>(
       command, "--edge", options.edge,
       {{"potts", reference::EdgePotential::potts}, {"eq10", reference::EdgePotential::eq10}},
       "edge potential of crf-em: potts (factor 10) or eq10");
-  command.add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
-      ->check(within(std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a finite number above 0"))
-      ->capture_default_str();
+  auto* scale =
+      command
+          .add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
+          ->check(
+              within(std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a finite number above 0"))
+          ->capture_default_str();
   command.add_option("--labels", options.labels, "CSV of the valid cells")->check(file_name());
   command.add_option("--curbs", options.curbs, "CSV of the curbs; -: JSON lines on stdout")->check(file_name());
   command.add_option("--picture", options.picture, "PNG or SVG")->check(file_name());
   command.add_flag("--json", options.json, "summary on stdout");
+  // What the method would not heed must not look as if it did.
+  command.parse_complete_callback([&options, edge, scale] {
+    using enum MapMethod;
+    const MapMethod method = options.method;
+    if (edge->count() > 0 && method != crf_em)
+      throw CLI::ValidationError("--edge", "of another method; expected --method crf-em");
+    if (scale->count() > 0 && method != crf_em && method != em && method != segment)
+      throw CLI::ValidationError("--segment-scale", "of another method; expected --method crf-em, em or segment");
+  });
 }
 
 std::vector<NamedFile> outputs_of(const MapOptions& options) {
