@@ -199,6 +199,9 @@ TEST_CASE("program: a scene file is refused with its line and key") {
   error("", ":");
   error("[ground]\nz = \"low\"\n", ":2: ground.z is 'low'");
   error("[ground]\nz = 0\n[robot]\nat = [0, 0]\nspeed = 1\n", ":5: unknown key robot.speed");
+  error("[robot]\nattitude = \"level\"\n", ":2: unknown key robot.attitude; expected one of at, path, yaw_deg");
+  error("[robot]\npath = [[0, 0], [1, 0]]\nat = [0, 0]\n", ":3: robot.at is beside path; expected one of the two");
+  error("grond = 1\n", ":1: unknown key grond; expected one of about, box, cylinder, ground, region, robot, wall");
   error("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n", ": ");  // the robot stands on nothing
   check_refused(curbline({"simulate", "--scene", dir.path("none.toml"), "--robot", shipped_robot("utm30lx"), "--out",
                           dir.path("o")}),

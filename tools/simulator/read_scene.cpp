@@ -183,6 +183,9 @@ double duration_s(const RobotPath& path) {
 RobotPath read_path(TomlTable table) {
   RobotPath path;
   if (table.has("path")) {
+    for (const char* standing : {"at", "yaw_deg"}) {
+      if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: the path tells it");
+    }
     path.waypoints = table.points("path", 2, any);
     for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
       const Point2 a = path.waypoints[i - 1], b = path.waypoints[i];
