@@ -280,6 +280,21 @@ TEST_CASE("program: evaluate replays the logs itself, with the poses of a drive,
   }
 }
 
+TEST_CASE("program: replay of a drive without its poses says that the robot was taken to stand") {
+  const Recording logs("city", "utm30lx", {"--duration", "2"});
+  const Words without{"replay",
+                      "--scans",
+                      logs.path("scans.carmen"),
+                      "--can",
+                      logs.path("can.log"),
+                      "--robot",
+                      logs.path("robot.toml")};
+  const Outcome outcome = curbline(without);
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err == logs.path("poses.tum") + ": not read, the robot was taken to stand; expected --poses\n");
+  CHECK(curbline(without + Words{"--poses", logs.path("poses.tum")}).err.empty());
+}
+
 TEST_CASE("program: --curbs - streams one JSON object a line, the last as in the file") {
   const Recording logs("straight_curb", "utm30lx");
   const Outcome outcome = curbline(logs.replay() + Words{"--curbs", "-"});

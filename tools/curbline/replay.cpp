@@ -5,6 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "formats/bad_input.hpp"
@@ -217,6 +218,9 @@ std::string Replay::remarks() const {
   if (c.points == 0 && c.outside > 0)
     text += (text.empty() ? "" : "\n") + logs_.scans + ": none of " + std::to_string(c.outside) +
             " points lies in the window";
+  const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
+  if (std::error_code none; logs_.poses.empty() && std::filesystem::exists(poses, none))
+    text += (text.empty() ? "" : "\n") + poses.string() + ": not read, the robot was taken to stand; expected --poses";
   return text;
 }
 
