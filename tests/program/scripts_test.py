@@ -43,6 +43,12 @@ class Scripts(unittest.TestCase):
         self.refuses("/nonexist", "paper", "/nonexist")
         self.refuses("/", "paper", "/")
 
+    def test_a_word_that_budget_does_not_know_before_it_builds(self):
+        for words in [["--kep"], ["--keep", "--keep"]]:
+            done = subprocess.run([os.path.join(TOOLS, "budget"), *words], capture_output=True, text=True, timeout=5)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertEqual(done.stderr, f"budget: {' '.join(words)}; expected --keep, or nothing\n")
+
     def test_who_reads_no_more_gets_no_traceback(self):
         with tempfile.TemporaryDirectory() as folder:
             script = subprocess.Popen([sys.executable, os.path.join(TOOLS, "streets"), "1", "--out", folder], text=True,
