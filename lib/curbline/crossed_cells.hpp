@@ -8,9 +8,9 @@
 
 #include "curbline/curb.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
-#include "curbline/plane_mixture.hpp"
 
 namespace curbline {
 

@@ -5,9 +5,9 @@
 
 #include <array>
 #include <cstdint>
-#include <type_traits>
 
 #include "curbline/cell.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -18,20 +18,6 @@
 
 namespace curbline {
 
-/// Side of a block: the window moves by whole blocks, and leaves never cross their borders.
-inline constexpr int block_side = 4;
-
-/// Directions along the axes: +x, -x, +y, -y. d ^ 1 is opposite to d.
-inline constexpr int directions = 4;
-inline constexpr std::array<int, directions> step_i{1, -1, 0, 0}, step_j{0, 0, 1, -1};
-/// Along x (axis 0) or y (1): to higher places (toward 1) or to lower ones (-1).
-constexpr int direction(int axis, int toward) {
-  return 2 * axis + (toward < 0);
-}
-
-/// Cells further apart than this know nothing of each other: what four bits hold.
-inline constexpr int max_link_reach = 15;
-
 /// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone is
 /// forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is seen.
 inline constexpr float memory = 0.25f;
@@ -40,10 +26,6 @@ inline constexpr float memory = 0.25f;
 /// their errors: of 512 that share a half all is known but 1 in 500. What has changed is known after as many, however
 /// long a robot has stood before it.
 inline constexpr float most_points = 512.0f;
-
-/// Index types, as small as the limits allow.
-template <Limits limits>
-using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
 
 template <Limits limits>
 class Dem {

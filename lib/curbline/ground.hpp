@@ -25,6 +25,7 @@
 #include <span>
 
 #include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/obstacles.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
@@ -38,11 +39,11 @@ class Ground {
  public:
   void clear() { kind_.fill(Kind::ground); }
 
-  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, `none` if it has none; changed(label)
-  /// is called for each that is to be borne otherwise than before.
-  template <typename LabelType, typename LabelOf, typename Changed>
-  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
-              LabelOf&& label_of, Changed&& changed);
+  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, no_label<limits> if it has none;
+  /// changed(label) is called for each that is to be borne otherwise than before.
+  template <typename LabelOf, typename Changed>
+  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of,
+              Changed&& changed);
 
   bool is(int label) const { return borne(kind(label)); }
   /// May it, of planes that are ground, be a veil?
@@ -51,6 +52,8 @@ class Ground {
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
+  using LabelType = Label<limits>;
+  static constexpr LabelType none = no_label<limits>;
   using PlaneFlags = std::array<bool, limits.planes>;
   enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
   static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
@@ -141,7 +144,6 @@ class Ground {
     }
   };
   /// Cells of one plane that follow each other on a row or column.
-  template <typename LabelType>
   struct Run {
     LabelType label;
     int first, last;
@@ -169,18 +171,18 @@ class Ground {
       return fall.of_rays_m <= drop_m;
     }
     /// How far it begins below where `before` or `next`, the one nearer to the laser, ends; 0 if there is none.
-    float begins_below_m(const Run& before, const Run& next, LabelType none, const Sight& sight) const {
+    float begins_below_m(const Run& before, const Run& next, const Sight& sight) const {
       if (sight.ahead(first)) return before.label == none ? 0.0f : before.last_height_m - first_height_m;
       return next.label == none ? 0.0f : next.first_height_m - last_height_m;
     }
     /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of
     /// what the run falls, and one more. If a step of more than that parts it from the run before it, it is not the
     /// fall of the edge, and casts no shadow. `aside_m`: how far the line is from the laser.
-    float blurred_cells(const Run& before, const Run& next, LabelType none, const Sight& sight, float aside_m) const {
+    float blurred_cells(const Run& before, const Run& next, const Sight& sight, float aside_m) const {
       const float above_m = sight.eye_z_m - first_height_m, away_m = sight.away_m(first, last);
       if (!(above_m > 0.0f)) return 0.0f;
       const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
-      const float fall_m = highest_m - lowest_m, step_m = begins_below_m(before, next, none, sight);
+      const float fall_m = highest_m - lowest_m, step_m = begins_below_m(before, next, sight);
       const float shadow = away_m > 0.0f && step_m <= fall_m && step_m >= -fall_m ? away_m * fall_m : 0.0f;
       return 1.0f + (spot + shadow) / (above_m * sight.cell_m);
     }
@@ -203,10 +205,10 @@ class Ground {
     return plane.steeper_than_ramp() &&
            plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
   }
-  template <typename LabelType, typename LabelOf, typename EndRun>
-  static void walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of, EndRun&& end_run);
-  template <typename LabelType, typename LabelOf>
-  static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
+  template <typename LabelOf, typename EndRun>
+  static void walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run);
+  template <typename LabelOf>
+  static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                          LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
                          Tallies& tallies);
   static Kind kind_of(std::size_t label, const Plane& plane, const Tally& tally, const Obstacles<limits>& obstacles,
@@ -217,16 +219,15 @@ class Ground {
 };
 
 /// Calls end_run(before, run, next, line) for each run of cells along x (axis 0) or along y (axis 1); the label of a
-/// run that is not there is `none`.
+/// run that is not there is no_label<limits>.
 template <Limits limits>
-template <typename LabelType, typename LabelOf, typename EndRun>
-void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType none, LabelOf&& label_of,
-                          EndRun&& end_run) {
+template <typename LabelOf, typename EndRun>
+void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run) {
   const bool along_x = axis == 0;
   const int line_count = along_x ? dem.cols() : dem.rows(), length = along_x ? dem.rows() : dem.cols();
-  const Run<LabelType> nothing{none, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  const Run nothing{none, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int line = 0; line < line_count; ++line) {
-    Run<LabelType> before = nothing, run = nothing;
+    Run before = nothing, run = nothing;
     for (int k = 0; k < length; ++k) {
       const int s = along_x ? dem.slot(k, line) : dem.slot(line, k);
       const Cell& cell = dem.cell(s);
@@ -234,7 +235,7 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
       if (label == none) continue;
       const float h = cell.height_m;
       if (label != run.label) {
-        const Run<LabelType> next{label, k, k, h, h, h, h, cell.scatter_m2, cell.weight};
+        const Run next{label, k, k, h, h, h, h, cell.scatter_m2, cell.weight};
         end_run(before, run, next, line);
         before = run;
         run = next;
@@ -253,32 +254,31 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelType no
 
 /// What runs tell: strips in the shadow of a step, beside a high obstacle, between two planes.
 template <Limits limits>
-template <typename LabelType, typename LabelOf>
+template <typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                LabelType none, LabelOf&& label_of, const Obstacles<limits>& obstacles,
-                                const PlaneFlags& drops, Tallies& tallies) {
+                                LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
+                                Tallies& tallies) {
   const std::array<Sight, 2> sights{
       {{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}, {view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m}}};
   for (std::size_t axis = 0; axis < sights.size(); ++axis) {
-    walk(dem, axis, none, label_of,
-         [&](const Run<LabelType>& before, const Run<LabelType>& run, const Run<LabelType>& next, int line) {
-           if (run.label == none) return;
-           Tally& tally = tallies[run.label];
-           const auto cells = static_cast<float>(run.length());
-           const bool leads = before.label != none && next.label != none && run.between(before, next);
-           const Sight& aside = sights[1 - axis];
-           const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-           if (leads || drops[run.label]) {
-             const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
-             if (Fall fall; leads && run.in_shadow(before, next, across, fall)) tally.shadow[axis].add(cells, fall);
-             if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, none, across, aside_m);
-           }
-           if (run.length() > longest_strip) return;
-           const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;
-           const bool before_high = next.label != none && obstacles.high(next.label) && next.first == run.last + 1;
-           if (after_high || before_high) tally.fringe_cells[axis] += cells;
-           if (leads) tally.add_strip(before, run, next);
-         });
+    walk(dem, axis, label_of, [&](const Run& before, const Run& run, const Run& next, int line) {
+      if (run.label == none) return;
+      Tally& tally = tallies[run.label];
+      const auto cells = static_cast<float>(run.length());
+      const bool leads = before.label != none && next.label != none && run.between(before, next);
+      const Sight& aside = sights[1 - axis];
+      const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
+      if (leads || drops[run.label]) {
+        const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
+        if (Fall fall; leads && run.in_shadow(before, next, across, fall)) tally.shadow[axis].add(cells, fall);
+        if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, across, aside_m);
+      }
+      if (run.length() > longest_strip) return;
+      const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;
+      const bool before_high = next.label != none && obstacles.high(next.label) && next.first == run.last + 1;
+      if (after_high || before_high) tally.fringe_cells[axis] += cells;
+      if (leads) tally.add_strip(before, run, next);
+    });
   }
 }
 
@@ -304,15 +304,15 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const Tally&
 }
 
 template <Limits limits>
-template <typename LabelType, typename LabelOf, typename Changed>
+template <typename LabelOf, typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                            LabelType none, LabelOf&& label_of, Changed&& changed) {
-  const Obstacles<limits> obstacles(dem, planes, view, none, label_of);
+                            LabelOf&& label_of, Changed&& changed) {
+  const Obstacles<limits> obstacles(dem, planes, view, label_of);
   PlaneFlags drops{};
   for (std::size_t l = 0; l < drops.size(); ++l) drops[l] = !obstacles.is(l) && drops_off(planes[l], view);
   Tallies tallies{};
   for (std::size_t l = 0; l < tallies.size(); ++l) tallies[l].cells = obstacles.cells(l);
-  tally_runs(dem, planes, view, none, label_of, obstacles, drops, tallies);
+  tally_runs(dem, planes, view, label_of, obstacles, drops, tallies);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
     const Kind before = kind_[l];

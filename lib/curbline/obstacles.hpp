@@ -11,6 +11,7 @@
 #include <span>
 
 #include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -23,10 +24,9 @@ inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
 template <Limits limits>
 class Obstacles {
  public:
-  /// label_of(slot) is the plane of a valid cell's region, `none` if it has none.
-  template <typename LabelType, typename LabelOf>
-  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
-            LabelOf&& label_of);
+  /// label_of(slot) is the plane of a valid cell's region, no_label<limits> if it has none.
+  template <typename LabelOf>
+  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of);
 
   bool is(std::size_t label) const { return is_[label]; }
   /// Is it one that is higher than a step?
@@ -39,6 +39,8 @@ class Obstacles {
   const Plane* ground() const { return ground_; }
 
  private:
+  using LabelType = Label<limits>;
+  static constexpr LabelType none = no_label<limits>;
   using PlaneFlags = std::array<bool, limits.planes>;
   using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
   static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
@@ -55,17 +57,15 @@ class Obstacles {
   };
   using Extents = std::array<Extent, limits.planes>;
 
-  template <typename LabelType, typename LabelOf>
-  void add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelType none,
-                LabelOf&& label_of);
-  template <typename LabelType, typename LabelOf>
-  static Extents extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
-                            const PlaneFlags& asked);
+  template <typename LabelOf>
+  void add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of);
+  template <typename LabelOf>
+  static Extents extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of, const PlaneFlags& asked);
   template <typename SameRegion>
   static bool thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
                    SameRegion&& same_region);
-  template <typename LabelType, typename LabelOf>
-  static Neighbours neighbours(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, const PlaneFlags& asked);
+  template <typename LabelOf>
+  static Neighbours neighbours(const Dem<limits>& dem, LabelOf&& label_of, const PlaneFlags& asked);
 
   PlaneFlags is_{}, high_{}, way_{};
   std::array<float, limits.planes> cells_{};
@@ -73,9 +73,9 @@ class Obstacles {
 };
 
 template <Limits limits>
-template <typename LabelType, typename LabelOf>
+template <typename LabelOf>
 Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                             LabelType none, LabelOf&& label_of) {
+                             LabelOf&& label_of) {
   std::array<float, limits.planes> spread{}, weight{};
   dem.for_each_valid([&](int, int, int s) {
     const LabelType label = label_of(s);
@@ -90,13 +90,13 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
     if (!planes[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes[l].cells > ground_->cells) ground_ = &planes[l];
   }
-  if (ground_ != nullptr) add_tops(dem, planes, view, none, label_of);
+  if (ground_ != nullptr) add_tops(dem, planes, view, label_of);
 }
 
 template <Limits limits>
-template <typename LabelType, typename LabelOf>
+template <typename LabelOf>
 void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                 LabelType none, LabelOf&& label_of) {
+                                 LabelOf&& label_of) {
   PlaneFlags level{}, asked{};  // and above the ground by more than a step; and no larger than a wall may be
   const float longest_m =
       static_cast<float>(dem.rows()) * dem.cell_x_m() + static_cast<float>(dem.cols()) * dem.cell_y_m();
@@ -109,8 +109,8 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
     any = any || asked[l];
   }
   if (!any) return;
-  const Extents extents = extents_of(dem, view, none, label_of, asked);
-  const Neighbours beside = neighbours(dem, none, label_of, level);
+  const Extents extents = extents_of(dem, view, label_of, asked);
+  const Neighbours beside = neighbours(dem, label_of, level);
   PlaneFlags top{};
   for (std::size_t l = 0; l < top.size(); ++l) {
     const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
@@ -139,8 +139,8 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
 }
 
 template <Limits limits>
-template <typename LabelType, typename LabelOf>
-auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelType none, LabelOf&& label_of,
+template <typename LabelOf>
+auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of,
                                    const PlaneFlags& asked) -> Extents {
   Extents found{};
   dem.for_each_valid([&](int i, int j, int s) {
@@ -180,9 +180,8 @@ bool Obstacles<limits>::thin(const Dem<limits>& dem, const Viewpoint& view, int 
 
 /// Of the planes that are asked for, which lie beside which, on a row or a column.
 template <Limits limits>
-template <typename LabelType, typename LabelOf>
-auto Obstacles<limits>::neighbours(const Dem<limits>& dem, LabelType none, LabelOf&& label_of, const PlaneFlags& asked)
-    -> Neighbours {
+template <typename LabelOf>
+auto Obstacles<limits>::neighbours(const Dem<limits>& dem, LabelOf&& label_of, const PlaneFlags& asked) -> Neighbours {
   Neighbours found{};
   dem.for_each_valid([&](int i, int j, int s) {
     const LabelType label = label_of(s);

@@ -7,10 +7,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/ground.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/plane.hpp"
@@ -18,12 +18,6 @@
 #include "curbline/settings.hpp"
 
 namespace curbline {
-
-/// Number of a plane. `no_label<limits>` says none.
-template <Limits limits>
-using Label = std::conditional_t<(limits.planes < 255), std::uint8_t, std::uint16_t>;
-template <Limits limits>
-inline constexpr Label<limits> no_label = static_cast<Label<limits>>(-1);
 
 template <Limits limits>
 class PlaneMixture {
@@ -157,7 +151,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
 
   const Fitted fitted = fit(dem, ranking);
   ground_.update(
-      dem, planes_, view, none, [this](int s) { return region_label(s); },
+      dem, planes_, view, [this](int s) { return region_label(s); },
       [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
   refine(dem, view, fitted, crossed, label_of);
 }

@@ -131,12 +131,8 @@ bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderR
 /// The angle, across the line along which they meet, and what is known of it; all times its own square.
 bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) const {
   const float x = second.slope_x - first.slope_x, y = second.slope_y - first.slope_y;
-  const float square = x * x + y * y;
-  const auto variance = [&](const Plane& plane) {
-    return plane.variance_m2 * (x * x * plane.pxx + 2.0f * x * y * plane.pxy + y * y * plane.pyy);
-  };
   const float bend = prior_.curvature_1_m * (x * (second.x_m - first.x_m) + y * (second.y_m - first.y_m));
-  return square * square > gate * (variance(first) + variance(second) + bend * bend);
+  return square(x * x + y * y) > gate * (first.rise_variance_m2(x, y) + second.rise_variance_m2(x, y) + bend * bend);
 }
 
 Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {

@@ -1,7 +1,5 @@
 #include "curbline/pose_track.hpp"
 
-#include <cmath>
-
 #include "curbline/math.hpp"
 
 namespace curbline {
@@ -27,7 +25,7 @@ Turn turn(const Pose& from, const Pose& to) {
 
 Transform make_transform(const Pose& pose) {
   // Summed here, in one order: Eigen's norm of four numbers adds them in another one where it has vectors.
-  const float norm = std::sqrt(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
+  const float norm = square_root(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
   const Eigen::Quaternionf q(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm);
   Transform T;
   T.rotation = q.toRotationMatrix();
@@ -42,8 +40,8 @@ bool acceptable(const Pose& pose) {
     if (!is_finite(value)) return false;
   }
   if (!near_origin(pose)) return false;
-  const float square = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
-  return square > 0.98f && square < 1.02f;
+  const float norm_2 = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
+  return norm_2 > 0.98f && norm_2 < 1.02f;
 }
 
 bool near_origin(const Pose& pose) {

@@ -1,6 +1,6 @@
 #include "curbline/settings.hpp"
 
-#include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/math.hpp"
 
 namespace curbline {

@@ -1,0 +1,37 @@
+// What all stages call a cell's place, its neighbours' directions and its plane. Number types are as small as the
+// limits allow.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "curbline/limits.hpp"
+
+namespace curbline {
+
+/// Where the memory of a cell lies, in whatever stage keeps something for it (dem.hpp).
+template <Limits limits>
+using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
+
+/// Number of a plane. `no_label<limits>` says none.
+template <Limits limits>
+using Label = std::conditional_t<(limits.planes < 255), std::uint8_t, std::uint16_t>;
+template <Limits limits>
+inline constexpr Label<limits> no_label = static_cast<Label<limits>>(-1);
+
+/// Side of a block: the window moves by whole blocks, and leaves never cross their borders.
+inline constexpr int block_side = 4;
+
+/// Directions along the axes: +x, -x, +y, -y. d ^ 1 is opposite to d.
+inline constexpr int directions = 4;
+inline constexpr std::array<int, directions> step_i{1, -1, 0, 0}, step_j{0, 0, 1, -1};
+/// Along x (axis 0) or y (1): to higher places (toward 1) or to lower ones (-1).
+constexpr int direction(int axis, int toward) {
+  return 2 * axis + (toward < 0);
+}
+
+/// Cells further apart than this know nothing of each other: what four bits hold.
+inline constexpr int max_link_reach = 15;
+
+}  // namespace curbline
