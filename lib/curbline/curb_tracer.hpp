@@ -5,6 +5,7 @@
 // and 20 for each pair of a curb and one of the call before.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -97,21 +98,16 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
 /// height, within a cell of the first. Of steps that lie along each other the longer one is told.
 template <Limits limits>
 void CurbTracer<limits>::tell_once(Work& work, float cell_m) {
-  const auto lies_along = [&](const Curb& one, const Curb& other) {
-    const float length_m = length_of(one);
-    return length_of(other) > length_m && overlap_m(one, other, cell_m) > length_m - cell_m;
-  };
-  int kept = 0;
-  for (int n = 0; n < work.curbs; ++n) {
-    const Curb& curb = work.curb[static_cast<std::size_t>(n)];
-    bool again = false;
-    for (int o = 0; o < work.curbs && !again && is_step(curb); ++o) {
-      const Curb& other = work.curb[static_cast<std::size_t>(o)];
-      again = is_step(other) && lies_along(curb, other);
-    }
-    if (!again) work.curb[static_cast<std::size_t>(kept++)] = curb;
+  const std::span<Curb> curbs(work.curb.data(), static_cast<std::size_t>(work.curbs));
+  work.curbs = 0;
+  for (const Curb& curb : curbs) {
+    const float length_m = length_of(curb);
+    const auto tells_it = [&](const Curb& other) {
+      return is_step(other) && length_of(other) > length_m && overlap_m(curb, other, cell_m) > length_m - cell_m;
+    };
+    if (is_step(curb) && std::any_of(curbs.begin(), curbs.end(), tells_it)) continue;
+    work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
   }
-  work.curbs = kept;
 }
 
 /// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were

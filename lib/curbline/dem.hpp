@@ -360,7 +360,7 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
 
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
-  const bool near = point.z_m >= -Pose::furthest_m && point.z_m <= Pose::furthest_m;  // not of no number
+  const bool near = square(point.z_m) <= square(Pose::furthest_m);  // not of no number
   if (!is_finite(point.x_m) || !is_finite(point.y_m) || !near || !is_finite(point.variance_m2)) return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;

@@ -15,7 +15,7 @@ struct Line {
         y0_m(curb.y0_m),
         dx_m(curb.x1_m - curb.x0_m),
         dy_m(curb.y1_m - curb.y0_m),
-        length_m(square_root(dx_m * dx_m + dy_m * dy_m)) {}
+        length_m(length_of(curb)) {}
 
   float along_m(float x_m, float y_m) const { return ((x_m - x0_m) * dx_m + (y_m - y0_m) * dy_m) / length_m; }
   float left_m(float x_m, float y_m) const { return ((y_m - y0_m) * dx_m - (x_m - x0_m) * dy_m) / length_m; }

@@ -206,8 +206,11 @@ void Replay::keep_leaving_curbs() {
 
 std::string Replay::remarks() const {
   std::string text = can_ ? can_->remarks() : std::string();
+  const auto say = [&](const std::string& log, const std::string& what) {
+    text += (text.empty() ? "" : "\n") + log + ": " + what;
+  };
   const auto add = [&](const std::string& log, long count, const std::string& what) {
-    if (count > 0) text += (text.empty() ? "" : "\n") + log + ": " + std::to_string(count) + " of " + what;
+    if (count > 0) say(log, std::to_string(count) + " of " + what);
   };
   const Counters& c = pipeline_->counters();
   add(logs_.can, c.tilt_dropped,
@@ -216,11 +219,10 @@ std::string Replay::remarks() const {
   add(logs_.scans, lines_ - lines_taken_,
       std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
   if (c.points == 0 && c.outside > 0)
-    text += (text.empty() ? "" : "\n") + logs_.scans + ": none of " + std::to_string(c.outside) +
-            " points lies in the window";
+    say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
   const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
   if (std::error_code none; logs_.poses.empty() && std::filesystem::exists(poses, none))
-    text += (text.empty() ? "" : "\n") + poses.string() + ": not read, the robot was taken to stand; expected --poses";
+    say(poses.string(), "not read, the robot was taken to stand; expected --poses");
   return text;
 }
 

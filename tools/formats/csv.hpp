@@ -23,9 +23,8 @@ void write_labels(std::ostream& out, const Map& map);
 void write_curbs(std::ostream& out, const std::vector<MapCurb>& curbs);
 void write_curb_json(std::ostream& out, const MapCurb& curb);
 
-// Both throw BadInput unless the file is what the writers write, if with other decimals, and
-// no place is beyond 1e8 m; no curb is longer than 10 km. A file without rows is good:
-// nothing was found.
+// Both throw BadInput unless the file is what the writers write, if with other decimals; if a place is beyond 1e8 m, or
+// a curb longer than 10 km. A file without rows is good: nothing was found.
 std::vector<LabelledCell> read_labels(const std::string& path);
 std::vector<MapCurb> read_curbs(const std::string& path);
 

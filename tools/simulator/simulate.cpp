@@ -24,24 +24,17 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Throws BadInput if a recording would take away what none has left there. Of an earlier one truth.json is there.
-void check_own(const std::string& dir) {
+bool exists(const std::string& path) {
   std::error_code none;
-  if (std::filesystem::exists(dir + "/truth.json", none)) return;
-  for (const char* name :
-       {"scans.carmen", "can.log", "poses.tum", "regions.gt", "scene.toml", "robot.toml", "labels.csv", "curbs.csv"}) {
-    if (std::filesystem::exists(dir + "/" + name, none))
-      throw BadInput(dir + "/" + name + ": no file of a simulation, for no truth.json is beside it; expected a " +
-                     "directory without it");
-  }
+  return std::filesystem::exists(path, none);
 }
 
 /// The files of one recording. What this recording lacks is taken away if an earlier one left it there, and so is what
-/// was found in that one.
+/// was found in that one. What none has left there is refused: of an earlier one truth.json is there.
 class Recording {
  public:
-  Recording(const std::string& dir, const Robot& robot, bool with_poses) : dir_(dir), robot_(robot) {
-    check_own(dir);
+  Recording(const std::string& dir, const Robot& robot, bool with_poses)
+      : dir_(dir), robot_(robot), after_another_(exists(dir + "/truth.json")) {
     std::error_code failed;
     std::filesystem::create_directories(dir, failed);
     if (failed) {
@@ -51,11 +44,12 @@ class Recording {
     scans_ = open("scans.carmen");
     can_ = robot.tilt.fixed ? leave_out("can.log") : open("can.log");
     poses_ = with_poses ? open("poses.tum") : leave_out("poses.tum");
+    regions_ = open("regions.gt");
+    scene_ = open("scene.toml");
+    robot_text_ = open("robot.toml");
     leave_out("labels.csv");
     leave_out("curbs.csv");
   }
-
-  std::ostream* open(const char* name) { return &files_.emplace_back(dir_ + "/" + name).stream(); }
 
   void take(const ScanLine& line) {
     scan_.time_ns = line.time_ns;
@@ -72,7 +66,15 @@ class Recording {
         std::count_if(line.ranges_m.begin(), line.ranges_m.end(), [](float r) { return std::isfinite(r); });
   }
 
-  void take(const Truth& truth) { write_truth(*truth_, truth); }
+  void take(const Truth& truth) {
+    write_truth(*truth_, truth);
+    write_regions(*regions_, drawn_regions(truth));
+  }
+
+  void take_sources(const std::string& scene, const std::string& robot) {
+    *scene_ << scene;
+    *robot_text_ << robot;
+  }
 
   void take(const can::Frame& frame) {
     write_can_frame(*can_, frame, "can0");
@@ -95,16 +97,29 @@ class Recording {
   SimulationSummary summary;
 
  private:
+  std::ostream* open(const char* name) {
+    check_own(name);
+    return &files_.emplace_back(dir_ + "/" + name).stream();
+  }
   std::ostream* leave_out(const char* name) {
+    check_own(name);
     left_out_.push_back(name);
     return nullptr;
   }
 
+  void check_own(const char* name) const {
+    if (!after_another_ && exists(dir_ + "/" + name))
+      throw BadInput(dir_ + "/" + name + ": no file of a simulation, for no truth.json is beside it; expected a " +
+                     "directory without it");
+  }
+
   std::string dir_;
   const Robot& robot_;
+  bool after_another_;
   std::list<AtomicFile> files_;
   std::vector<const char*> left_out_;
   std::ostream *truth_ = nullptr, *scans_ = nullptr, *can_ = nullptr, *poses_ = nullptr;
+  std::ostream *regions_ = nullptr, *scene_ = nullptr, *robot_text_ = nullptr;
   CarmenLine scan_;
 };
 
@@ -123,9 +138,7 @@ SimulationSummary simulate(const Scene& scene, const std::string& robot_file, co
     std::visit([&](const auto& sample) { recording.take(sample); }, *event);
   }
   recording.take(truth);
-  write_regions(*recording.open("regions.gt"), drawn_regions(truth));
-  *recording.open("scene.toml") << scene.source;
-  *recording.open("robot.toml") << robot_text;
+  recording.take_sources(scene.source, robot_text);
   recording.commit();
   return recording.summary;
 }
