@@ -33,6 +33,7 @@ struct Beside {
 struct Deviation {
   float away_m = 0.0f, variance_m2 = 0.0f;
   float common_m2 = 0.0f;  ///< as much of it as the cells may have in common: errors of a scan line along the border
+  float borders = 0.0f;    ///< that tell it
 
   /// It lies farther by three standard deviations, and by more than one of what does not average out: the ground beside
   /// the border is not the plane's.
@@ -40,8 +41,9 @@ struct Deviation {
   /// Variance of the side's height there. The cells' own if they tell it; else the plane may be wrong by up to half of
   /// what they lie off it beyond that, evenly.
   float height_variance_m2() const { return found() ? variance_m2 : (1.0f / 12) * beyond_m2(); }
-  /// Of that what makes the planes lie farther apart than the ground does.
-  float too_far_m2() const { return away_m < 0.0f ? beyond_m2() : 0.0f; }
+  /// Mean square, of as many borders as there are on this side, of what makes the planes lie farther apart than the
+  /// ground does.
+  float too_far_m2(float of_borders) const { return away_m < 0.0f ? borders / of_borders * beyond_m2() : 0.0f; }
 
  private:
   float beyond_m2() const {

@@ -50,6 +50,7 @@ struct CurbPiece {
   float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
+  float borders = 0.0f;                ///< how many
   float place_variance_m2 = 0.0f;      ///< of the borders, across the line
   float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
   bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
@@ -86,9 +87,9 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   const Border& b = borders.at(last);
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = stages.beyond(a);
-  const auto n = static_cast<float>(last - first + 1);
-  const float each = 1.0f / n;
   CurbPiece piece;
+  piece.borders = static_cast<float>(last - first + 1);
+  const float n = piece.borders, each = 1.0f / n;
   LineFit fit;
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
   for (int k = first; k <= last; ++k) {

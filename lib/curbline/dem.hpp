@@ -169,8 +169,9 @@ class Dem {
     viewpoints_.look_from({x_m, y_m});
     flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
   }
-  /// From where a cell was seen last: from `now`, with the laser in another place.
+  /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
+    if (!seen_from_several()) return now;
     const Viewpoints::Place& place = viewpoints_.at(touched_[static_cast<std::size_t>(slot)] / a_viewpoint);
     return {place.x_m - origin_x_m(), place.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
   }

@@ -205,6 +205,10 @@ class Ground {
     return plane.steeper_than_ramp() &&
            plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
   }
+  static Sight sight(const Dem<limits>& dem, const Viewpoint& view, std::size_t axis) {
+    return axis == 0 ? Sight{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}
+                     : Sight{view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m};
+  }
   template <typename LabelOf, typename EndRun>
   static void walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelOf>
@@ -252,24 +256,24 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& la
   }
 }
 
-/// What runs tell: strips in the shadow of a step, beside a high obstacle, between two planes.
+/// What runs tell: strips in the shadow of a step, as the laser saw them last, beside a high obstacle, between two
+/// planes.
 template <Limits limits>
 template <typename LabelOf>
 void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                                 LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
                                 Tallies& tallies) {
-  const std::array<Sight, 2> sights{
-      {{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}, {view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m}}};
-  for (std::size_t axis = 0; axis < sights.size(); ++axis) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
     walk(dem, axis, label_of, [&](const Run& before, const Run& run, const Run& next, int line) {
       if (run.label == none) return;
       Tally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
       const bool leads = before.label != none && next.label != none && run.between(before, next);
-      const Sight& aside = sights[1 - axis];
-      const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
       if (leads || drops[run.label]) {
-        const Sight across = sights[axis].across(planes[run.label], axis, aside_m);
+        const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
+        const Sight along = sight(dem, from, axis), aside = sight(dem, from, 1 - axis);
+        const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
+        const Sight across = along.across(planes[run.label], axis, aside_m);
         if (Fall fall; leads && run.in_shadow(before, next, across, fall)) tally.shadow[axis].add(cells, fall);
         if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, across, aside_m);
       }

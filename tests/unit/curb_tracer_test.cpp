@@ -327,12 +327,20 @@ TEST_CASE(
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
   CHECK(lying(0.004f).height_variance_m2() == Approx((1.6e-5 - 5e-6) / 12));
-  CHECK(lying(0.004f).too_far_m2() == 0.0f);  // the other side lies below
+  CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side lies below
   CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 5e-6) / 12));
-  CHECK(lying(-0.02f).too_far_m2() == Approx(4e-4 - 5e-6));
+  CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
   CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // by chance
-  CHECK(lying(-0.002f).too_far_m2() == 0.0f);
+  CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
+}
+
+TEST_CASE("curb tracer: what the cells beside one border say is no doubt about all the others") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  const Deviation one = deviation(Beside::of(-0.058f, -0.058f, 1.0f), plane, 1.0f, 0.0f, 0.0f);
+  CHECK(one.too_far_m2(10.0f) == Approx(0.1 * (0.058 * 0.058 - 5e-6)));
+  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).too_far_m2(10.0f) == 0.0f);
 }
 
 TEST_CASE("curb tracer: cells beside the border that lie off their planes make the height less certain") {

@@ -204,6 +204,27 @@ TEST_CASE(
   CHECK(borne_from(view, ramp) == 3);
 }
 
+//     ____ o ->          the robot has driven over the edge, and looks at it no more
+//    o ->   --__
+//              |___
+TEST_CASE("ground: readings in the shadow of a step stay what they are when the robot has driven over it") {
+  const auto borne_after = [](float robot_x_m) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = {0.0f, 1.2f, 1.0f, 2.4f, 2.4f};
+    stages.dem.look_from(0.0f, 1.2f);
+    fill(stages.dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; });
+    stages.dem.look_from(robot_x_m, 1.2f);
+    stages.view.x_m = robot_x_m;
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    std::set<int> labels;
+    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
+    return labels.size();
+  };
+  CHECK(borne_after(0.0f) == 2);
+  CHECK(borne_after(1.55f) == 2);
+  CHECK(borne_after(2.2f) == 2);
+}
+
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {
   CHECK(borne([](double x, double y) {
           const double d = x + y;
