@@ -121,6 +121,19 @@ TEST_CASE("program: lines of an LMS200 on a pty give the log's map") {
   CHECK(read_file(live_labels) == read_file(log_labels));
 }
 
+TEST_CASE("program: poses in the folder from which a live scanner is read are no poses of its scan lines") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  logs.directory().write("poses.tum", "1700000000.0 0 0 0 0 0 0 1\n");
+  const Playing scanner(Protocol::scip2, logs.path("scans.carmen"));
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(logs.folder());
+  const Outcome outcome =
+      curbline({"replay", "--scans", scanner.address(), "--can", "can.log", "--robot", "robot.toml"});
+  std::filesystem::current_path(before);
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err.empty());
+}
+
 TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {
   const Recording logs("street", "utm30lx");
   const std::string pid = logs.path("pid"), out = logs.path("summary.json");

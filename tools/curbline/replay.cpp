@@ -221,7 +221,7 @@ std::string Replay::remarks() const {
   if (c.points == 0 && c.outside > 0)
     say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
   const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
-  if (std::error_code none; logs_.poses.empty() && std::filesystem::exists(poses, none))
+  if (std::error_code none; logs_.poses.empty() && !is_scanner(logs_.scans) && std::filesystem::exists(poses, none))
     say(poses.string(), "not read, the robot was taken to stand; expected --poses");
   return text;
 }
