@@ -248,6 +248,15 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
   check_alike(last_curbs(disturbed.lines), undisturbed_end());
 }
 
+TEST_CASE("daemon: without the recording's CAN log beside the scan log the user is told of the guess", "[daemon]") {
+  const TemporaryDirectory alone;
+  const std::string scans = alone.write("lines.carmen", read_file(recording().path("scans.carmen")));
+  Service service({"--can", "vcan0", "--scans", scans, "--robot", recording().path("robot.toml")});
+  CHECK(times_said(service.said(), scans + ": no lines.candump or can.log beside it; expected one") == 1);
+  service.signal(SIGTERM);
+  CHECK(service.end().status == 0);
+}
+
 TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus on the host's clock", "[daemon]") {
   const std::string command = CURBLINE_SCANNER " scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
   std::FILE* const scanner = ::popen(command.c_str(), "r");

@@ -132,7 +132,8 @@ TEST_CASE("replay: frames with bits flipped are read as they came, at the time o
                         " came that it does not have\n");
 }
 
-TEST_CASE("replay: without the recording's CAN log a frame's time is that of its arrival", "[replay]") {
+TEST_CASE("replay: without the recording's CAN log a frame's time is that of its arrival, and the user is told",
+          "[replay]") {
   const Recording recording("straight_curb", "utm30lx", {"--duration", "4"});
   const TemporaryDirectory alone;
   const std::string start = "1700000000";  // of the scan lines; the bus begins with them
@@ -148,6 +149,10 @@ TEST_CASE("replay: without the recording's CAN log a frame's time is that of its
                                         out.write("played.log", log));
   INFO("standard error: " << live.err);
   REQUIRE(live.status == 0);
+  CHECK(live.err == drive.scans +
+                        ": no lines.candump or can.log beside it; expected one, to know when tilt frames were "
+                        "recorded: the first is taken for one of the first scan line's time, and curbs are wrong if it "
+                        "is not\n");
   // How well the curbs are met depends on how evenly a busy machine lets canplayer send.
   CHECK(nlohmann::json::parse(live.out).at("lines") > 140);
   CHECK(lines_of(read_file(out.path("labels.csv"))).size() > 500);

@@ -97,6 +97,13 @@ std::optional<std::string> recording_beside(const std::string& scans) {
   return std::nullopt;
 }
 
+std::string without_recording(const std::string& scans) {
+  const std::string name = std::filesystem::path(scans).filename().replace_extension(".candump").string();
+  return scans + ": no " + name +
+         " or can.log beside it; expected one, to know when tilt frames were recorded: the first is taken for one of " +
+         "the first scan line's time, and curbs are wrong if it is not";
+}
+
 LogClock LogClock::of_the_bus() {
   LogClock clock;
   clock.offset_ns_ = 0;

@@ -48,6 +48,9 @@ class RecordedTimes {
 /// The CAN log of the recording that a scan log belongs to: NAME.candump beside NAME.carmen, or can.log.
 std::optional<std::string> recording_beside(const std::string& scans);
 
+/// What a user should know where there is none: when the first frame came by the log's time is a guess.
+std::string without_recording(const std::string& scans);
+
 /// The log's time by the bus's: recorded times where there are some, else a constant offset from the first frame on,
 /// which came at the time of the first scan line.
 class LogClock {

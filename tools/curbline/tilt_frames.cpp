@@ -56,6 +56,8 @@ class LiveFrames final : public TiltFrames {
       clock_ = LogClock::of_the_bus();
     } else if (const auto log = recording_beside(*scan_log)) {
       clock_ = LogClock(RecordedTimes(*log, signal, sync_id));
+    } else {
+      without_recording_ = without_recording(*scan_log);
     }
   }
 
@@ -90,6 +92,7 @@ class LiveFrames final : public TiltFrames {
       remark(recorded->missed(), "tilt frames of " + recorded->path() + " did not come");
       remark(clock_.not_recorded(), "came that it does not have");
     }
+    if (!without_recording_.empty()) text += (text.empty() ? "" : "\n") + without_recording_;
     return text;
   }
 
@@ -111,6 +114,7 @@ class LiveFrames final : public TiltFrames {
   can::Signal signal_;
   socketcan::SocketCan bus_;
   LogClock clock_;
+  std::string without_recording_;  ///< a remark; empty where frames have recorded times, or the bus's
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::size_t taken_ = 0, held_ = 0;
   bool silent_ = false, ended_ = false;
