@@ -1,10 +1,10 @@
 // curblined: curbs while the robot runs. README.md beside it is its manual.
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <exception>
 #include <iostream>
 #include <memory>
 
+#include "curbline/run_program.hpp"
 #include "daemon.hpp"
 #include "robot/robot.hpp"
 
@@ -24,16 +24,10 @@ int main(int argc, char** argv) {
   app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too: tools/robots/curb_ahead.dbc")
       ->needs(can);
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
-  try {
-    app.parse(argc, argv);
+  app.callback([&] {
     const auto running = std::make_unique<daemon::Daemon>(tools::read_robot(robot), options);
     running->run();
-    std::cout << running->status() << std::flush;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+    std::cout << running->status();
+  });
+  return tools::run_program(app, argc, argv);
 }

@@ -16,6 +16,20 @@ TEST_CASE("program: --help and the help of each command exit with 0") {
   }
 }
 
+TEST_CASE("program: --version of every program tells its name and the version of them all") {
+  const std::string version = curbline({"--version"}).out.substr(std::string("curbline ").size());
+  CHECK(version.find_first_not_of("0123456789.\n") == std::string::npos);
+  const auto check = [&](const std::string& name, const Outcome& outcome) {
+    CHECK(outcome.status == 0);
+    CHECK(outcome.out == name + " " + version);
+    CHECK(outcome.err.empty());
+  };
+  check("curbline", curbline({"--version"}));
+  check("curblined", run(CURBLINED, {"--version"}));
+  check("curbline-scanner", run(CURBLINE_SCANNER, {"--version"}));
+  check("curbline-drive-log", run(CURBLINE_DRIVE_LOG, {"--version"}));
+}
+
 TEST_CASE("program: no command, an unknown command and an unknown option are wrong usage") {
   check_wrong_usage(curbline({}), "required");
   check_wrong_usage(curbline({"mop"}), "mop is no command; expected one of simulate");

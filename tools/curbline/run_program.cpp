@@ -11,9 +11,10 @@ namespace {
 
 /// CLI11 says of an unknown command only that one is required.
 void check_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+  const auto all = app.get_subcommands({});
+  if (all.empty() || argc < 2 || argv[1][0] == '-') return;
   std::string commands;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const CLI::App* command : all) {
     if (command->get_name() == argv[1]) return;
     commands += (commands.empty() ? "" : ", ") + command->get_name();
   }
@@ -25,6 +26,7 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 
 int run_program(CLI::App& app, int argc, char** argv) {
   remove_uncommitted_at_signals();
+  app.set_version_flag("--version", app.get_name() + " " CURBLINE_VERSION, "Print the version and exit");
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

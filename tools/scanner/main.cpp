@@ -3,12 +3,11 @@
 #include <atomic>
 #include <charconv>
 #include <csignal>
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <optional>
 
-#include "formats/bad_input.hpp"
+#include "curbline/run_program.hpp"
 #include "scanner/server.hpp"
 
 namespace curbline::tools {
@@ -79,14 +78,6 @@ int main(int argc, char** argv) {
   app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)");
   app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    run(*o);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  app.callback([o] { run(*o); });
+  return run_program(app, argc, argv);
 }
