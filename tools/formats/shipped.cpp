@@ -5,10 +5,11 @@ namespace curbline::tools {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> shipped_folders(const std::string& kind) {
-  std::vector<fs::path> folders{fs::path(CURBLINE_TOOLS_FOLDER) / kind};
+  std::vector<fs::path> folders;
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
   if (!failed) folders.push_back(program.parent_path().parent_path() / "share/curbline" / kind);
+  folders.push_back(fs::path(CURBLINE_TOOLS_FOLDER) / kind);
   return folders;
 }
 

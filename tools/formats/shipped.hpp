@@ -7,8 +7,8 @@
 
 namespace curbline::tools {
 
-/// Where files of a kind ("scenes", "robots") may lie: in the source tree, and where they were installed beside the
-/// program.
+/// Where files of a kind ("scenes", "robots") may lie: where they were installed beside the program, and in the source
+/// tree.
 std::vector<std::filesystem::path> shipped_folders(const std::string& kind);
 
 /// The path of KIND/NAME.toml in the first of these folders that has it; empty if none has.
