@@ -10,6 +10,7 @@
 
 #include "can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/decimals.hpp"
 #include "heap_trap.hpp"
 
 namespace curbline::daemon {
@@ -99,6 +100,8 @@ void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
   if (status != socketcan::Status::ok) {
     throw BadInput(options.can + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
   }
+  wanted_tilt_ = "id " + tools::hexadecimal(robot.tilt_signal.id) + " on " + options.can +
+                 (log_ ? ", with which the log of scan lines begins" : "");
 }
 
 void Daemon::run() {
@@ -275,6 +278,7 @@ Report Daemon::make_report() {
   if (!tilt_settings_.fixed) {
     tilt_counters_ = tilt_decoder_.counters();
     s.tilt = &tilt_watch_;
+    s.wanted_tilt = wanted_tilt_;
     s.tilt_frames = &tilt_counters_;
     s.tilt_latency = &pipeline_->tilt_latency();
     s.latency = &latency_;

@@ -84,6 +84,7 @@ class Daemon {
   can::TiltDecoder tilt_decoder_;
   can::TiltDecoderCounters tilt_counters_{};
   TiltWatch tilt_watch_;
+  std::string wanted_tilt_;  ///< the first frame, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::int64_t newest_tilt_ns_ = INT64_MIN;                 ///< as the pipeline has it

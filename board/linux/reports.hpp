@@ -23,6 +23,7 @@ struct Report {
   std::int64_t time_ns = 0;
   double uptime_s = 0, scan_line_s = 0;
   const TiltWatch* tilt = nullptr;
+  std::string_view wanted_tilt{};  ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;
   const socketcan::SocketCan* bus = nullptr;

@@ -5,12 +5,12 @@
 namespace curbline::daemon {
 namespace {
 
-void tell_tilt(TiltEvent event) {
+void tell_tilt(TiltEvent event, std::string_view wanted) {
   switch (event) {
     case TiltEvent::none:
       return;
     case TiltEvent::missing:
-      return say("no tilt frame since the start");
+      return say("no tilt frame since the start; expected ", wanted);
     case TiltEvent::first:
       return say("the tilt servo reports");
     case TiltEvent::lost:
@@ -24,7 +24,7 @@ void tell_tilt(TiltEvent event) {
 
 void Troubles::tell(const Report& status, TiltEvent tilt, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
-  tell_tilt(tilt);
+  tell_tilt(tilt, status.wanted_tilt);
   if (status.scanner != nullptr) tell_scanner(*status.scanner);
   tell_counters(status, now_ns);
 }

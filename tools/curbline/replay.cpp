@@ -1,14 +1,13 @@
 #include "curbline/replay.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
 #include "formats/bad_input.hpp"
+#include "formats/decimals.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -20,11 +19,6 @@ Share inside_of(const Grid& grid, const MapCurb& c) {
   Bounds box = grid.bounds();
   box = {box.x0 + grid.dx_m, box.y0 + grid.dy_m, box.x1 - grid.dx_m, box.y1 - grid.dy_m};
   return share_in(box, {c.x0_m, c.y0_m}, {c.x1_m, c.y1_m});
-}
-
-std::string hexadecimal(std::uint32_t id) {
-  std::array<char, 8> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id, 16).ptr};
 }
 
 /// A time in the logs that go with live scan lines; nothing if there are none, or CAN is live too.
@@ -51,7 +45,7 @@ std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
 std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
   const std::string frames = std::to_string(counters.frames) + " frames";
   if (counters.without_sync > 0) {
-    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id 0x" +
+    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id " +
            hexadecimal(*robot.tilt_sync_id) + " before each, as the robot's description has it";
   }
   if (counters.malformed > 0) {
@@ -59,7 +53,7 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
            " have the tilt signal's id and none holds an angle; expected " +
            std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
   }
-  return "none of " + frames + " is the tilt signal; expected id 0x" + hexadecimal(robot.tilt_signal.id) +
+  return "none of " + frames + " is the tilt signal; expected id " + hexadecimal(robot.tilt_signal.id) +
          " as the robot's description has it";
 }
 

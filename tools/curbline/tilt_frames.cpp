@@ -1,12 +1,12 @@
 #include "curbline/tilt_frames.hpp"
 
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <span>
 
 #include "curbline/recorded_times.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/decimals.hpp"
 #include "socketcan/socketcan.hpp"
 
 namespace curbline::tools {
@@ -72,12 +72,10 @@ class LiveFrames final : public TiltFrames {
   bool ended() const override { return ended_; }
 
   void fail_silent() const override {
-    std::array<char, 8> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), signal_.id, 16).ptr;
     const bool down = bus_.link() != socketcan::LinkState::up;
     throw BadInput(name_ + (down ? ": the interface is down or gone, and" : ":") + " no tilt frame for " +
-                   std::to_string((clock_.offset_ns() ? silence_ms : first_silence_ms) / 1000) + " s; expected id 0x" +
-                   std::string(digits.data(), end) + " as the robot's description has it");
+                   std::to_string((clock_.offset_ns() ? silence_ms : first_silence_ms) / 1000) + " s; expected id " +
+                   hexadecimal(signal_.id) + " as the robot's description has it");
   }
 
   std::string remarks() const override {

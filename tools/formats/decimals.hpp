@@ -1,4 +1,4 @@
-// Numbers as text with fixed decimals, without locale and without streams' state. For the writers.
+// Numbers as text, without locale and without streams' state. For the writers.
 #pragma once
 
 #include <array>
@@ -27,6 +27,12 @@ template <typename Number>
 std::string shortest(Number value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// "0x181".
+inline std::string hexadecimal(std::uint32_t value) {
+  std::array<char, 8> text{};
+  return "0x" + std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), value, 16).ptr);
 }
 
 /// Nanoseconds >= 0 as seconds, 6 or 9 decimals; with 6 the rest is cut, so that times stay in order.

@@ -1,8 +1,6 @@
 #include "robot/signal_dbc.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -14,11 +12,6 @@ namespace curbline::tools {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-std::string hexadecimal(std::uint32_t id) {
-  std::array<char, 8> text{};
-  return "0x" + std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), id, 16).ptr);
-}
 
 DbcSignal dbc_signal(const can::Signal& signal, const std::string& name, const std::string& unit) {
   DbcSignal out;
