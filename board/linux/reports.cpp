@@ -71,7 +71,9 @@ void put_lines(JsonLine& json, const Report& s) {
   put(json, "covered", s.lines.covered);
   put(json, "overdue", s.lines.overdue);
   put(json, "crowded", s.lines.crowded);
-  put(json, "dropped", s.lines.dropped + s.lines.too_long + s.lines.bad_time);
+  put(json, "dropped", s.lines.dropped);
+  put(json, "bad_time", s.lines.bad_time);
+  put(json, "too_long", s.lines.too_long);
   json.close('}');
 }
 

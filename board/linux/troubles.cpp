@@ -59,7 +59,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
     std::uint64_t count;
     std::string_view what;
   };
-  const std::array<Counted, 17> all{{
+  const std::array<Counted, 18> all{{
       {can.times_bus_off, "the CAN controller has left the bus (bus-off)"},
       {can.restarts, "the CAN controller is back on the bus"},
       {can.bus_errors, "errors on the CAN bus"},
@@ -72,9 +72,9 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
       {s.tilt_latency == nullptr ? 0 : s.tilt_latency->steps(), "the tilt frames are late by another time"},
       {s.not_recorded, "tilt frames that the recording does not have"},
-      {std::uint64_t{s.lines.dropped} + s.lines.too_long + s.lines.bad_time + s.lines.crowded,
-       "scan lines came faster than they are taken"},
-      {scanner.other_beams, "scan lines whose beams are not those of the robot's laser, dropped"},
+      {std::uint64_t{s.lines.dropped} + s.lines.crowded, "scan lines came faster than they are taken"},
+      {s.lines.bad_time, "scan lines with a damaged stamp, dropped"},
+      {scanner.other_beams + s.lines.too_long, "scan lines whose beams are not those of the robot's laser, dropped"},
       {scanner.damaged, "damaged telegrams of the scanner"},
       {s.server.too_slow, "a client was too slow, and dropped"},
       {s.server.refused, "more clients than there is room for"},

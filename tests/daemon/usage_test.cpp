@@ -1,4 +1,5 @@
 // What curblined refuses: bad input with one line and status 1, wrong usage with status 2.
+#include "formats/decimals.hpp"
 #include "program.hpp"
 
 namespace curbline::tools::testing {
@@ -6,11 +7,15 @@ namespace {
 
 const std::string nodding = shipped_robot("utm30lx");
 
-/// A scan line of the robot's laser.
-std::string scan_log(const TemporaryDirectory& directory) {
-  std::string line = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081";
-  for (int i = 0; i < 1081; ++i) line += " 5.000";
-  return directory.write("scans.carmen", line + " 0 1700000000.000000 host 1700000000.000000\n");
+/// Scan lines of the robot's laser, 25 ms apart.
+std::string scan_log(const TemporaryDirectory& directory, int lines = 1, std::int64_t second = 1'700'000'000) {
+  std::string ranges = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081", log;
+  for (int i = 0; i < 1081; ++i) ranges += " 5.000";
+  for (int i = 0; i < lines; ++i) {
+    const std::string time = seconds(second * 1'000'000'000 + i * 25'000'000, 6);
+    log += ranges + " 0 " + time + " host " + time + "\n";
+  }
+  return directory.write("scans.carmen", log);
 }
 
 TEST_CASE("curblined: what it cannot run with is refused with one line") {
@@ -46,6 +51,20 @@ TEST_CASE("curblined: a laser at a fixed tilt needs no CAN, and the end of its l
   CHECK(status.at("pipeline").at("lines") == 1);
   CHECK(status.at("heap_calls").at("since_start") == 0);
   CHECK_FALSE(status.contains("tilt"));
+}
+
+TEST_CASE("curblined: scan lines with a damaged stamp are told as what they are, not as lines that came too fast") {
+  const TemporaryDirectory directory;
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
+  const Outcome outcome = curbline({"--robot", fixed, "--scans", scan_log(directory, 8, 5'000'000'000), "--curbs",
+                                    "unix:" + directory.path("curbs")});
+  REQUIRE(outcome.status == 0);
+  INFO("standard error: " << outcome.err);
+  CHECK(outcome.err.find("curblined: scan lines with a damaged stamp, dropped (") != std::string::npos);
+  CHECK(outcome.err.find("faster") == std::string::npos);
+  const nlohmann::json scans = nlohmann::json::parse(outcome.out).at("status").at("scans");
+  CHECK(scans.at("bad_time") == 8);
+  CHECK(scans.at("dropped") == 0);
 }
 
 }  // namespace
