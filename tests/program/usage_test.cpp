@@ -145,6 +145,19 @@ TEST_CASE("program: an option that is given twice is wrong usage") {
     check_wrong_usage(curbline(Words{"map", "a.xyz"} + twice), twice.front());
 }
 
+TEST_CASE("program: a cloud behind a window's numbers is the cloud, and where it cannot be the user is told where to") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  for (const Words& window : {Words{"--origin", "0", "0", "--size", "4", "4"},
+                              {"--size", "4", "4", "--origin", "0", "0"},
+                              {"--cell", "0.1", "0.2"}})
+    CHECK(curbline(Words{"map"} + window + Words{cloud, "--json"}).status == 0);
+  CHECK(curbline({"map", "--json", "--cell", "0.1", cloud}).status == 0);
+  check_wrong_usage(curbline({"map", "--cell", "0.1", cloud, "--json"}),
+                    "--cell: " + cloud + "; expected metres in [0.001, 10]; a cloud comes before --cell, or last\n");
+  check_wrong_usage(curbline({"map", "--origin", "0", "1.xyz", "--size", "4", "4"}), "--origin: 1.xyz; expected");
+}
+
 TEST_CASE("program: a number that makes no sense is wrong usage and named") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");

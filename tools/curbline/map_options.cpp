@@ -59,8 +59,9 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, Choice& ch
 /// Numbers in [low, high].
 CLI::Validator within(double low, double high, const std::string& expected) {
   const auto check = [=](const std::string& text) {
-    const double value = std::strtod(text.c_str(), nullptr);
-    return value >= low && value <= high ? "" : text + "; expected " + expected;
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return value >= low && value <= high && *end == '\0' ? "" : text + "; expected " + expected;
   };
   return CLI::Validator(check, "");
 }
@@ -88,15 +89,21 @@ void add_method_option(CLI::App& command, MapMethod& method) {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   const CLI::Validator place = within(-1e9, 1e9, "metres in [-1e9, 1e9]");
+  // Extra arguments, which a list of numbers has unless told not to, would be what follows: the cloud.
   auto* origin = command.add_option("--origin", options.origin, "lowest corner X Y of a fixed window, metres")
                      ->expected(2)
+                     ->allow_extra_args(false)
                      ->check(place);
-  auto* size = command.add_option("--size", options.size, "length along x and along y, metres")->expected(2);
+  auto* size = command.add_option("--size", options.size, "length along x and along y, metres")
+                   ->expected(2)
+                   ->allow_extra_args(false);
   origin->needs(size);
   size->needs(origin);
   command.add_option("--cell", options.cell, "side of a cell, or both sides, metres")
       ->expected(1, 2)
+      ->allow_extra_args(false)
       ->check(once())
+      ->check(within(0.001, 10, "metres in [0.001, 10]; a cloud comes before --cell, or last"))
       ->inject_separator();
   command.add_option("--max-height", options.max_height_m, "points above are ignored, metres")->check(place);
   add_method_option(command, options.method);
@@ -135,10 +142,6 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
   if (!options.cell.empty()) {
     window.cell_x_m = static_cast<float>(options.cell.front());
     window.cell_y_m = static_cast<float>(options.cell.back());
-  }
-  for (const float cell_m : {window.cell_x_m, window.cell_y_m}) {
-    if (!(cell_m >= 0.001f && cell_m <= 10.0f))
-      throw CLI::ValidationError("--cell", shortest(cell_m) + "; expected metres in [0.001, 10]");
   }
   if (options.max_height_m) window.max_height_m = static_cast<float>(*options.max_height_m);
   if (!options.fixed()) return;
