@@ -10,18 +10,21 @@
 
 int main(int argc, char** argv) {
   using namespace curbline;
-  CLI::App app("Finds curbs while the robot runs: tilt angles from a CAN interface and scan lines in, curbs out.",
-               "curblined");
+  CLI::App app(
+      "Finds curbs while the robot runs: tilt angles from a CAN interface and scan lines in, curbs out. Runs until "
+      "SIGINT, SIGTERM or the end of a log, then prints its last status.",
+      "curblined");
   std::string robot;
   daemon::Options options;
-  app.add_option("--robot", robot, "robot description")->required();
-  auto* can = app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0");
+  app.add_option("--robot", robot, "robot description (TOML) of a robot that stands")->required();
+  auto* can =
+      app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0; none for a fixed tilt");
   app.add_option("--scans", options.scans,
                  "a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE, or a CARMEN log, played at its "
                  "own times")
       ->required();
   app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")->required();
-  app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too: tools/robots/curb_ahead.dbc")
+  app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too, those of `curbline dbc --curbs`")
       ->needs(can);
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
   app.callback([&] {

@@ -1,5 +1,6 @@
 // Wrong usage: exit status 2.
 #include "program.hpp"
+#include "simulator/scene.hpp"
 
 namespace curbline::tools::testing {
 namespace {
@@ -14,6 +15,24 @@ TEST_CASE("program: --help and the help of each command exit with 0") {
     CHECK(of_command.status == 0);
     CHECK(of_command.out.find("--") != std::string::npos);
   }
+}
+
+TEST_CASE("program: the help of every program says what each option is, and what its exit statuses are") {
+  const auto check = [](const char* program, const Words& command) {
+    const std::string help = run(program, command + Words{"--help"}).out;
+    INFO(help);
+    // The line of an option of which nothing is said ends in blanks.
+    for (const std::string& line : lines_of(help)) CHECK_FALSE(line.ends_with(' '));
+    if (command.empty()) CHECK(help.find("Exit status: 0 done; 1 the input is bad") != std::string::npos);
+  };
+  for (const char* program : {CURBLINE_PROGRAM, CURBLINED, CURBLINE_SCANNER, CURBLINE_DRIVE_LOG}) check(program, {});
+  for (const char* command : {"simulate", "replay", "map", "evaluate", "dbc"}) check(CURBLINE_PROGRAM, {command});
+  for (const char* command : {"write", "curbs"}) check(CURBLINE_DRIVE_LOG, {command});
+}
+
+TEST_CASE("program: the help of simulate names the scenes that ship") {
+  const std::string help = curbline({"simulate", "--help"}).out;
+  for (const std::string& name : shipped_scenes()) CHECK(help.find(" " + name) != std::string::npos);
 }
 
 TEST_CASE("program: --version of every program tells its name and the version of them all") {

@@ -30,13 +30,13 @@ void run(const Options& o) {
 }  // namespace
 
 void add_dbc(CLI::App& app) {
-  auto* command = app.add_subcommand("dbc", "A tilt signal of a DBC file as TOML, or a robot's as DBC");
+  auto* command = app.add_subcommand("dbc", "A tilt signal of a DBC file as TOML, or a robot's as DBC, on stdout");
   auto o = std::make_shared<Options>();
   auto* file = command->add_option("FILE", o->file, "DBC file: prints [tilt.signal] for a robot description")
                    ->check(file_name());
   auto* message = command->add_option("MESSAGE", o->message, "of the file");
   auto* signal = command->add_option("SIGNAL", o->signal, "of the message: the tilt angle");
-  auto* robot = command->add_option("--robot", o->robot, "prints the DBC of this robot description's tilt signal")
+  auto* robot = command->add_option("--robot", o->robot, "robot description (TOML): prints the DBC of its tilt signal")
                     ->check(file_name());
   auto* curbs = command->add_flag("--curbs", o->curbs, "prints the DBC of the frames that say what curb is ahead");
   for (auto* part : {file, message, signal}) part->excludes(robot)->excludes(curbs);

@@ -13,20 +13,26 @@ void add_evaluate(CLI::App& app) {
     std::string paper;
     bool json = false;
   };
-  auto* command = app.add_subcommand("evaluate", "Scores against truth");
+  auto* command = app.add_subcommand("evaluate", "Scores against truth, as a table on stdout");
   auto o = std::make_shared<Options>();
-  auto* dir = command
-                  ->add_option("dir", o->truth.dir,
-                               "directory that simulate wrote; results of replay in it are scored, or made")
-                  ->check(file_name());
+  auto* dir =
+      command
+          ->add_option(
+              "dir", o->truth.dir,
+              "directory that simulate wrote; labels.csv and curbs.csv in it are scored, or, without both or with "
+              "--method, what its logs give")
+          ->check(file_name());
   auto* paper =
-      command->add_option("--paper", o->paper, "folder of clouds with regions: the paper's tables")->check(file_name());
+      command
+          ->add_option("--paper", o->paper, "folder of clouds with regions, NAME.xyz and NAME.gt: the paper's tables")
+          ->check(file_name());
   dir->excludes(paper);
   add_method_option(*command, o->method);
-  auto* picture = command->add_option("--picture", o->truth.picture, "PNG or SVG of the map with truth and robot")
-                      ->check(file_name());
+  auto* picture =
+      command->add_option("--picture", o->truth.picture, "file to write: PNG or SVG of the map with truth and robot")
+          ->check(file_name());
   paper->excludes(command->get_option("--method"))->excludes(picture);
-  command->add_flag("--json", o->json, "figures as JSON on stdout instead of a table");
+  command->add_flag("--json", o->json, "figures as JSON instead of a table");
   command->callback([o, command] {
     if (command->count("--method") > 0) o->truth.method = o->method;
     if (o->truth.dir.empty() && o->paper.empty())

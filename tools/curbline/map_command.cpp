@@ -38,13 +38,13 @@ void check_seen(const std::string& file, std::span<const Point3> cloud, const Bo
 }  // namespace
 
 void add_map(CLI::App& app) {
-  auto* command = app.add_subcommand("map", "One cloud at once");
+  auto* command = app.add_subcommand("map", "One cloud to labels and curbs, at once");
   struct Options {
     std::string cloud;
     MapOptions map;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("cloud", o->cloud, "point cloud: .xyz .csv .pcd .bin")->check(file_name())->required();
+  command->add_option("cloud", o->cloud, "point cloud, metres: .xyz .csv .pcd .bin")->check(file_name())->required();
   add_map_options(*command, o->map);
   command->callback([o] {
     check_outputs(outputs_of(o->map), {{"the cloud", o->cloud}});

@@ -158,20 +158,26 @@ void run(const Options& o) {
 }  // namespace
 
 void add_replay(CLI::App& app) {
-  auto* command = app.add_subcommand("replay", "Logs line by line, as on the robot");
+  auto* command =
+      app.add_subcommand("replay", "Scan lines, tilt frames and poses to curbs, line by line, as on the robot");
   auto o = std::make_shared<Options>();
   command
       ->add_option("--scans", o->logs.scans,
                    "scan lines: a CARMEN log, or a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE")
       ->check(file_name())
       ->required();
-  command->add_option("--can", o->logs.can, "tilt frames: a candump log, or can:IFACE, a live interface")
+  command
+      ->add_option("--can", o->logs.can,
+                   "tilt frames: a candump log, or can:IFACE, a live interface; none for a fixed tilt")
       ->check(file_name());
-  command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory")->check(file_name());
-  command->add_option("--robot", o->robot, "robot description")->check(file_name())->required();
-  command->add_option("--speed", o->speed,
-                      "1 keeps the log's own time, max does not; default: max for logs, 1 for can:IFACE");
-  command->add_option("--line-costs", o->line_costs, "CSV of each line's time and work")->check(file_name());
+  command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory; none if the robot stands")
+      ->check(file_name());
+  command->add_option("--robot", o->robot, "robot description (TOML)")->check(file_name())->required();
+  command->add_option(
+      "--speed", o->speed,
+      "times as fast as the logs' own time, or max, as fast as can be: the default, but 1 with can:IFACE");
+  command->add_option("--line-costs", o->line_costs, "file to write: CSV, the time and work of each scan line")
+      ->check(file_name());
   add_map_options(*command, o->map);
   command->footer(
       "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded "

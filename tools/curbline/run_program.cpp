@@ -27,6 +27,8 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 int run_program(CLI::App& app, int argc, char** argv) {
   remove_uncommitted_at_signals();
   app.set_version_flag("--version", app.get_name() + " " CURBLINE_VERSION, "Print the version and exit");
+  app.footer(
+      "Exit status: 0 done; 1 the input is bad or an output cannot be written, one line on stderr; 2 wrong usage.");
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

@@ -34,18 +34,30 @@ void add_simulate(CLI::App& app) {
   };
   auto* command = app.add_subcommand("simulate", "A scene to scan lines, CAN log, poses and truth");
   auto o = std::make_shared<Options>();
-  command->add_option("--scene", o->scene, "name of a scene that ships, a scene file, random:SEED or random-drive:SEED")
+  command
+      ->add_option("--scene", o->scene,
+                   "a scene that ships, by its name below, a scene file (TOML), or streets drawn by lot: random:SEED, "
+                   "random-drive:SEED")
       ->required();
-  command->add_option("--robot", o->robot, "robot description")->check(file_name())->required();
+  command->add_option("--robot", o->robot, "robot description (TOML)")->check(file_name())->required();
   command
       ->add_option(
           "--out", o->out,
-          "directory to write to; the files of an earlier run in it, those that replay left there too, are replaced")
+          "directory to write scans.carmen, can.log, poses.tum (of a robot that drives), truth.json, regions.gt, "
+          "robot.toml and scene.toml to; the files of an earlier run in it, those that replay left there too, are "
+          "replaced")
       ->check(file_name())
       ->required();
-  command->add_option("--seed", o->simulation.seed, "of the noise")->check(whole_number())->capture_default_str();
+  command->add_option("--seed", o->simulation.seed, "of the noise, a whole number")
+      ->check(whole_number())
+      ->capture_default_str();
   command->add_option("--duration", o->simulation.duration_s,
                       "seconds; without: one nod, or the whole way of a robot that drives");
+  command->footer([] {
+    std::string names;
+    for (const std::string& name : shipped_scenes()) names += " " + name;
+    return "Scenes that ship:" + names;
+  });
   command->callback([o] {
     const double duration_s = o->simulation.duration_s.value_or(1.0);
     if (!(duration_s > 0 && duration_s <= longest_s)) {

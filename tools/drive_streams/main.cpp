@@ -12,20 +12,21 @@ int main(int argc, char** argv) {
   CLI::App app("Makes the stream that boards are fed, and reads their results.", "curbline-drive-log");
   app.require_subcommand(1);
   DriveFiles files;
-  auto* write = app.add_subcommand("write", "logs to a stream");
-  write->add_option("--robot", files.robot, "robot description")->check(file_name())->required();
+  auto* write = app.add_subcommand("write", "Logs to a stream");
+  write->add_option("--robot", files.robot, "robot description (TOML)")->check(file_name())->required();
   write->add_option("--scans", files.scans, "scan lines, CARMEN log")->check(file_name())->required();
-  write->add_option("--can", files.can, "tilt frames, candump log")->check(file_name());
-  write->add_option("--poses", files.poses, "robot poses, TUM trajectory")->check(file_name());
-  write->add_option("--out", files.out, "the stream")->check(file_name())->required();
+  write->add_option("--can", files.can, "tilt frames, candump log; none for a fixed tilt")->check(file_name());
+  write->add_option("--poses", files.poses, "robot poses, TUM trajectory; none if the robot stands")
+      ->check(file_name());
+  write->add_option("--out", files.out, "file to write: the stream")->check(file_name())->required();
   write->callback([&] {
     check_outputs({{"--out", files.out}},
                   {{"--robot", files.robot}, {"--scans", files.scans}, {"--can", files.can}, {"--poses", files.poses}});
     write_drive(files);
   });
   std::string results;
-  auto* curbs = app.add_subcommand("curbs", "results to the curbs after the last scan line, as CSV");
-  curbs->add_option("RESULTS", results)->check(file_name())->required();
+  auto* curbs = app.add_subcommand("curbs", "Results to the curbs after the last scan line, as CSV on stdout");
+  curbs->add_option("RESULTS", results, "file of what a board gave back")->check(file_name())->required();
   curbs->callback([&] { write_curbs(std::cout, read_last_curbs(results)); });
   return run_program(app, argc, argv);
 }

@@ -72,9 +72,10 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"scip2", "cola", "lms200"}));
   app.add_option("--scans", o->scans, "scan lines, CARMEN log");
-  app.add_option("--scene", o->scene,
-                 "name of a scene that ships, or a scene file: its lines are those that `curbline simulate` writes");
-  app.add_option("--robot", o->robot, "robot description, for --scene");
+  app.add_option(
+      "--scene", o->scene,
+      "a scene that ships, by its name, or a scene file (TOML): its lines are those that `curbline simulate` writes");
+  app.add_option("--robot", o->robot, "robot description (TOML), for --scene");
   app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)");
   app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
       ->capture_default_str();
