@@ -27,8 +27,7 @@ std::uint8_t curbs_told = 0;
 
 void start() {
   const curbline::Settings settings = robot_settings();
-  const curbline::Status status = pipeline.init(settings);
-  if (status != curbline::Status::ok) port.stop(curbline::to_string(status));
+  if (pipeline.init(settings) != curbline::Status::ok) port.stop(curbline::bad_setting(settings, limits));
   if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
   waiting.init(settings.laser, settings.tilt, 2 * settings.tilt.max_gap_s);
   watch.init(settings.tilt.max_gap_s);

@@ -2,7 +2,7 @@
 
 namespace curbline::daemon {
 
-ScanLog::ScanLog(const std::string& path, const LaserSettings& laser) : beam_interval_s_(laser.beam_interval_s) {
+ScanLog::ScanLog(const std::string& path, const LaserSettings& laser) : laser_(laser) {
   tools::CarmenReader reader(path);
   while (auto line = reader.next()) {
     check_geometry(*line, laser, reader.path(), reader.line());
@@ -11,8 +11,7 @@ ScanLog::ScanLog(const std::string& path, const LaserSettings& laser) : beam_int
 }
 
 std::int64_t ScanLog::due_ns() const {
-  const auto beams = static_cast<float>(lines_[next_].ranges_m.size());
-  return front_ns() + static_cast<std::int64_t>(beam_interval_s_ * beams * 1e9f);
+  return front_ns() + laser_.duration_ns(lines_[next_].ranges_m.size());
 }
 
 ScanLine ScanLog::take() {

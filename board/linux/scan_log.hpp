@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "curbline/scan_line.hpp"
+#include "curbline/settings.hpp"
 #include "formats/carmen.hpp"
 
 namespace curbline::daemon {
@@ -29,7 +30,7 @@ class ScanLog {
  private:
   std::vector<tools::CarmenLine> lines_;
   std::size_t next_ = 0;
-  float beam_interval_s_;
+  LaserSettings laser_;
 };
 
 }  // namespace curbline::daemon

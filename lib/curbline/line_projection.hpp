@@ -56,16 +56,12 @@ class LineProjection {
  public:
   void init(const Settings& settings);
 
-  /// Time from the first beam to the last, and the time of beam i after the first.
-  std::int64_t duration_ns(std::size_t beams) const { return beams == 0 ? 0 : beam_ns(beams - 1); }
-
   /// Adds a point to `out` for each beam that returned. `tilt` is not read with a fixed tilt. The line has at most
   /// limits.beams.
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
                ProjectedLine<limits>& out) const;
 
  private:
-  std::int64_t beam_ns(std::size_t beam) const { return static_cast<std::int64_t>(beam) * beam_interval_ns_; }
   bool returned(float range_m) const {
     return range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
@@ -94,7 +90,7 @@ void LineProjection<limits>::init(const Settings& settings) {
   laser_ = settings.laser;
   tilt_ = settings.tilt;
   pose_ = settings.pose;
-  beam_interval_ns_ = static_cast<std::int64_t>(laser_.beam_interval_s * 1e9f + 0.5f);
+  beam_interval_ns_ = laser_.beam_interval_ns();
   T_base_tilt_ = make_transform(tilt_.T_base_tilt);
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
   laser_x_ = T_tilt_laser_.rotation.col(0);
@@ -124,7 +120,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
       ++counters.no_returns;
       continue;
     }
-    const TiltAngle angle = tilt_at(line.time_ns + beam_ns(i), tilt);
+    const TiltAngle angle = tilt_at(line.time_ns + static_cast<std::int64_t>(i) * beam_interval_ns_, tilt);
     if (angle.source == TiltAngle::Source::none) {
       ++counters.beams_without_tilt;
       continue;

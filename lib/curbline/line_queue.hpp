@@ -63,7 +63,8 @@ class LineQueue {
 
   ScanLine take_oldest();
 
-  float beam_interval_s_ = 0.0f, latency_s_ = 0.0f;
+  LaserSettings laser_{};
+  float latency_s_ = 0.0f;
   std::int64_t max_wait_ns_ = 0;
   bool fixed_ = false;
   int oldest_ = 0, size_ = 0;
@@ -74,7 +75,7 @@ class LineQueue {
 
 template <Limits limits, int capacity>
 void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
-  beam_interval_s_ = laser.beam_interval_s;
+  laser_ = laser;
   latency_s_ = tilt.latency_s;
   max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
   fixed_ = tilt.fixed;
@@ -99,9 +100,7 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
     ++counters_.dropped;
   }
   const auto slot = static_cast<std::size_t>((oldest_ + size_++) % capacity);
-  const float duration_s = beams > 1 ? beam_interval_s_ * static_cast<float>(beams - 1) : 0.0f;
-  const std::int64_t last_beam_ns = line.time_ns + static_cast<std::int64_t>(duration_s * 1e9f);
-  entries_[slot] = {line.time_ns, last_beam_ns, now_ns, beams};
+  entries_[slot] = {line.time_ns, line.time_ns + laser_.duration_ns(beams), now_ns, beams};
   std::copy(line.ranges_m.begin(), line.ranges_m.end(), ranges_m_[slot].begin());
   return true;
 }

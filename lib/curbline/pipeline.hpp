@@ -48,9 +48,10 @@ class Pipeline {
   static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
                 "every store has room for one at least");
 
-  /// Checks the settings and empties everything. Any other Status than ok names what was refused; the pipeline then
-  /// takes nothing and knows of no curb, label or ground to drive on. May be called again to start afresh, with the
-  /// interrupt that calls add_tilt() masked, and not beside that of another thread.
+  /// Checks the settings and empties everything. Any other Status than ok tells in which part one was refused, and
+  /// bad_setting(settings, limits) which; the pipeline then takes nothing and knows of no curb, label or ground to
+  /// drive on. May be called again to start afresh, with the interrupt that calls add_tilt() masked, and not beside
+  /// that of another thread.
   Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
@@ -169,9 +170,7 @@ template <Limits limits>
 Status Pipeline<limits>::init(const Settings& settings) {
   ready_ = false;
   const WindowSettings& window = settings.window;
-  if (window.rows > limits.rows || window.cols > limits.cols) return Status::bad_window;
-  if (settings.laser.beams > limits.beams) return Status::bad_laser;
-  if (const Status status = check(settings); status != Status::ok) return status;
+  if (const Status status = check(settings, limits); status != Status::ok) return status;
   settings_ = settings;
   PlanePrior& prior = settings_.planes.prior;
   const float by_range_m2 = 0.5f * square(settings.laser.range_sd_m);  // of the height, where rays fall at 45 degrees
@@ -279,7 +278,7 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, Ti
   if (!ready_) return Status::not_initialised;
   if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
   if (!line_times_.admits(line.time_ns)) return Status::line_out_of_order;
-  const std::int64_t last_beam_ns = line.time_ns + line_projection_.duration_ns(line.ranges_m.size());
+  const std::int64_t last_beam_ns = line.time_ns + settings_.laser.duration_ns(line.ranges_m.size());
   Pose first, last;
   if (!settings_.pose.still && !(pose_track_.at(line.time_ns, first) && pose_track_.at(last_beam_ns, last)))
     return Status::no_pose;

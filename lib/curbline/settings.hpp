@@ -2,7 +2,11 @@
 // once, at init; a bad setting is refused with the Status that names it.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "curbline/cell.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/status.hpp"
 
@@ -32,6 +36,13 @@ struct LaserSettings {
   float max_range_m = 60.0f;                ///< readings at or above are no returns
   float range_sd_m = 0.01f;                 ///< standard deviation of a range, >= 0
   float bearing_sd_rad = 0.0005f;           ///< of a bearing, >= 0
+
+  /// Between two beams, in whole nanoseconds.
+  std::int64_t beam_interval_ns() const { return static_cast<std::int64_t>(beam_interval_s * 1e9f + 0.5f); }
+  /// From the first beam of a line to the last of so many.
+  std::int64_t duration_ns(std::size_t count) const {
+    return count > 1 ? static_cast<std::int64_t>(count - 1) * beam_interval_ns() : 0;
+  }
 };
 
 /// A rigid transform as a builder measures it: rotation R_z(yaw) R_y(pitch) R_x(roll), then translation. Lengths in
@@ -111,8 +122,11 @@ struct Settings {
   CurbSettings curbs{};
 };
 
-/// The first part that has a value out of range, ok if none has. What depends on the limits is checked by
-/// Pipeline::init().
-Status check(const Settings& settings);
+/// The first setting that is out of its range, or beyond what a pipeline of these limits holds, as it is written here:
+/// "tilt.max_gap_s". Null if all are good. Static storage.
+const char* bad_setting(const Settings& settings, const Limits& limits);
+
+/// In which part of the settings that is, ok if all are good: what Pipeline::init() answers.
+Status check(const Settings& settings, const Limits& limits);
 
 }  // namespace curbline

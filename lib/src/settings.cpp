@@ -16,63 +16,109 @@ bool positive(float x) {
 bool not_negative(float x) {
   return is_finite(x) && x >= 0.0f;
 }
-
+bool whole_blocks(int cells, int most) {
+  return cells >= block_side && cells <= most && cells % block_side == 0;
+}
+bool reach(int cells) {
+  return cells >= 1 && cells <= max_link_reach;
+}
+bool bearing(float rad) {
+  return within(rad, -2.0f * pi, 2.0f * pi);
+}
 bool good(const MountSettings& m) {
-  for (const float length : {m.x_m, m.y_m, m.z_m}) {
-    if (!within(length, -100.0f, 100.0f)) return false;
-  }
-  for (const float angle : {m.roll_rad, m.pitch_rad, m.yaw_rad}) {
-    if (!within(angle, -2.0f * pi, 2.0f * pi)) return false;
-  }
-  return true;
+  return within(m.x_m, -100.0f, 100.0f) && within(m.y_m, -100.0f, 100.0f) && within(m.z_m, -100.0f, 100.0f) &&
+         bearing(m.roll_rad) && bearing(m.pitch_rad) && bearing(m.yaw_rad);
 }
 
-bool good(const WindowSettings& w) {
-  return w.rows >= block_side && w.cols >= block_side && w.rows % block_side == 0 && w.cols % block_side == 0 &&
-         within(w.cell_x_m, 0.001f, 10.0f) && within(w.cell_y_m, 0.001f, 10.0f) && within(w.origin_x_m, -1e6f, 1e6f) &&
-         within(w.origin_y_m, -1e6f, 1e6f) && is_finite(w.max_height_m);
+/// Of each part, by the name of its first setting that is not good; null if there is none.
+using Bad = const char*;
+
+Bad first_bad(const WindowSettings& w, const Limits& limits) {
+  if (!whole_blocks(w.rows, limits.rows)) return "window.rows";
+  if (!whole_blocks(w.cols, limits.cols)) return "window.cols";
+  if (!within(w.cell_x_m, 0.001f, 10.0f)) return "window.cell_x_m";
+  if (!within(w.cell_y_m, 0.001f, 10.0f)) return "window.cell_y_m";
+  if (!within(w.origin_x_m, -1e6f, 1e6f)) return "window.origin_x_m";
+  if (!within(w.origin_y_m, -1e6f, 1e6f)) return "window.origin_y_m";
+  return is_finite(w.max_height_m) ? nullptr : "window.max_height_m";
 }
 
-bool good(const LaserSettings& l) {
-  return l.beams >= 1 && within(l.first_bearing_rad, -2.0f * pi, 2.0f * pi) &&
-         within(l.bearing_step_rad, -1.0f, 1.0f) && l.bearing_step_rad != 0.0f &&
-         within(l.first_bearing_rad + static_cast<float>(l.beams) * l.bearing_step_rad, -4.0f * pi, 4.0f * pi) &&
-         within(l.beam_interval_s, 0.0f, 1.0f) && not_negative(l.min_range_m) && is_finite(l.max_range_m) &&
-         l.max_range_m > l.min_range_m && not_negative(l.range_sd_m) && not_negative(l.bearing_sd_rad);
+Bad first_bad(const LaserSettings& l, const Limits& limits) {
+  if (l.beams < 1 || l.beams > limits.beams) return "laser.beams";
+  if (!bearing(l.first_bearing_rad)) return "laser.first_bearing_rad";
+  const float last_rad = l.first_bearing_rad + static_cast<float>(l.beams) * l.bearing_step_rad;
+  if (!within(l.bearing_step_rad, -1.0f, 1.0f) || l.bearing_step_rad == 0.0f ||
+      !within(last_rad, -4.0f * pi, 4.0f * pi))
+    return "laser.bearing_step_rad";
+  if (!within(l.beam_interval_s, 0.0f, 1.0f)) return "laser.beam_interval_s";
+  if (!not_negative(l.min_range_m)) return "laser.min_range_m";
+  if (!is_finite(l.max_range_m) || l.max_range_m <= l.min_range_m) return "laser.max_range_m";
+  if (!not_negative(l.range_sd_m)) return "laser.range_sd_m";
+  return not_negative(l.bearing_sd_rad) ? nullptr : "laser.bearing_sd_rad";
 }
 
-bool good(const TiltSettings& t) {
-  return good(t.T_base_tilt) && good(t.T_tilt_laser) && within(t.fixed_tilt_rad, -pi, pi) &&
-         within(t.latency_s, -10.0f, 10.0f) && within(t.latency_sd_s, 0.0f, 1.0f) && not_negative(t.angle_sd_rad) &&
-         not_negative(t.time_sd_s) && within(t.max_extrapolation_s, 0.0f, 10.0f) && positive(t.max_gap_s) &&
-         t.max_gap_s <= 10.0f && not_negative(t.roll_sd_rad) && not_negative(t.pitch_sd_rad);
+Bad first_bad(const TiltSettings& t) {
+  if (!good(t.T_base_tilt)) return "tilt.T_base_tilt";
+  if (!good(t.T_tilt_laser)) return "tilt.T_tilt_laser";
+  if (!within(t.fixed_tilt_rad, -pi, pi)) return "tilt.fixed_tilt_rad";
+  if (!within(t.latency_s, -10.0f, 10.0f)) return "tilt.latency_s";
+  if (!within(t.latency_sd_s, 0.0f, 1.0f)) return "tilt.latency_sd_s";
+  if (!not_negative(t.angle_sd_rad)) return "tilt.angle_sd_rad";
+  if (!not_negative(t.time_sd_s)) return "tilt.time_sd_s";
+  if (!within(t.max_extrapolation_s, 0.0f, 10.0f)) return "tilt.max_extrapolation_s";
+  if (!positive(t.max_gap_s) || t.max_gap_s > 10.0f) return "tilt.max_gap_s";
+  if (!not_negative(t.roll_sd_rad)) return "tilt.roll_sd_rad";
+  return not_negative(t.pitch_sd_rad) ? nullptr : "tilt.pitch_sd_rad";
 }
 
-bool good(const PoseSettings& p) {
-  return not_negative(p.height_sd_m) && not_negative(p.attitude_sd_rad) && within(p.max_extrapolation_s, 0.0f, 10.0f);
+Bad first_bad(const PoseSettings& p) {
+  if (!not_negative(p.height_sd_m)) return "pose.height_sd_m";
+  if (!not_negative(p.attitude_sd_rad)) return "pose.attitude_sd_rad";
+  return within(p.max_extrapolation_s, 0.0f, 10.0f) ? nullptr : "pose.max_extrapolation_s";
 }
 
-bool good_inference(const Settings& s) {
+Bad first_bad_of_inference(const Settings& s) {
+  if (!positive(s.segmentation.cell.degrees)) return "segmentation.cell.degrees";
+  if (!positive(s.segmentation.cell.variance_m2)) return "segmentation.cell.variance_m2";
+  if (!positive(s.segmentation.leaf_scale)) return "segmentation.leaf_scale";
+  if (!reach(s.segmentation.link_reach)) return "segmentation.link_reach";
   const PlanePrior& prior = s.planes.prior;
-  return positive(s.segmentation.cell.degrees) && positive(s.segmentation.cell.variance_m2) &&
-         positive(s.segmentation.leaf_scale) && s.segmentation.link_reach >= 1 &&
-         s.segmentation.link_reach <= max_link_reach && positive(prior.noise_m2) && not_negative(prior.texture_m2) &&
-         within(prior.degrees, 1.0f, 1e6f) && within(prior.common_share, PlanePrior::least_common_share, 1.0f) &&
-         within(prior.curvature_1_m, 0.0f, 10.0f) && s.planes.min_cells >= 3.0f &&
-         within(s.labels.coupling, 0.01f, 7.9f) && s.labels.link_reach >= 1 && s.labels.link_reach <= max_link_reach &&
-         s.labels.refresh_rows >= 0 && (s.labels.max_messages == 0 || s.labels.max_messages >= 4) &&
-         s.curbs.link_reach >= 1 && s.curbs.link_reach <= max_link_reach && positive(s.curbs.max_step_m);
+  if (!positive(prior.noise_m2)) return "planes.prior.noise_m2";
+  if (!not_negative(prior.texture_m2)) return "planes.prior.texture_m2";
+  if (!within(prior.degrees, 1.0f, 1e6f)) return "planes.prior.degrees";
+  if (!within(prior.common_share, PlanePrior::least_common_share, 1.0f)) return "planes.prior.common_share";
+  if (!within(prior.curvature_1_m, 0.0f, 10.0f)) return "planes.prior.curvature_1_m";
+  if (!(s.planes.min_cells >= 3.0f)) return "planes.min_cells";
+  if (!within(s.labels.coupling, 0.01f, 7.9f)) return "labels.coupling";
+  if (!reach(s.labels.link_reach)) return "labels.link_reach";
+  if (s.labels.refresh_rows < 0) return "labels.refresh_rows";
+  if (s.labels.max_messages != 0 && s.labels.max_messages < 4) return "labels.max_messages";
+  if (!reach(s.curbs.link_reach)) return "curbs.link_reach";
+  return positive(s.curbs.max_step_m) ? nullptr : "curbs.max_step_m";
+}
+
+struct Refusal {
+  Status status = Status::ok;
+  Bad setting = nullptr;
+};
+
+Refusal refusal(const Settings& s, const Limits& limits) {
+  if (const Bad bad = first_bad(s.window, limits)) return {Status::bad_window, bad};
+  if (const Bad bad = first_bad(s.laser, limits)) return {Status::bad_laser, bad};
+  if (const Bad bad = first_bad(s.tilt)) return {Status::bad_tilt, bad};
+  if (const Bad bad = first_bad(s.pose)) return {Status::bad_pose, bad};
+  if (const Bad bad = first_bad_of_inference(s)) return {Status::bad_inference, bad};
+  return {};
 }
 
 }  // namespace
 
-Status check(const Settings& settings) {
-  if (!good(settings.window)) return Status::bad_window;
-  if (!good(settings.laser)) return Status::bad_laser;
-  if (!good(settings.tilt)) return Status::bad_tilt;
-  if (!good(settings.pose)) return Status::bad_pose;
-  if (!good_inference(settings)) return Status::bad_inference;
-  return Status::ok;
+const char* bad_setting(const Settings& settings, const Limits& limits) {
+  return refusal(settings, limits).setting;
+}
+
+Status check(const Settings& settings, const Limits& limits) {
+  return refusal(settings, limits).status;
 }
 
 }  // namespace curbline

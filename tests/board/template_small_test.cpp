@@ -7,9 +7,8 @@
 int main() {
   static_assert(limits.rows == 24 && limits.beams == 361, "robot.hpp of the template, its limits replaced");
   static curbline::Pipeline<limits> pipeline;
-  const curbline::Status status = pipeline.init(robot_settings());
-  if (status != curbline::Status::ok) {
-    std::fprintf(stderr, "init() says: %s\n", curbline::to_string(status));
+  if (pipeline.init(robot_settings()) != curbline::Status::ok) {
+    std::fprintf(stderr, "init() refuses %s\n", curbline::bad_setting(robot_settings(), limits));
     return 1;
   }
   const auto& dem = pipeline.dem();

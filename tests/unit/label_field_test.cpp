@@ -318,7 +318,7 @@ int cells_without_label(const Stages<>& stages) {
 TEST_CASE("label field: even the smallest budget reaches every cell in the end") {
   Settings settings = small_settings();
   settings.labels.max_messages = 4;
-  REQUIRE(check(settings) == Status::ok);
+  REQUIRE(check(settings, Limits{}) == Status::ok);
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) stages->infer();
@@ -329,7 +329,7 @@ TEST_CASE("label field: a row that every line changes does not starve the others
   Settings settings = small_settings();
   settings.labels.max_messages = directions * 24;  // those of a row
   settings.labels.refresh_rows = GENERATE(0, 1, 24);
-  REQUIRE(check(settings) == Status::ok);
+  REQUIRE(check(settings, Limits{}) == Status::ok);
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "curbline/math.hpp"
 
@@ -14,96 +15,136 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
 
-/// Status for each of some bad values of one setting.
+constexpr Limits limits{};
+
+/// Status and name for each of some bad values of one setting.
 template <typename Reach, typename Value>
-void refuses(Status expected, Reach&& reach, std::initializer_list<Value> values) {
+void refuses(Status expected, const std::string& name, Reach&& reach, std::initializer_list<Value> values) {
   for (const Value value : values) {
     Settings settings;
     reach(settings) = value;
     INFO("value " << value);
-    CHECK(check(settings) == expected);
+    CHECK(check(settings, limits) == expected);
+    REQUIRE(bad_setting(settings, limits) != nullptr);
+    CHECK(bad_setting(settings, limits) == name);
   }
 }
 
 TEST_CASE("settings: the defaults are good") {
-  CHECK(check(Settings{}) == Status::ok);
+  CHECK(check(Settings{}, limits) == Status::ok);
+  CHECK(bad_setting(Settings{}, limits) == nullptr);
 }
 
 TEST_CASE("settings: a bad window is named") {
   constexpr Status bad = Status::bad_window;
-  refuses(bad, [](Settings& s) -> int& { return s.window.rows; }, {0, -4, 3, 6, 41});
-  refuses(bad, [](Settings& s) -> int& { return s.window.cols; }, {0, -4, 3, 6, 41});
-  refuses(bad, [](Settings& s) -> float& { return s.window.cell_x_m; }, {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.cell_y_m; }, {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.origin_x_m; }, {1.1e6f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.origin_y_m; }, {-1.1e6f, nan, -infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.window.max_height_m; }, {nan, infinity});
+  refuses(bad, "window.rows", [](Settings& s) -> int& { return s.window.rows; }, {0, -4, 3, 6, 41, 44});
+  refuses(bad, "window.cols", [](Settings& s) -> int& { return s.window.cols; }, {0, -4, 3, 6, 41, 44});
+  refuses(bad, "window.cell_x_m", [](Settings& s) -> float& { return s.window.cell_x_m; },
+          {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
+  refuses(bad, "window.cell_y_m", [](Settings& s) -> float& { return s.window.cell_y_m; },
+          {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
+  refuses(bad, "window.origin_x_m", [](Settings& s) -> float& { return s.window.origin_x_m; }, {1.1e6f, nan, infinity});
+  refuses(bad, "window.origin_y_m", [](Settings& s) -> float& { return s.window.origin_y_m; },
+          {-1.1e6f, nan, -infinity});
+  refuses(bad, "window.max_height_m", [](Settings& s) -> float& { return s.window.max_height_m; }, {nan, infinity});
 }
 
 TEST_CASE("settings: a bad laser is named") {
   constexpr Status bad = Status::bad_laser;
-  refuses(bad, [](Settings& s) -> int& { return s.laser.beams; }, {0, -1});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.first_bearing_rad; }, {7.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.bearing_step_rad; }, {0.0f, 1.1f, 0.05f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.beam_interval_s; }, {-1e-6f, 1.1f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.min_range_m; }, {-0.1f, 60.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.max_range_m; }, {0.1f, 0.0f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.range_sd_m; }, {-0.01f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.laser.bearing_sd_rad; }, {-0.01f, nan, infinity});
+  refuses(bad, "laser.beams", [](Settings& s) -> int& { return s.laser.beams; }, {0, -1, 1082});
+  refuses(bad, "laser.first_bearing_rad", [](Settings& s) -> float& { return s.laser.first_bearing_rad; }, {7.0f, nan});
+  refuses(bad, "laser.bearing_step_rad", [](Settings& s) -> float& { return s.laser.bearing_step_rad; },
+          {0.0f, 1.1f, 0.05f, nan});
+  refuses(bad, "laser.beam_interval_s", [](Settings& s) -> float& { return s.laser.beam_interval_s; },
+          {-1e-6f, 1.1f, nan});
+  refuses(bad, "laser.min_range_m", [](Settings& s) -> float& { return s.laser.min_range_m; }, {-0.1f, nan});
+  refuses(bad, "laser.max_range_m", [](Settings& s) -> float& { return s.laser.max_range_m; },
+          {0.1f, 0.0f, nan, infinity});
+  refuses(bad, "laser.range_sd_m", [](Settings& s) -> float& { return s.laser.range_sd_m; }, {-0.01f, nan, infinity});
+  refuses(bad, "laser.bearing_sd_rad", [](Settings& s) -> float& { return s.laser.bearing_sd_rad; },
+          {-0.01f, nan, infinity});
+}
+
+TEST_CASE("settings: of a shortest range beyond the longest the longest is named") {
+  refuses(Status::bad_laser, "laser.max_range_m", [](Settings& s) -> float& { return s.laser.min_range_m; }, {60.0f});
 }
 
 TEST_CASE("settings: a bad tilt is named") {
   constexpr Status bad = Status::bad_tilt;
-  for (const auto mount : {&TiltSettings::T_base_tilt, &TiltSettings::T_tilt_laser}) {
+  for (const auto& [mount, name] : {std::pair{&TiltSettings::T_base_tilt, "tilt.T_base_tilt"},
+                                    {&TiltSettings::T_tilt_laser, "tilt.T_tilt_laser"}}) {
     for (float MountSettings::*length : {&MountSettings::x_m, &MountSettings::y_m, &MountSettings::z_m}) {
-      refuses(bad, [&](Settings& s) -> float& { return s.tilt.*mount.*length; }, {101.0f, -101.0f, nan});
+      refuses(bad, name, [&, mount = mount](Settings& s) -> float& { return s.tilt.*mount.*length; },
+              {101.0f, -101.0f, nan});
     }
     for (float MountSettings::*angle : {&MountSettings::roll_rad, &MountSettings::pitch_rad, &MountSettings::yaw_rad}) {
-      refuses(bad, [&](Settings& s) -> float& { return s.tilt.*mount.*angle; }, {6.5f, -6.5f, nan, infinity});
+      refuses(bad, name, [&, mount = mount](Settings& s) -> float& { return s.tilt.*mount.*angle; },
+              {6.5f, -6.5f, nan, infinity});
     }
   }
-  refuses(bad, [](Settings& s) -> float& { return s.tilt.fixed_tilt_rad; }, {4.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.tilt.latency_s; }, {10.1f, -10.1f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.tilt.max_extrapolation_s; }, {-0.1f, 10.1f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.tilt.max_gap_s; }, {0.0f, 10.1f, nan});
-  for (float TiltSettings::*sd : {&TiltSettings::angle_sd_rad, &TiltSettings::time_sd_s, &TiltSettings::roll_sd_rad,
-                                  &TiltSettings::pitch_sd_rad}) {
-    refuses(bad, [&](Settings& s) -> float& { return s.tilt.*sd; }, {-0.001f, nan, infinity});
+  refuses(bad, "tilt.fixed_tilt_rad", [](Settings& s) -> float& { return s.tilt.fixed_tilt_rad; }, {4.0f, nan});
+  refuses(bad, "tilt.latency_s", [](Settings& s) -> float& { return s.tilt.latency_s; }, {10.1f, -10.1f, nan});
+  refuses(bad, "tilt.max_extrapolation_s", [](Settings& s) -> float& { return s.tilt.max_extrapolation_s; },
+          {-0.1f, 10.1f, nan});
+  refuses(bad, "tilt.max_gap_s", [](Settings& s) -> float& { return s.tilt.max_gap_s; }, {0.0f, 10.1f, nan});
+  for (const auto& [sd, name] : {std::pair{&TiltSettings::angle_sd_rad, "tilt.angle_sd_rad"},
+                                 {&TiltSettings::time_sd_s, "tilt.time_sd_s"},
+                                 {&TiltSettings::roll_sd_rad, "tilt.roll_sd_rad"},
+                                 {&TiltSettings::pitch_sd_rad, "tilt.pitch_sd_rad"}}) {
+    refuses(bad, name, [&, sd = sd](Settings& s) -> float& { return s.tilt.*sd; }, {-0.001f, nan, infinity});
   }
 }
 
 TEST_CASE("settings: a bad pose is named") {
   constexpr Status bad = Status::bad_pose;
-  refuses(bad, [](Settings& s) -> float& { return s.pose.height_sd_m; }, {-0.1f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.pose.attitude_sd_rad; }, {-0.1f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.pose.max_extrapolation_s; }, {-0.1f, 10.1f, nan});
+  refuses(bad, "pose.height_sd_m", [](Settings& s) -> float& { return s.pose.height_sd_m; }, {-0.1f, nan, infinity});
+  refuses(bad, "pose.attitude_sd_rad", [](Settings& s) -> float& { return s.pose.attitude_sd_rad; },
+          {-0.1f, nan, infinity});
+  refuses(bad, "pose.max_extrapolation_s", [](Settings& s) -> float& { return s.pose.max_extrapolation_s; },
+          {-0.1f, 10.1f, nan});
 }
 
 TEST_CASE("settings: bad constants of inference are named") {
   constexpr Status bad = Status::bad_inference;
-  refuses(bad, [](Settings& s) -> float& { return s.segmentation.cell.degrees; }, {0.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.segmentation.cell.variance_m2; }, {0.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.segmentation.leaf_scale; }, {0.0f, -1.0f, nan});
-  refuses(bad, [](Settings& s) -> int& { return s.segmentation.link_reach; }, {0, 16});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.noise_m2; }, {0.0f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.texture_m2; }, {-1e-6f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.degrees; }, {0.9f, nan, infinity});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.common_share; }, {-0.1f, 1.1f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.prior.curvature_1_m; }, {-0.1f, 11.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.planes.min_cells; }, {2.0f, nan});
-  refuses(bad, [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
-  refuses(bad, [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
-  refuses(bad, [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
-  refuses(bad, [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 1, -1});
-  refuses(bad, [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});
-  refuses(bad, [](Settings& s) -> float& { return s.curbs.max_step_m; }, {0.0f, nan, infinity});
+  refuses(bad, "segmentation.cell.degrees", [](Settings& s) -> float& { return s.segmentation.cell.degrees; },
+          {0.0f, nan});
+  refuses(bad, "segmentation.cell.variance_m2", [](Settings& s) -> float& { return s.segmentation.cell.variance_m2; },
+          {0.0f, nan});
+  refuses(bad, "segmentation.leaf_scale", [](Settings& s) -> float& { return s.segmentation.leaf_scale; },
+          {0.0f, -1.0f, nan});
+  refuses(bad, "segmentation.link_reach", [](Settings& s) -> int& { return s.segmentation.link_reach; }, {0, 16});
+  refuses(bad, "planes.prior.noise_m2", [](Settings& s) -> float& { return s.planes.prior.noise_m2; },
+          {0.0f, nan, infinity});
+  refuses(bad, "planes.prior.texture_m2", [](Settings& s) -> float& { return s.planes.prior.texture_m2; },
+          {-1e-6f, nan, infinity});
+  refuses(bad, "planes.prior.degrees", [](Settings& s) -> float& { return s.planes.prior.degrees; },
+          {0.9f, nan, infinity});
+  refuses(bad, "planes.prior.common_share", [](Settings& s) -> float& { return s.planes.prior.common_share; },
+          {-0.1f, 1.1f, nan});
+  refuses(bad, "planes.prior.curvature_1_m", [](Settings& s) -> float& { return s.planes.prior.curvature_1_m; },
+          {-0.1f, 11.0f, nan});
+  refuses(bad, "planes.min_cells", [](Settings& s) -> float& { return s.planes.min_cells; }, {2.0f, nan});
+  refuses(bad, "labels.coupling", [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
+  refuses(bad, "labels.link_reach", [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
+  refuses(bad, "labels.refresh_rows", [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
+  refuses(bad, "labels.max_messages", [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 1, -1});
+  refuses(bad, "curbs.link_reach", [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});
+  refuses(bad, "curbs.max_step_m", [](Settings& s) -> float& { return s.curbs.max_step_m; }, {0.0f, nan, infinity});
+}
+
+TEST_CASE("settings: the last beam of a line is measured as many whole intervals after the first") {
+  LaserSettings laser;
+  laser.beam_interval_s = 1.5e-6f;
+  CHECK(laser.duration_ns(0) == 0);
+  CHECK(laser.duration_ns(1) == 0);
+  CHECK(laser.duration_ns(1081) == 1080 * 1500);
 }
 
 TEST_CASE("settings: a scanner that turns clockwise is good") {
   Settings settings;
   settings.laser.first_bearing_rad = 2.356f;
   settings.laser.bearing_step_rad = -0.00436f;
-  CHECK(check(settings) == Status::ok);
+  CHECK(check(settings, limits) == Status::ok);
 }
 
 TEST_CASE("status: each has words of its own") {

@@ -12,9 +12,9 @@ template <Limits limits>
 class PipelineOf final : public HostPipeline {
  public:
   explicit PipelineOf(const Settings& settings) {
-    if (const Status status = pipeline_.init(settings); status != Status::ok) {
-      throw BadInput(std::string("the pipeline refuses its settings: ") + to_string(status) +
-                     "; expected those of a robot's description");
+    if (pipeline_.init(settings) != Status::ok) {
+      throw BadInput(std::string("the pipeline refuses ") + bad_setting(settings, limits) +
+                     "; expected settings of a robot's description");
     }
   }
   bool add_tilt(const TiltReading& reading) override { return pipeline_.add_tilt(reading); }

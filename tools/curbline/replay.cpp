@@ -89,8 +89,7 @@ bool Replay::step(std::vector<Point>* points) {
     return false;
   }
   line_ = std::move(*next);
-  const auto last_beam_ns = line_.time_ns + static_cast<std::int64_t>(robot_.laser.beam_interval_s * 1e9f *
-                                                                      static_cast<float>(line_.ranges_m.size()));
+  const std::int64_t last_beam_ns = line_.time_ns + robot_.laser.duration_ns(line_.ranges_m.size());
   feed_tilt(last_beam_ns +
             static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);

@@ -40,8 +40,7 @@ class DriveWriter {
     put(RecordKind::setup, setup);
     while (const auto line = scans_.next()) {
       check_geometry(*line, robot_.laser, scans_.path(), scans_.line());
-      const float duration_ns = robot_.laser.beam_interval_s * 1e9f * static_cast<float>(line->ranges_m.size());
-      const std::int64_t last_beam_ns = line->time_ns + static_cast<std::int64_t>(duration_ns);
+      const std::int64_t last_beam_ns = line->time_ns + robot_.laser.duration_ns(line->ranges_m.size());
       put_frames(last_beam_ns +
                  static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
       put_poses(last_beam_ns);
