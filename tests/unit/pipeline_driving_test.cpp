@@ -203,32 +203,58 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
   CHECK(lines_with_steps(*pipeline, 2000, of_its_sweep) == 0);
 }
 
-TEST_CASE(
-    "pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
-  Settings settings = driving_settings();
-  settings.pose = test::noisy_poses();
-  const auto pipeline = started(settings);
+/// Drives over level ground at 0.5 m/s with a localisation that thinks better of itself: change(line, z_m, pitch_rad)
+/// before each. Calls seen(pipeline) after each.
+template <typename Change, typename Seen>
+void drive_with_localisation(FullPipeline& pipeline, int lines, Change&& change, Seen&& seen) {
   NoddingLaser laser;
   const auto x = [](double time_s) { return 0.5 * time_s; };
-  test::Noise lot(1);
   float z_m = 0.0f, pitch_rad = 0.0f;
   const auto pose = [&](double time_s) {
     return Pose{NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, z_m, 0.0f, 0.5f * pitch_rad};
   };
-  int with_steps = 0;
-  for (int line = 0; line < 2000; ++line) {
+  for (int line = 0; line < lines; ++line) {
     const double t = NoddingLaser::line_time_s(line);
-    if (line % 160 == 70) {
-      z_m += lot.uniform() < 0.5 ? 0.02f : -0.02f;
-      pitch_rad += lot.uniform() < 0.5 ? 0.007f : -0.007f;
-    }
-    add_tilts(*pipeline, line);
-    pipeline->add_pose(pose(t));
-    pipeline->add_pose(pose(t + 0.0125));
-    pipeline->take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, x)});
-    with_steps += std::any_of(pipeline->curbs().begin(), pipeline->curbs().end(), is_step);
+    change(line, z_m, pitch_rad);
+    add_tilts(pipeline, line);
+    pipeline.add_pose(pose(t));
+    pipeline.add_pose(pose(t + 0.0125));
+    pipeline.take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, x)});
+    seen(pipeline);
   }
+}
+
+std::unique_ptr<FullPipeline> with_noisy_poses() {
+  Settings settings = driving_settings();
+  settings.pose = test::noisy_poses();
+  return started(settings);
+}
+
+TEST_CASE(
+    "pipeline: while the robot drives, a localisation that thinks better of itself makes no steps of level ground") {
+  test::Noise lot(1);
+  int with_steps = 0;
+  drive_with_localisation(
+      *with_noisy_poses(), 2000,
+      [&](int line, float& z_m, float& pitch_rad) {
+        if (line % 160 != 70) return;
+        z_m += lot.uniform() < 0.5 ? 0.02f : -0.02f;
+        pitch_rad += lot.uniform() < 0.5 ? 0.007f : -0.007f;
+      },
+      [&](const FullPipeline& pipeline) {
+        with_steps += std::any_of(pipeline.curbs().begin(), pipeline.curbs().end(), is_step);
+      });
   CHECK(with_steps == 0);
+}
+
+TEST_CASE("pipeline: tells by what its map lies off the poses when a localisation has thought better of itself") {
+  const auto pipeline = with_noisy_poses();
+  float before_m = 1.0f, after_m = 0.0f;
+  drive_with_localisation(
+      *pipeline, 260, [](int line, float& z_m, float&) { z_m = line < 200 ? 0.0f : 0.02f; },
+      [&, line = 0](const FullPipeline& p) mutable { (++line <= 200 ? before_m : after_m) = p.pose_offset().height_m; });
+  CHECK(before_m == Approx(0.0).margin(0.001));
+  CHECK(after_m == Approx(-0.02).margin(0.003));
 }
 
 }  // namespace
