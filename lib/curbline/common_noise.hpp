@@ -5,9 +5,9 @@
 // first-order autoregression). Each patch of 10 x 10 cells is asked, about a plane of its own: of a step by which no
 // planes are parted yet only the patches that it crosses show anything. What the points of a cell err each on its own
 // is counted too, the less the more there are. What is not known of the tilt's latency moves a whole sweep: the cells
-// of a single one do not show it, and it is added. Errors of the tilt and of poses grow with the distance, so each
-// patch tells, too, how much its cells share for theirs: a plane far away errs by more than the evenest patches, near
-// the robot, show.
+// of a single one do not show it, and it is added. Errors of the tilt and of poses are those of whole scan lines, and
+// grow with the distance; so each patch tells, too, how much its cells share for theirs and for how many points they
+// hold: a plane far away, or seen in a few lines, errs by more than the evenest patches, near the robot, show.
 #pragma once
 
 #include <array>
@@ -56,9 +56,9 @@ class CommonNoise {
   /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
   /// as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// That per Viewpoint::reach_m4(), of the middle one of the patches: no curb is missed for it; 0 as long as there is
-  /// no plane.
-  float per_m2() const;
+  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(), of the middle one of
+  /// the patches, for no curb is missed for it; 0 as long as there is no plane.
+  float line_rad2() const;
 
  private:
   static constexpr int side = PatchResiduals::side;
@@ -74,7 +74,7 @@ class CommonNoise {
   struct Patch {
     float cells = 0.0f;  ///< 0: too few to tell
     float common_m2 = 0.0f;
-    float per_m2 = 0.0f;        ///< that per Viewpoint::reach_m4()
+    float line_rad2 = 0.0f;     ///< that over Viewpoint::reach_m2()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
   float quantile(float Patch::*of, float share) const;
@@ -86,7 +86,7 @@ class CommonNoise {
 template <Limits limits>
 void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view) {
   std::array<PatchResiduals, patches_in_row> residuals{};
-  std::array<float, patches_in_row> growth_m2_s2{}, height_m{};
+  std::array<float, patches_in_row> growth_m2_s2{}, points{};
   std::array<Seen, limits.cols> last{};  // of each column
   const auto visit = [&](int i, int j, int s) {
     const LabelType label = mixture.region_label(s);
@@ -98,7 +98,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     const auto k = static_cast<std::size_t>(j / side);
     residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
     growth_m2_s2[k] += square(dem.growth_m_s(s));
-    height_m[k] = cell.height_m;
+    points[k] += cell.points;
     const auto column = static_cast<std::size_t>(j);
     const auto neighbour = [&](std::size_t axis, const Seen& other, int row) {
       if (other.label == label && other.i == row) residuals[k].add_rise(axis, now.above_m - other.above_m);
@@ -115,8 +115,9 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     if (residuals[k].cells < PatchResiduals::least_cells) continue;
     const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
     const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
-    const float common_m2 = residuals[k].common_m2(), reach_m4 = view.reach_m4(x_m, y_m, height_m[k], 0.0f);
-    *patch = {residuals[k].cells, common_m2, reach_m4 > 0.0f ? common_m2 / reach_m4 : 0.0f, growth_m2_s2[k]};
+    const float cells = residuals[k].cells, common_m2 = residuals[k].common_m2();
+    const float reach_m2 = view.reach_m2(x_m, y_m, 0.0f, points[k] / cells);
+    *patch = {cells, common_m2, reach_m2 > 0.0f ? common_m2 / reach_m2 : 0.0f, growth_m2_s2[k]};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -136,8 +137,8 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
 }
 
 template <Limits limits>
-float CommonNoise<limits>::per_m2() const {
-  return quantile(&Patch::per_m2, 0.5f);
+float CommonNoise<limits>::line_rad2() const {
+  return quantile(&Patch::line_rad2, 0.5f);
 }
 
 /// Of what patches show, each weighed by its cells, what a share of them lie below; 0 if there is none.

@@ -249,8 +249,8 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
 /// they lie.
 template <Limits limits>
 float CurbTracer<limits>::more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece) {
-  const float reach_m4 = stages.view.reach_m4(plane.x_m, plane.y_m, plane.z_m, plane.scatter_m2());
-  const float more_m2 = stages.dem.common_m2(reach_m4) - plane.fit_variance_m2;
+  const float reach_m2 = stages.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2(), plane.points_a_cell);
+  const float more_m2 = stages.dem.common_m2(reach_m2) - plane.fit_variance_m2;
   return more_m2 > 0.0f ? more_m2 / plane.fit_variance_m2 * plane.height_variance_m2(piece.x_m, piece.y_m) : 0.0f;
 }
 

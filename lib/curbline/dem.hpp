@@ -51,15 +51,15 @@ class Dem {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
   float common_m2() const { return common_m2_; }
-  /// Of cells that lie at a distance, see Viewpoint::reach_m4(): no less.
-  float common_m2(float reach_m4) const {
-    const float there_m2 = common_per_m2_ * reach_m4;
+  /// Of cells that lie at a distance and hold few points, see Viewpoint::reach_m2(): no less.
+  float common_m2(float reach_m2) const {
+    const float there_m2 = line_rad2_ * reach_m2;
     return there_m2 > common_m2_ ? there_m2 : common_m2_;
   }
   /// As evidence it is no less than the ground's texture.
-  void set_common(float found_m2, float found_per_m2) {
+  void set_common(float found_m2, float found_line_rad2) {
     common_m2_ = found_m2;
-    common_per_m2_ = found_per_m2;
+    line_rad2_ = found_line_rad2;
     prior_.common_share = (found_m2 > prior_.texture_m2 ? found_m2 : prior_.texture_m2) / prior_.noise_m2;
   }
 
@@ -242,8 +242,8 @@ class Dem {
   std::uint8_t flags_ = seen_bits;                   ///< of a cell that is seen now
   std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
   std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
-  float common_per_m2_ = 0.0f;  ///< per Viewpoint::reach_m4(). Behind the cells: before them it costs
-                                ///< the worst line of a Cortex-R5F 9,000 instructions (tools/budget)
+  float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Behind the cells: before them it costs the worst line of a
+                            ///< Cortex-R5F 9,000 instructions (tools/budget)
   bool any_touched_ = false;
 };
 
@@ -252,7 +252,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   settings_ = settings;
   prior_ = prior;
   common_m2_ = prior.common_m2();
-  common_per_m2_ = 0.0f;
+  line_rad2_ = 0.0f;
   cells_.fill(Cell{});
   touched_.fill(0);
   flags_ = seen_bits;

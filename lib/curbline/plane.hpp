@@ -135,6 +135,7 @@ struct Plane {
   float variance_m2 = 0.0f;                  ///< of a point of its region about the plane
   float fit_variance_m2 = 0.0f;              ///< of what a cell that it is fitted to counts for: a point, or their mean
   float cells = 0.0f;                        ///< how many these are; 0: no such plane
+  float points_a_cell = 1.0f;                ///< of its region, on the mean
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
   bool alive() const { return cells > 0.0f; }

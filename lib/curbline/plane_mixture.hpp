@@ -181,7 +181,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
                                   const Cells& crossed, LabelOf&& label_of) {
   struct Clean {
     bool wanted = false, wide = false, steep = false;
-    float slope_m2 = 0.0f;  ///< Dem::slope_m2() of the region's plane
+    float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
+    float cells = 0.0f, points = 0.0f;  ///< of the region
     PlaneMoments inner, beside;
     float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
   };
@@ -197,6 +198,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (label == none || !clean[label].wanted) return;
     Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
+    of_plane.cells += 1.0f;
+    of_plane.points += cell.points;
     if (dem.mixed(cell, of_plane.slope_m2)) return;
     if (of_plane.wide && crossed.contains(s)) return;
     const LabelType borne = label_of(s);
@@ -218,6 +221,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     planes_[l] =
         clean[l].steep ? fit_plane(moments, dem.prior()) : fit_plane_to_means(moments, dem.prior(), dem.common_m2());
     planes_[l].variance_m2 = of_region_m2;
+    planes_[l].points_a_cell = clean[l].points / clean[l].cells;
   }
 }
 

@@ -166,23 +166,25 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
 }
 
 TEST_CASE("common noise: what grows with the distance is found as that, not as what the evenest, near patches share") {
-  constexpr double eye_m = 1.2;
   const Unevenness even(1.0, 0.0, 0.0);
   Stages<limits> stages(map_settings());
-  stages.view = {0.0f, 2.0f, static_cast<float>(eye_m)};
-  const auto sd_m = [&](double x_m, double y_m) {  // of 0.1 mm^2 per m^4
-    const double away_m2 = x_m * x_m + (y_m - 2.0) * (y_m - 2.0);
-    return std::sqrt(1e-7 * away_m2 * (away_m2 + eye_m * eye_m));
-  };
+  stages.view = {0.0f, 2.0f, 1.2f};
+  const auto sd_m = [](double x_m, double y_m) { return 1e-3 * std::hypot(x_m, y_m - 2.0); };  // 1 mrad
   test::fill(stages.dem, [&](double x_m, double y_m) { return sd_m(x_m, y_m) * even(x_m, y_m); });
   stages.infer(true);
   const CommonNoise<limits> noise = noise_of(stages);
-  CHECK(noise.per_m2() == Approx(1e-7).epsilon(0.5));
-  const float there_m2 = noise.per_m2() * stages.view.reach_m4(3.5f, 2.0f, 0.0f, 0.0f);
+  CHECK(noise.line_rad2() == Approx(4 * 1e-6).epsilon(0.5));  // of each of the four points of a cell
+  const float there_m2 = noise.line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
   CHECK(there_m2 == Approx(sd_m(3.5, 2.0) * sd_m(3.5, 2.0)).epsilon(0.5));
   CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * there_m2);
-  stages.view.end_x_m = 4.0f;  // it drives
-  CHECK(stages.view.reach_m4(3.5f, 2.0f, 0.0f, 0.0f) == stages.view.reach_m4(0.5f, 2.0f, 0.0f, 0.0f));
+}
+
+TEST_CASE("common noise: cells err by the less, the more points they hold, of a robot that drives at any distance") {
+  Viewpoint view{0.0f, 2.0f, 1.2f};
+  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == Approx(9.0 / 4));
+  view.end_x_m = 4.0f;
+  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == view.reach_m2(0.5f, 2.0f, 0.0f, 4.0f));
+  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == 4.0f * view.reach_m2(3.0f, 2.0f, 0.0f, 16.0f));
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {
