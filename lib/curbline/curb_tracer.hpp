@@ -207,13 +207,10 @@ Curb CurbTracer<limits>::curb_of(const Stages& stages, const Border& border, con
   const float middle_x = 0.5f * (piece.line.x0_m + piece.line.x1_m);
   const float middle_y = 0.5f * (piece.line.y0_m + piece.line.y1_m);
   const float height_m = high.height_m(middle_x, middle_y) - low.height_m(middle_x, middle_y) - piece.drop_m;
-  const float cell_x_m = stages.dem.cell_x_m(), cell_y_m = stages.dem.cell_y_m();
-  const float reach_m = static_cast<float>(settings_.link_reach) * (cell_x_m < cell_y_m ? cell_x_m : cell_y_m);
   const Deviations sides = deviations_of(stages, border, piece, height_m, 0.0f);
   const float too_far_m2 = sides.low.too_far_m2(piece.borders) + sides.high.too_far_m2(piece.borders);
   const float height_sd_m = square_root(piece.variance_m2 + too_far_m2);
-  curb.kind =
-      kind_of(low, high, piece.line, {height_m, height_sd_m, piece.half_gap_m, reach_m, stages.dem.prior().texture_m2});
+  curb.kind = kind_of(low, high, piece.line, {height_m, height_sd_m, piece.half_gap_m, stages.dem.prior().texture_m2});
   if (curb.kind != CurbKind::step_up) return curb;
   curb.height_m = piece.low_is_near ? height_m : -height_m;
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;

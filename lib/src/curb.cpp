@@ -47,8 +47,7 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
   const float height_m2 = drawn.height_sd_m * drawn.height_sd_m;
   const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
   const float cell_m2 = mean_m2 > drawn.texture_m2 ? mean_m2 : drawn.texture_m2;
-  const bool meet_near = step_m <= steep * drawn.reach_m + 2.0f * drawn.height_sd_m;
-  const bool crease = meet_near && step_m <= steep * drawn.half_gap_m + 2.0f * square_root(height_m2 + cell_m2);
+  const bool crease = step_m <= steep * drawn.half_gap_m + 2.0f * square_root(height_m2 + cell_m2);
   if (!crease) return CurbKind::step_up;
   const auto is_ramp = [&](const Plane& plane) {
     const float slope = border.normal_x * plane.slope_x + border.normal_y * plane.slope_y;
