@@ -97,6 +97,29 @@ TEST_CASE(
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
 }
 
+//           |                               ______
+//           |
+//         _/           bank before a wall   .:.:         rough verge between road and pavement
+//  ______/                            _____
+TEST_CASE("ground: a bank before an obstacle, or a rough verge, that is wider than three cells is ground") {
+  const auto one_of = [](double y, double low_m, double high_m) {
+    return static_cast<int>(y * 100) % 10 < 5 ? low_m : high_m;
+  };
+  const auto bank = [=](double width_m) {
+    return [=](double x, double y) {
+      if (x >= 1.6) return one_of(y, 0.2, 1.2);
+      return x < 1.6 - width_m ? 0.0 : 0.2 * (x - 1.6 + width_m);
+    };
+  };
+  CHECK(borne(bank(0.3)) == 1);
+  CHECK(borne(bank(0.4)) == 2);
+  const auto verge = [=](double width_m) {
+    return [=](double x, double y) { return x >= 1.6 ? 0.12 : x < 1.6 - width_m ? 0.0 : one_of(y, 0.034, 0.086); };
+  };
+  CHECK(borne(verge(0.3)) == 2);
+  CHECK(borne(verge(0.4)) == 3);
+}
+
 //  o_
 //    --_                laser; rays past the edge of a box, and what they hit, mixed
 //      |--_
@@ -258,8 +281,13 @@ TEST_CASE("ground: a row of cells at the window's end, of which the slope is not
   CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
 
-TEST_CASE("ground: points that were not seen from the laser's place are ground all the same") {
-  CHECK(borne([](double x, double) { return 0.05 * x; }, 0.0f) == 1);
+//           o______     the origin of a cloud, on the pavement's plane: no laser has seen it from there
+//  ________|
+TEST_CASE("ground: a plane that holds the laser is ground where that is no higher above the ground than a kerb") {
+  const auto pavement = [](double kerb_m) { return [=](double x, double) { return x < 1.4 ? -kerb_m : 0.0; }; };
+  CHECK(borne(pavement(0.12), 0.0f) == 2);
+  CHECK(borne(pavement(0.28), 0.0f) == 2);
+  CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any kerb: a veil
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {

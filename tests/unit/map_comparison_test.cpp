@@ -31,7 +31,7 @@ struct Late {
     latency.follow(0.2f, rate_rad_s, 0);
   }
   /// Twenty lines, each with a point of row i in every column.
-  void look(int i, float ceiling_m = 1.0f) {
+  void look(int i, float ceiling_m = 1.0f, const LineMotion& motion = {}) {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m);
     for (std::uint32_t n = 1; n <= 20; ++n) {
       latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
@@ -41,9 +41,10 @@ struct Late {
         Point p{x_m, 0.1f * static_cast<float>(j) + 0.05f, slope_m(x_m), 1e-4f};
         p.z_m -= growth_m_s * (lag_s - latency.offset_s());
         p.growth_m_s = growth_m_s;
+        if (!motion.still) p.variance_m2 += motion.blur_m2(p.x_m, p.y_m);
         line->add(p);
       }
-      map.follow_latency(*line, LineMotion{}, offset, latency);
+      map.follow_latency(*line, motion, offset, latency);
       latency.end_line(-rate_rad_s);
     }
   }
@@ -57,6 +58,20 @@ TEST_CASE("map comparison: points on ground of an earlier sweep tell how late th
   Late late;
   late.look(12);
   CHECK(late.latency.offset_s() == Approx(lag_s).margin(0.001));
+}
+
+TEST_CASE("map comparison: what a jump of the poses adds to variances is common to a line: many points tell no more") {
+  LineMotion jumping;
+  jumping.still = false;
+  jumping.jumps.height_m2 = square(0.06f);
+  Late calm, jumped;
+  calm.look(12);
+  jumped.look(12, 1.0f, jumping);
+  const float prior_s2 = square(test::small_settings().tilt.latency_sd_s);
+  const float line_s2 = jumping.blur_m2(0.0f, 0.0f) / square(growth_m_s);
+  const float least_s2 = 1.0f / (1.0f / prior_s2 + 20.0f / line_s2);
+  CHECK(square(calm.latency.sd_s()) < 0.1f * least_s2);
+  CHECK(square(jumped.latency.sd_s()) > least_s2);
 }
 
 TEST_CASE("map comparison: ground that this sweep has seen, or that holds two surfaces, tells nothing of it") {

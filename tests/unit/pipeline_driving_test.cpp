@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "curbline/pipeline.hpp"
 #include "support/nodding_pipeline.hpp"
@@ -252,9 +253,59 @@ TEST_CASE("pipeline: tells by what its map lies off the poses when a localisatio
   float before_m = 1.0f, after_m = 0.0f;
   drive_with_localisation(
       *pipeline, 260, [](int line, float& z_m, float&) { z_m = line < 200 ? 0.0f : 0.02f; },
-      [&, line = 0](const FullPipeline& p) mutable { (++line <= 200 ? before_m : after_m) = p.pose_offset().height_m; });
+      [&, line = 0](const FullPipeline& p) mutable {
+        (++line <= 200 ? before_m : after_m) = p.pose_offset().height_m;
+      });
   CHECK(before_m == Approx(0.0).margin(0.001));
   CHECK(after_m == Approx(-0.02).margin(0.003));
+}
+
+/// A pipeline that has been driven over level ground at 0.5 m/s until poses rise while a line is measured, and the
+/// points of that line. Heights of the last poses are given, 80 in a second; the last is later than the line. The robot
+/// itself rises to robot_m before it.
+struct Rise {
+  std::unique_ptr<FullPipeline> pipeline = with_noisy_poses();
+  std::vector<Point> points;
+};
+
+Rise rise(const std::vector<float>& last_poses_m, double robot_m) {
+  constexpr int last_line = 230;
+  Rise out;
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  const int first = 2 * last_line + 2 - static_cast<int>(last_poses_m.size());
+  for (int line = 0; line <= last_line; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*out.pipeline, line);
+    for (int k = 2 * line; k <= 2 * line + 1; ++k) {  // 3 ms before the line, of 6 ms, and as much after it
+      const double time_s = 0.0125 * k - 0.003;
+      const float z_m = k < first ? 0.0f : last_poses_m[static_cast<std::size_t>(k - first)];
+      REQUIRE(out.pipeline->add_pose({NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, z_m}));
+    }
+    const Street below{-1.0, line == last_line ? -robot_m : 0.0};
+    out.points.clear();
+    const auto ranges = laser.ranges(below, line, x);
+    out.pipeline->project({NoddingLaser::ns(t), ranges}, [&](const Point& p) { out.points.push_back(p); });
+    out.pipeline->observe(out.points);
+    out.pipeline->infer();
+  }
+  return out;
+}
+
+TEST_CASE("pipeline: a line is left out of the map if a localisation has stepped meanwhile, not if the robot has") {
+  const Rise stepped = rise({0.02f}, 0.0), bumped = rise({0.02f}, 0.01);
+  CHECK(stepped.points.empty());
+  CHECK(stepped.pipeline->counters().lines_off_map == 1);
+  CHECK(bumped.points.size() > 300);
+  CHECK(bumped.pipeline->counters().lines_off_map == 0);
+}
+
+TEST_CASE("pipeline: a line that is measured while the robot climbs is taken, and counts for less") {
+  const Rise climbs = rise({0.02f, 0.05f, 0.1f}, 0.1);
+  REQUIRE(climbs.points.size() > 300);
+  const float jump_m = 0.1f - 0.05f - 0.05f / 4;  // off where the four poses before it lead
+  CHECK(std::all_of(climbs.points.begin(), climbs.points.end(),
+                    [&](const Point& p) { return p.variance_m2 > square(jump_m) / 6; }));
 }
 
 }  // namespace
