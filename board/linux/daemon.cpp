@@ -76,14 +76,8 @@ void Daemon::open_scans(const tools::Robot& robot, const Options& options) {
   }
   log_.emplace(options.scans, robot.laser);
   if (robot.tilt.fixed) return;
-  std::optional<tools::RecordedTimes> recorded;
-  if (const auto can_log = tools::recording_beside(options.scans)) {
-    recorded.emplace(*can_log, robot.tilt_signal, robot.tilt_sync_id);
-    recorded->read_all();
-  } else {
-    without_recording_ = tools::without_recording(options.scans);
-  }
-  clock_ = tools::LogClock(std::move(recorded));
+  clock_ = tools::LogClock::of_log(options.scans, robot.tilt_signal, robot.tilt_sync_id);
+  if (tools::RecordedTimes* recorded = clock_.recorded()) recorded->read_all();
 }
 
 void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
@@ -109,7 +103,7 @@ void Daemon::run() {
   started_ns_ = now.steady_ns;
   if (log_ && tilt_settings_.fixed) fixed_offset_ns_ = log_->front_ns() - now.host_ns;
   if (scanner_) scanner_->start();
-  if (!without_recording_.empty()) say(without_recording_);
+  if (!clock_.guess().empty()) say(clock_.guess());
   say("ready, curbs at ", server_.address());
   service_.notify("READY=1");
   heap_calls_before_ = heap_calls();

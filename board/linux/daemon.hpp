@@ -93,7 +93,6 @@ class Daemon {
   bool by_frame_ = false;                                   ///< lines are taken because a frame came
 
   std::optional<ScanLog> log_;
-  std::string without_recording_;                ///< what to say of the log at the start; empty: nothing
   std::optional<std::int64_t> fixed_offset_ns_;  ///< log time less host time, where no frame tells it
 
   std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady

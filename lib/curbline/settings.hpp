@@ -1,5 +1,5 @@
 // What a robot's builder tells the pipeline: geometry, noise and tuning, each with its unit, range and reason. Checked
-// once, at init; a bad setting is refused with the Status that names it.
+// once, at init; a bad setting is refused with the Status of its part, and bad_setting() names it.
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,7 @@
 
 namespace curbline {
 
-/// What init() refuses with, each naming the setting at fault, and what a call that takes data may answer.
+/// What init() refuses with, each naming the part of the settings at fault, and what a call that takes data may answer.
 enum class Status : std::uint8_t {
   ok,
   not_initialised,    ///< init() has not succeeded

@@ -33,6 +33,16 @@ Iterator nearest_same(Iterator first, Iterator last, const can::Frame& frame, st
   return nearest;
 }
 
+/// The CAN log of the recording that a scan log belongs to.
+std::optional<std::string> recording_beside(const std::string& scans) {
+  const std::filesystem::path path(scans);
+  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(log, none)) return log.string();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 /// What the kernel's filters let through.
@@ -88,25 +98,20 @@ bool RecordedTimes::ended() {
   return ahead_.empty() && !read_one();
 }
 
-std::optional<std::string> recording_beside(const std::string& scans) {
-  const std::filesystem::path path(scans);
-  for (const auto& log : {std::filesystem::path(path).replace_extension(".candump"), path.parent_path() / "can.log"}) {
-    std::error_code none;
-    if (std::filesystem::is_regular_file(log, none)) return log.string();
-  }
-  return std::nullopt;
-}
-
-std::string without_recording(const std::string& scans) {
-  const std::string name = std::filesystem::path(scans).filename().replace_extension(".candump").string();
-  return scans + ": no " + name +
-         " or can.log beside it; expected one, to know when tilt frames were recorded: the first is taken for one of " +
-         "the first scan line's time, and curbs are wrong if it is not";
-}
-
 LogClock LogClock::of_the_bus() {
   LogClock clock;
   clock.offset_ns_ = 0;
+  return clock;
+}
+
+LogClock LogClock::of_log(const std::string& scans, const can::Signal& signal, std::optional<std::uint16_t> sync_id) {
+  if (const auto log = recording_beside(scans)) return LogClock(RecordedTimes(*log, signal, sync_id));
+  LogClock clock;
+  const std::string name = std::filesystem::path(scans).filename().replace_extension(".candump").string();
+  clock.guess_ =
+      scans + ": no " + name +
+      " or can.log beside it; expected one, to know when tilt frames were recorded: the first is taken for " +
+      "one of the first scan line's time, and curbs are wrong if it is not";
   return clock;
 }
 

@@ -45,12 +45,6 @@ class RecordedTimes {
   long missed_ = 0;
 };
 
-/// The CAN log of the recording that a scan log belongs to: NAME.candump beside NAME.carmen, or can.log.
-std::optional<std::string> recording_beside(const std::string& scans);
-
-/// What a user should know where there is none: when the first frame came by the log's time is a guess.
-std::string without_recording(const std::string& scans);
-
 /// The log's time by the bus's: recorded times where there are some, else a constant offset from the first frame on,
 /// which came at the time of the first scan line.
 class LogClock {
@@ -59,12 +53,18 @@ class LogClock {
 
   /// Frames keep the bus's time.
   static LogClock of_the_bus();
+  /// Of a scan log: recorded times are those of the CAN log of its recording, NAME.candump beside NAME.carmen, or
+  /// can.log.
+  static LogClock of_log(const std::string& scans, const can::Signal& signal, std::optional<std::uint16_t> sync_id);
 
   /// Gives a frame its time in the log. `line_ns` is that of the scan line that waits for it.
   void set_log_time(can::Frame& frame, std::int64_t line_ns);
 
   /// Log time less bus time; nothing before the first frame.
   std::optional<std::int64_t> offset_ns() const { return offset_ns_; }
+  /// What a user should know of a scan log beside which no CAN log lies: when the first frame came is a guess. Else
+  /// empty.
+  const std::string& guess() const { return guess_; }
   long not_recorded() const { return not_recorded_; }  ///< frames that the recording does not have
   RecordedTimes* recorded() { return recorded_ ? &*recorded_ : nullptr; }
   const RecordedTimes* recorded() const { return recorded_ ? &*recorded_ : nullptr; }
@@ -72,6 +72,7 @@ class LogClock {
  private:
   std::optional<RecordedTimes> recorded_;
   std::optional<std::int64_t> offset_ns_;
+  std::string guess_;
   long not_recorded_ = 0;
 };
 

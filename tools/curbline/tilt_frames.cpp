@@ -52,13 +52,7 @@ class LiveFrames final : public TiltFrames {
         status != socketcan::Status::ok) {
       throw BadInput(name_ + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
     }
-    if (!scan_log) {
-      clock_ = LogClock::of_the_bus();
-    } else if (const auto log = recording_beside(*scan_log)) {
-      clock_ = LogClock(RecordedTimes(*log, signal, sync_id));
-    } else {
-      without_recording_ = without_recording(*scan_log);
-    }
+    clock_ = scan_log ? LogClock::of_log(*scan_log, signal, sync_id) : LogClock::of_the_bus();
   }
 
   std::optional<can::Frame> next(std::int64_t line_ns) override {
@@ -90,7 +84,7 @@ class LiveFrames final : public TiltFrames {
       remark(recorded->missed(), "tilt frames of " + recorded->path() + " did not come");
       remark(clock_.not_recorded(), "came that it does not have");
     }
-    if (!without_recording_.empty()) text += (text.empty() ? "" : "\n") + without_recording_;
+    if (!clock_.guess().empty()) text += (text.empty() ? "" : "\n") + clock_.guess();
     return text;
   }
 
@@ -112,7 +106,6 @@ class LiveFrames final : public TiltFrames {
   can::Signal signal_;
   socketcan::SocketCan bus_;
   LogClock clock_;
-  std::string without_recording_;  ///< a remark; empty where frames have recorded times, or the bus's
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::size_t taken_ = 0, held_ = 0;
   bool silent_ = false, ended_ = false;
