@@ -18,19 +18,21 @@ namespace {
 // All the memory there is.
 Port port;
 curbline::Pipeline<limits> pipeline;
-curbline::LineQueue<limits, 3> waiting;  // lines whose last beams have no tilt yet
+curbline::LineQueue<limits, queued_lines> waiting;  // whose last beams have no tilt yet
 can::TiltDecoder decoder;
 curbline::TiltWatch watch;
 std::int64_t newest_tilt_ns = curbline::TiltWatch::no_reading;
-curbline::Pose pose;  // the newest; of a robot that stands, the map's origin
-std::uint8_t curbs_told = 0;
+curbline::Pose pose;            // the newest; of a robot that stands, the map's origin
+std::uint8_t curbs_told = 255;  // the first CurbAhead has 0
 
 void start() {
   const curbline::Settings settings = robot_settings();
   if (pipeline.init(settings) != curbline::Status::ok) port.stop(curbline::bad_setting(settings, limits));
   if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
-  waiting.init(settings.laser, settings.tilt, 2 * settings.tilt.max_gap_s);
-  watch.init(settings.tilt.max_gap_s);
+  if (!settings.tilt.fixed && can::shares_ids(tilt_signal()))
+    port.stop("the tilt servo sends the ids of curb_frames.hpp");
+  waiting.init(settings.laser, settings.tilt, settings.tilt.max_gap_s);
+  watch.init(settings.tilt.max_gap_s, settings.tilt.fixed);
   if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
 }
 

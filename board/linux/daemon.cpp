@@ -60,7 +60,7 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   open_scans(robot, options);
   open_bus(robot, options);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
-  tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s));
+  tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
   server_.open(options.curbs);
 }
 
@@ -86,6 +86,11 @@ void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
   if (!has_bus_) {
     if (robot.tilt.fixed) return;
     throw BadInput(robot.file + ": the laser nods; expected --can IFACE, or tilt.fixed = true");
+  }
+  if (can_out_ && !robot.tilt.fixed && can::shares_ids(robot.tilt_signal, robot.tilt_sync_id)) {
+    throw BadInput(robot.file +
+                   ": its tilt frames, or SYNC, have an id from 0x6A0 to 0x6BF, as those of --can-out; "
+                   "expected another, for an ODrive another node than 53");
   }
   const std::array filters{socketcan::filter_of(robot.tilt_signal),
                            socketcan::Filter{robot.tilt_sync_id.value_or(0), CAN_SFF_MASK, false}};
@@ -239,7 +244,7 @@ void Daemon::look_around() {
   const std::int64_t now_ns = scanner::steady_now_ns();
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
-  const TiltEvent tilt = tilt_settings_.fixed ? TiltEvent::none : tilt_watch_.update(newest_arrival_ns_, now_ns);
+  const TiltEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
   const Report status = make_report();
   troubles_.tell(status, tilt, now_ns);
   const std::string_view state = state_of(status);

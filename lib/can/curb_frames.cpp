@@ -37,7 +37,8 @@ constexpr std::array<CurbField, fields> layout{{
      field(curb_ahead_id, 58, 6, 0.02), 0, 1},
     {"CurbStatus", "Counter", "", "One more with each CurbAhead, which is not to be trusted while it stands.",
      field(curb_status_id, 0, 8, 1.0), 0, 255},
-    {"CurbStatus", "Tilt", "", "The tilt servo: 0 never seen, 1 ok, 2 stale.", field(curb_status_id, 8, 2, 1.0), 0, 2},
+    {"CurbStatus", "Tilt", "", "The tilt servo: 0 never seen, 1 ok or none, 2 stale.", field(curb_status_id, 8, 2, 1.0),
+     0, 2},
     {"CurbStatus", "Curbs", "", "In the window; 255 is that or more.", field(curb_status_id, 16, 8, 1.0), 0, 255},
 }};
 
@@ -75,7 +76,16 @@ bool can_be_sent(const CurbAhead& curb) {
   return is_finite(curb.distance_m) && is_finite(curb.lateral_m) && is_finite(curb.height_m);
 }
 
+/// Do they differ in none of these bits, nor in the last five, by which an ODrive tells its frames apart?
+bool same_node(std::uint32_t id, std::uint32_t mask) {
+  return ((id ^ curb_ahead_id) & mask & ~std::uint32_t{0x1F}) == 0;
+}
+
 }  // namespace
+
+bool shares_ids(const Signal& tilt, std::optional<std::uint16_t> sync_id) {
+  return (!tilt.extended && same_node(tilt.id, tilt.id_mask)) || (sync_id && same_node(*sync_id, 0x7FF));
+}
 
 std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m) {
   const SinCos ahead = heading(make_transform(pose));

@@ -3,8 +3,8 @@
 // CurbStatus; after one that was dropped (no tilt, say) a CurbStatus alone, since nothing new is known of the way.
 // tools/robots/curb_ahead.dbc is their DBC.
 //
-// Both are standard frames of ids that CANopen (CiA 301) leaves free and that no preset servo uses; all numbers little
-// endian, x ahead and y left of the base frame.
+// Both are standard frames of ids that CANopen (CiA 301) leaves free, and of the preset servos only an ODrive of node
+// 53 uses: see shares_ids(). All numbers are little endian, x ahead and y left of the base frame.
 //
 // CurbAhead, 0x6A0, 8 bytes, one for the nearest step on the way, or, without one, the nearest crease or edge of a
 // ramp:
@@ -15,9 +15,9 @@
 //   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp
 //   bits 58-63  probability    u6, 0.02, 0 to 1
 // CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
-//   bits 0-7    counter        u8, one more with each CurbAhead, wraps; a receiver that sees it stand, or sees no
-//                              CurbStatus, does not trust CurbAhead
-//   bits 8-9    tilt           0 never seen, 1 ok, 2 stale: see curbline/tilt_watch.hpp
+//   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver that sees it
+//                              stand, or sees no CurbStatus, does not trust CurbAhead
+//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/tilt_watch.hpp
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //
 // Values out of range are clamped; NaN of a distance, place or height gives "nothing ahead". Pure, no state: may be
@@ -59,6 +59,10 @@ std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& 
 /// The frame for a curb, or, with nothing, for a way without one.
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);
 Frame curb_status_frame(const CurbStatus& status);
+
+/// Does a servo on the same bus send these ids, or a SYNC? Then it wants another id: two nodes that send one id destroy
+/// each other's frames. An ODrive, of which the signal is one frame, has 32 ids in a row.
+bool shares_ids(const Signal& tilt, std::optional<std::uint16_t> sync_id = std::nullopt);
 
 /// The other way. False if the frame is another one or too short; `curb` is nothing if nothing is ahead.
 bool read_curb_ahead(const Frame& frame, std::optional<CurbAhead>& curb);

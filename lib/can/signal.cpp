@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace curbline::can {
 namespace {
@@ -82,7 +83,11 @@ constexpr double power_of_2(int n) {
 }
 
 std::uint64_t number_to_raw(const Signal& s, double count) {
-  if (s.is_float) return std::bit_cast<std::uint32_t>(static_cast<float>(count));
+  if (s.is_float) {
+    constexpr double most = std::numeric_limits<float>::max();
+    const double in_range = !(count > -most) ? -most : count < most ? count : most;
+    return std::bit_cast<std::uint32_t>(static_cast<float>(in_range));
+  }
   const int magnitude_bits = s.is_signed ? s.length - 1 : s.length;
   const std::uint64_t all_ones = ~std::uint64_t{0} >> (64 - s.length);
   const std::uint64_t highest = s.is_signed ? all_ones >> 1 : all_ones;
@@ -109,7 +114,7 @@ bool valid(const Signal& s) {
 int bytes_needed(const Signal& s) {
   const int own = bytes_of(bits_of(s)), selector = s.multiplexor ? bytes_of(bits_of(*s.multiplexor)) : 0;
   const int longer = own > selector ? own : selector;
-  return longer > s.min_bytes ? longer : s.min_bytes;
+  return fd_length(static_cast<std::uint8_t>(longer > s.min_bytes ? longer : s.min_bytes));
 }
 
 bool carries(const Signal& signal, const Frame& frame) {
@@ -133,7 +138,7 @@ void encode(const Signal& signal, double value, Frame& frame) {
   frame.remote = frame.error = false;
   const auto needed = static_cast<std::uint8_t>(bytes_needed(signal));
   if (needed > 8) frame.fd = true;
-  if (needed > frame.length) frame.length = fd_length(needed);
+  if (needed > frame.length) frame.length = needed;
   if (signal.multiplexor) write_bits(bits_of(*signal.multiplexor), signal.multiplexor->value, frame);
   write_bits(bits_of(signal), number_to_raw(signal, (value - signal.offset) / signal.scale), frame);
 }

@@ -43,12 +43,12 @@ struct Signal {
   std::uint8_t max_bytes = 64;  ///< a longer frame of the id is another one: a command to the servo, say
 };
 
-/// True if the bits lie in the 64 bytes of a frame and within max_bytes, the id fits 11 or 29 bits, scale and offset
-/// are finite, scale is not 0, and the multiplexor can have its value. The functions below want a valid signal: ask
-/// once, when it comes in.
+/// True if the bits lie in the 64 bytes of a frame, which may be as long as that by max_bytes, the id fits 11 or 29
+/// bits, scale and offset are finite, scale is not 0, and the multiplexor can have its value. The functions below want
+/// a valid signal: ask once, when it comes in.
 bool valid(const Signal& signal);
 
-/// Bytes that a frame with the signal has at least, 1 to 64.
+/// Bytes that a frame with the signal has at least, 1 to 64; above 8 a length of CAN FD.
 int bytes_needed(const Signal& signal);
 
 /// Whether the frame is one of the signal's: a data frame of its id, of max_bytes at most, whose multiplexor, if it is
@@ -62,8 +62,8 @@ std::optional<double> decode(const Signal& signal, const Frame& frame);
 
 /// Writes the value into the frame (id, length, multiplexor and bits; other bits stay, a longer frame keeps its
 /// length), rounded to the nearest count, halves away from 0, and clamped to the field's range; NaN becomes the lowest
-/// count. A signal beyond byte 8 makes the frame CAN FD. Bits of the id outside id_mask become those of signal.id. What
-/// simulators use.
+/// count, of a float as of a whole number. A signal beyond byte 8 makes the frame CAN FD. Bits of the id outside
+/// id_mask become those of signal.id. What simulators use.
 void encode(const Signal& signal, double value, Frame& frame);
 
 }  // namespace curbline::can

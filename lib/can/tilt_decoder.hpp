@@ -9,8 +9,8 @@
 // does not move; before the second SYNC 5 ms are allowed. (CiA 301, SYNC object 0x1005; TPDO
 // transmission types 1 to 240.)
 //
-// take() may be called from an interrupt or a receive thread, one of them; counters() from anywhere, at any time.
-// init() must not run beside take(): before the interrupt is enabled, or with it masked.
+// take() may be called from an interrupt or a receive thread, one of them; counters() from anywhere, beside take() too.
+// init() must not run beside either: before the interrupt is enabled, or with it masked.
 #pragma once
 
 #include <array>

@@ -3,9 +3,10 @@
 //
 //   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now, offset) after every line and tilt reading
 //
-// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. No clock:
-// times come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each
-// other.
+// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. A line
+// waits for at most the time in which capacity - 1 more come: for the settings' latency and two periods of the servo's
+// frames, one of which may be lost, capacity is that time over a line's period, rounded up, and one. No clock: times
+// come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each other.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +39,8 @@ class LineQueue {
   static_assert(capacity >= 2, "one line waits, one comes");
 
  public:
-  /// Empties the queue. A line waits for max_wait_s at most; two periods of the servo's frames are enough for one that
-  /// is lost.
+  /// Empties the queue. A line waits for max_wait_s at most, however seldom lines come: TiltSettings::max_gap_s is a
+  /// good choice, as beams in a longer gap have no angle.
   void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
 
   /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length

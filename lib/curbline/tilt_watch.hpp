@@ -13,7 +13,7 @@ namespace curbline {
 
 enum class TiltState : std::uint8_t {
   never,  ///< no reading yet
-  ok,
+  ok,     ///< or there is no servo: the tilt is fixed
   stale,  ///< the newest reading is older than the bound
 };
 
@@ -21,8 +21,8 @@ enum class TiltState : std::uint8_t {
 enum class TiltEvent : std::uint8_t {
   none,
   missing,    ///< no reading since the start, for longer than the bound
-  first,      ///< the first reading
-  lost,       ///< ok to stale
+  first,      ///< the first reading, a fresh one
+  lost,       ///< ok to stale, or the first reading is stale already
   recovered,  ///< stale to ok
 };
 
@@ -32,10 +32,12 @@ class TiltWatch {
   static constexpr std::int64_t no_reading = std::numeric_limits<std::int64_t>::min();
 
   /// Starts afresh. stale_after_s: a servo that is silent for longer is stale. TiltSettings::max_gap_s is a good
-  /// choice: beams in a longer gap have no angle.
-  void init(float stale_after_s) {
+  /// choice: beams in a longer gap have no angle. `fixed`, as in TiltSettings: nothing is watched, all is well.
+  void init(float stale_after_s, bool fixed) {
     *this = TiltWatch{};
     stale_after_ns_ = static_cast<std::int64_t>(stale_after_s * 1e9f);
+    fixed_ = fixed;
+    if (fixed) state_ = TiltState::ok;
   }
 
   /// Call as often as the answer matters, say with every scan line. newest_ns: time of the newest reading.
@@ -50,7 +52,7 @@ class TiltWatch {
   TiltEvent update_never(std::int64_t now_ns);
 
   TiltState state_ = TiltState::never;
-  bool started_ = false, missing_told_ = false;
+  bool fixed_ = false, started_ = false, missing_told_ = false;
   std::int64_t stale_after_ns_ = 0;
   std::int64_t start_ns_ = 0;  ///< of the first update
   std::int64_t longest_silence_ns_ = 0;
@@ -58,6 +60,7 @@ class TiltWatch {
 };
 
 inline TiltEvent TiltWatch::update(std::int64_t newest_ns, std::int64_t now_ns) {
+  if (fixed_) return TiltEvent::none;
   if (newest_ns == no_reading) return state_ == TiltState::never ? update_never(now_ns) : TiltEvent::none;
   const std::int64_t silence_ns = now_ns - newest_ns;  // below 0 if the clocks differ: fresh
   if (silence_ns > longest_silence_ns_) longest_silence_ns_ = silence_ns;

@@ -53,7 +53,7 @@ class Result {
  public:
   // Offsets from the end of the header, for readers.
   static constexpr std::size_t curbs_at = 12 + sizeof(Counters) + 4;
-  static constexpr std::size_t curb_bytes = 7 * sizeof(float) + 3 * sizeof(std::uint16_t);
+  static constexpr std::size_t curb_bytes = 8 * sizeof(float) + 4 * sizeof(std::uint16_t);
 
   Result(const ScanLine& line, Status status, const Counters& counters, std::span<const Curb> curbs) {
     const RecordHeader header{RecordKind::result, 0};
@@ -70,8 +70,7 @@ class Result {
   std::span<const std::byte> bytes() const { return {bytes_.data(), size_}; }
 
  private:
-  static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0 && sizeof(Curb) == 40,
-                "a field more of a curb belongs below too");
+  static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0);
 
   template <typename T>
   void put(const T& value) {
@@ -80,11 +79,10 @@ class Result {
     size_ += sizeof value;
   }
 
-  void put_curb(const Curb& c) {
-    for (const float value : {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.height_m, c.height_sd_m, c.probability}) put(value);
-    put(static_cast<std::uint16_t>(c.kind));
-    put(c.near_label);
-    put(c.far_label);
+  void put_curb(const Curb& curb) {
+    const auto& [x0, y0, x1, y1, height, height_sd, probability, face_width, kind, id, near_label, far_label] = curb;
+    for (const float value : {x0, y0, x1, y1, height, height_sd, probability, face_width}) put(value);
+    for (const std::uint16_t value : {static_cast<std::uint16_t>(kind), id, near_label, far_label}) put(value);
   }
 
   std::array<std::byte, sizeof(RecordHeader) + curbs_at + static_cast<std::size_t>(max_curbs) * curb_bytes> bytes_;

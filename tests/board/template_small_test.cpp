@@ -1,4 +1,5 @@
-// The template's settings fit limits smaller than the template's: the pipeline starts, its window in the middle ahead.
+// The template's settings fit limits smaller than the template's: the pipeline starts, its window in the middle ahead,
+// the laser looks as far to the left as to the right.
 #include <cstdio>
 
 #include "curbline/pipeline.hpp"
@@ -13,5 +14,11 @@ int main() {
   }
   const auto& dem = pipeline.dem();
   const float middle_m = dem.origin_y_m() + 0.5f * static_cast<float>(dem.cols()) * dem.cell_y_m();
-  return middle_m > -0.01f && middle_m < 0.01f ? 0 : 2;
+  if (!(middle_m > -0.01f && middle_m < 0.01f)) return 2;
+  const curbline::LaserSettings laser = robot_settings().laser;
+  const float last_rad = laser.first_bearing_rad + static_cast<float>(laser.beams - 1) * laser.bearing_step_rad;
+  return laser.first_bearing_rad < 0.0f && laser.first_bearing_rad + last_rad < 0.001f &&
+                 laser.first_bearing_rad + last_rad > -0.001f
+             ? 0
+             : 3;
 }

@@ -155,6 +155,22 @@ TEST_CASE(
   check_alike(last_curbs(cut.lines), undisturbed_end());
 }
 
+TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is well", "[daemon]") {
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
+  const TemporaryDirectory directory;
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
+  Service service({"--can", "vcan0", "--can-out", "--scans", recording().path("scans.carmen"), "--robot", fixed});
+  status_of(service.end());
+  const auto frames = socketcan::testing::receive_all(receiver);
+  CHECK(frames.size() > 200);
+  for (const can::Frame& frame : frames) {
+    can::CurbStatus told;
+    if (can::read_curb_status(frame, told)) CHECK(told.tilt == TiltState::ok);
+  }
+}
+
 TEST_CASE("daemon: a servo that falls silent is an error state, told once, on the socket and on CAN, until it reports",
           "[daemon]") {
   SocketCan receiver;

@@ -30,6 +30,8 @@ TEST_CASE("curblined: what it cannot run with is refused with one line") {
                 "none.carmen: ", "");
   check_refused(curbline({"--robot", nodding, "--can", "none7", "--curbs", curbs, "--scans", "scip2:"}),
                 "scip2:", "no host");
+  const std::string odrive = directory.write("odrive.toml", "[tilt.signal]\nservo = \"odrive\"\nnode = 53\n");
+  check_refused(curbline(words + Words{odrive, "--can", "none7", "--can-out"}), odrive + ": ", "as those of --can-out");
   const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
   check_refused(curbline({"--robot", fixed, "--scans", scans, "--curbs", "here"}), "here: ", "unix:PATH");
 }

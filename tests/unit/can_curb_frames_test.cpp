@@ -8,6 +8,9 @@
 #include <random>
 #include <string>
 
+#include "can/servo_presets.hpp"
+#include "can/tilt_decoder.hpp"
+
 using namespace curbline;
 using namespace curbline::can;
 
@@ -114,6 +117,19 @@ TEST_CASE("curb frames: other, short and impossible frames are not read") {
   CHECK_FALSE(read_curb_status(state, status));
 }
 
+TEST_CASE("curb frames: a servo that sends their ids is told") {
+  for (int node = 0; node < 64; ++node) {
+    CHECK(shares_ids(odrive_encoder_estimates(static_cast<std::uint8_t>(node))) == (node == 53));
+  }
+  Signal on_29_bits = odrive_encoder_estimates(53);
+  on_29_bits.extended = true;
+  CHECK_FALSE(shares_ids(on_29_bits));
+  CHECK_FALSE(shares_ids(vesc_status_4(0xA0)));
+  CHECK(shares_ids(Signal{.id = 0x0A0, .id_mask = 0x1FF}));
+  CHECK_FALSE(shares_ids(cia402_position(1), default_sync_id));
+  CHECK(shares_ids(cia402_position(1), std::uint16_t{0x6A1}));
+}
+
 TEST_CASE("curb frames: fields do not share a bit and are valid signals") {
   std::array<std::array<int, 64>, 2> used{};
   for (const CurbField& field : curb_fields()) {
@@ -133,10 +149,11 @@ TEST_CASE("curb ahead: the nearest of those that reach into the way, at the poin
     return c;
   };
   const Curb across = curb(3.0f, -2.0f, 3.0f, 2.0f, 0.12f), beside = curb(0.5f, 0.6f, 6.0f, 0.6f, 0.1f);
+  const Curb other_side = curb(0.5f, -0.6f, 6.0f, -0.6f, 0.1f);
   const Curb slanting = curb(5.0f, 0.0f, 3.0f, 1.0f, 0.08f), behind = curb(-1.0f, -2.0f, -1.0f, 2.0f, 0.2f);
   CHECK_FALSE(nearest_ahead({}, Pose{}, 0.5f));
-  CHECK_FALSE(nearest_ahead(std::array{beside, behind}, Pose{}, 0.5f));
-  const auto all = nearest_ahead(std::array{beside, slanting, behind, across}, Pose{}, 0.5f);
+  CHECK_FALSE(nearest_ahead(std::array{beside, other_side, behind}, Pose{}, 0.5f));
+  const auto all = nearest_ahead(std::array{beside, other_side, slanting, behind, across}, Pose{}, 0.5f);
   REQUIRE(all);
   CHECK(all->distance_m == 3.0f);
   CHECK(all->height_m == 0.12f);

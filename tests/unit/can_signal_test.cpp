@@ -109,10 +109,26 @@ TEST_CASE("can signal: what does not fit is clamped and rounded to the nearest c
   CHECK(through(10.24) == 10.0);
   CHECK(through(10.26) == 10.5);
   CHECK(through(9.74) == 9.5);
+  CHECK(through(9.75) == 9.5);
   const Signal widest{.id = 1, .length = 64, .is_signed = false};
   Frame f;
   encode(widest, 1e30, f);
   CHECK(*decode(widest, f) == 0x1p64);
+}
+
+TEST_CASE("can signal: a float is clamped to the numbers that a float has") {
+  const Signal number{.id = 1, .is_float = true, .scale = 0.5};
+  constexpr double most = 0.5 * double{std::numeric_limits<float>::max()};
+  const auto through = [&](double value) {
+    Frame f;
+    encode(number, value, f);
+    return decode(number, f);
+  };
+  CHECK(through(1e300) == most);
+  CHECK(through(-1e300) == -most);
+  CHECK(through(std::numeric_limits<double>::infinity()) == most);
+  CHECK(through(std::numeric_limits<double>::quiet_NaN()) == -most);
+  CHECK(through(-0.25) == -0.25);
 }
 
 TEST_CASE("can signal: a description that cannot be is not valid") {
@@ -153,6 +169,12 @@ TEST_CASE("can signal: a description that cannot be is not valid") {
     bad.start_bit = 487;  // 32 bits from the first of byte 60
     REQUIRE(valid(bad));
     bad.start_bit = 486;
+  }
+  SECTION("in frames of 9 bytes, which CAN FD does not have") {
+    bad.start_bit = 40;
+    bad.max_bytes = 12;
+    REQUIRE(valid(bad));
+    bad.max_bytes = 9;
   }
   SECTION("a multiplexor of no bits") {
     bad.multiplexor = Multiplexor{.length = 0};

@@ -123,6 +123,25 @@ TEST_CASE("tilt decoder: a SYNC that counts, and one of another id, is a SYNC as
   CHECK(tilt.counters().others == 1);
 }
 
+TEST_CASE("tilt decoder: what has the SYNC's id and is another kind of frame is none") {
+  TiltDecoder tilt = decoder(default_sync_id);
+  for (bool Frame::*const other : {&Frame::extended, &Frame::remote, &Frame::error}) {
+    tilt.take(sync(t0));
+    Frame frame = sync(t0 + us);
+    frame.*other = true;
+    tilt.take(frame);
+    CHECK(tilt.take(position(t0 + ms, 0.5))->time_ns == t0);
+  }
+  CHECK(tilt.counters().others == 3);
+}
+
+TEST_CASE("tilt decoder: a bus whose clock is set back is followed") {
+  TiltDecoder tilt = decoder(default_sync_id);
+  for (int k = 0; k < 5; ++k) tilt.take(sync(t0 + 10 * ms * k));
+  tilt.take(sync(t0 - 5000 * ms));
+  CHECK(tilt.take(position(t0 - 5000 * ms + 300 * us, 0.5))->time_ns == t0 - 5000 * ms);
+}
+
 TEST_CASE("tilt decoder: a drive may answer every n-th SYNC") {
   TiltDecoder tilt = decoder(default_sync_id);
   for (int k = 0; k < 20; ++k) {

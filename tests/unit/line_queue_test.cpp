@@ -157,6 +157,17 @@ TEST_CASE("line queue: a line with a stamp that is no time is refused and counte
   CHECK(adds_up(q));
 }
 
+TEST_CASE("line queue: after init it is empty and has counted nothing") {
+  Queue q = queue();
+  const Line line(0);
+  q.push(line.line(), line.end_ns());
+  q.push(Line(1, 12).line(), t0);
+  q.init(laser, {}, 0.05f);
+  CHECK(q.size() == 0);
+  CHECK_FALSE(q.pop(line.end_ns() + ms, line.end_ns(), 0.0f));
+  CHECK(q.counters().pushed + q.counters().too_long + q.counters().covered == 0);
+}
+
 TEST_CASE("line queue: under any traffic lines stay in order, whole, and every one is accounted for") {
   std::mt19937 random(3);
   Queue q = queue();

@@ -116,6 +116,17 @@ TEST_CASE("tilt track: readings too far apart say nothing of the time between") 
   CHECK(angles.at(t0 + 210 * ms).source == Source::none);          // no rate to go on with
 }
 
+TEST_CASE("tilt track: across a gap of seconds, where the settings allow it, the angle is on the line all the same") {
+  TiltSettings settings;
+  settings.max_gap_s = 10.0f;
+  const auto track = std::make_unique<Track>();
+  track->init(settings);
+  track->push({t0, 0.0f});
+  track->push({t0 + 8000 * ms, 0.8f});
+  Snapshot angles = snapshot(*track);
+  for (int k = 0; k < 8; ++k) CHECK(angles.at(t0 + 1000 * ms * k).angle_rad == Approx(0.1 * k).margin(1e-6));
+}
+
 TEST_CASE("tilt track: without readings there is no angle, with one there is at its moment only") {
   const auto track = std::make_unique<Track>();
   track->init(TiltSettings{});

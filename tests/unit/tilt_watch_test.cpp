@@ -11,7 +11,7 @@ constexpr std::int64_t t0 = 1'290'682'980'025'000'000;
 
 TiltWatch watch() {
   TiltWatch out;
-  out.init(0.2f);
+  out.init(0.2f, false);
   return out;
 }
 
@@ -54,11 +54,20 @@ TEST_CASE("tilt watch: readings ahead of the clock are fresh") {
   CHECK(tilt.longest_silence_ns() == 0);
 }
 
+TEST_CASE("tilt watch: a tilt that is fixed is well without a servo") {
+  TiltWatch tilt;
+  tilt.init(0.2f, true);
+  CHECK(tilt.state() == TiltState::ok);
+  CHECK(tilt.update(TiltWatch::no_reading, t0) == TiltEvent::none);
+  CHECK(tilt.update(TiltWatch::no_reading, t0 + 900 * ms) == TiltEvent::none);
+  CHECK(tilt.state() == TiltState::ok);
+}
+
 TEST_CASE("tilt watch: a new start forgets") {
   TiltWatch tilt = watch();
   tilt.update(t0, t0);
   tilt.update(t0, t0 + 300 * ms);
-  tilt.init(0.2f);
+  tilt.init(0.2f, false);
   CHECK(tilt.state() == TiltState::never);
   CHECK(tilt.times_lost() == 0);
   CHECK(tilt.update(t0 + 400 * ms, t0 + 400 * ms) == TiltEvent::first);

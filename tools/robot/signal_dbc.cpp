@@ -69,7 +69,7 @@ Dbc dbc_of(const Robot& robot) {
   message.name = "TiltServo";
   message.id = signal.id;
   message.extended = signal.extended;
-  message.length = can::fd_length(static_cast<std::uint8_t>(can::bytes_needed(signal)));
+  message.length = can::bytes_needed(signal);
   message.comment = "Angle of the tilt servo of " + printable(robot.name) + ".";
   const std::uint32_t all_bits = signal.extended ? 0x1FFFFFFF : 0x7FF;
   if ((signal.id_mask & all_bits) != all_bits) {
