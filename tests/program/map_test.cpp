@@ -210,6 +210,33 @@ TEST_CASE("program: a cloud in coordinates of a national grid gives its map ther
   for (const double y_m : {curbs[0].y0_m, curbs[0].y1_m}) CHECK(std::abs(y_m - north_m) == Approx(2.0).margin(0.1));
 }
 
+//  laser
+//    .           shadow
+//  ______________ ..
+//  0             2   |________  -0.12
+TEST_CASE(
+    "program: a step down lies at its edge, whether the cloud is in the frame of the laser or of the robot's base") {
+  const TemporaryDirectory dir;
+  constexpr double laser_m = 1.1, edge_m = 2, drop_m = 0.12;
+  for (const double origin_m : {laser_m, 0.0}) {
+    std::string text;
+    for (double x = 0.5; x < 4; x += 0.02) {
+      if (x > edge_m && x < edge_m * (1 + drop_m / laser_m)) continue;
+      for (double y = -2; y < 2; y += 0.04) {
+        const double noise_m = 0.002 * std::sin(9177 * x + 4211 * y);
+        text += std::to_string(x) + " " + std::to_string(y) + " " +
+                std::to_string((x < edge_m ? 0 : -drop_m) - origin_m + noise_m) + "\n";
+      }
+    }
+    const Files files(dir);
+    check_done(curbline(Words{"map", dir.write("cloud.xyz", text)} + window + files.options()));
+    const std::vector<MapCurb> curbs = read_curbs(files.curbs);
+    REQUIRE(curbs.size() == 1);
+    CHECK(curbs[0].kind == "step_down");
+    for (const double x_m : {curbs[0].x0_m, curbs[0].x1_m}) CHECK(x_m == Approx(edge_m).margin(0.03));
+  }
+}
+
 TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exactly as asked") {
   const TemporaryDirectory dir;
   const Files files(dir);

@@ -1,8 +1,11 @@
 #include "curbline/map_cloud.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <optional>
 
 #include "curbline/host_pipeline.hpp"
 #include "peers/peers.hpp"
@@ -31,14 +34,46 @@ Point3 whole_kilometres(std::span<const Point3> cloud, const MapOptions& options
   return options.fixed() ? Point3{whole(options.origin[0]), whole(options.origin[1]), z} : Point3{0, 0, z};
 }
 
-/// Where the origin lies, as seen from `place`; a pipeline's mount reaches 100 m at most, which leaves its direction.
-MountSettings origin_seen_from(const Point3& place) {
+/// How high the ground about the origin lies: the median of the lowest points in squares of a quarter metre, 3 m around
+/// or, where nothing is seen as near, half as far again as the nearest point. Nothing beyond a laser's reach.
+std::optional<double> ground_about_origin_m(std::span<const Point3> cloud) {
+  constexpr double square_m = 0.25, around_m = 3, furthest_m = 30;
+  const auto away_m = [](const Point3& p) { return std::hypot(p.x, p.y); };
+  const auto nearest = std::ranges::min_element(cloud, {}, away_m);
+  if (nearest == cloud.end() || away_m(*nearest) > furthest_m) return std::nullopt;
+  const double reach_m = std::max(around_m, 1.5 * away_m(*nearest));
+  std::map<std::array<double, 2>, double> lowest;
+  for (const Point3& p : cloud) {
+    if (away_m(p) > reach_m) continue;
+    const auto [square, first] = lowest.try_emplace({std::floor(p.x / square_m), std::floor(p.y / square_m)}, p.z);
+    if (p.z < square->second) square->second = p.z;
+  }
+  std::vector<double> heights;
+  for (const auto& [square, height] : lowest) heights.push_back(height);
+  const auto middle = heights.begin() + std::ssize(heights) / 2;
+  std::ranges::nth_element(heights, middle);
+  return *middle;
+}
+
+/// How high above the origin the laser was: at it, in the frame of a laser; in that of a robot's base, where the ground
+/// is nearer to the origin's height than to where a robot of pavements would have it below its laser, that much above.
+/// Where neither can be nothing is known, for which a laser below all ground stands.
+double laser_above_origin_m(std::span<const Point3> cloud) {
+  constexpr double carried_m = 1, unknown_m = -100;
+  const std::optional<double> ground_m = ground_about_origin_m(cloud);
+  if (!ground_m || *ground_m > 0.5 * carried_m) return unknown_m;
+  return *ground_m < -0.5 * carried_m ? 0 : carried_m;
+}
+
+/// Where the laser is, as seen from `place`; a pipeline's mount reaches 100 m at most, which leaves its direction.
+MountSettings laser_seen_from(const Point3& place, double above_origin_m) {
   constexpr double furthest_m = 100;
-  const double away_m = std::hypot(place.x, place.y, place.z);
-  const double share = away_m > furthest_m ? -furthest_m / away_m : -1;
-  return {.x_m = static_cast<float>(share * place.x),
-          .y_m = static_cast<float>(share * place.y),
-          .z_m = static_cast<float>(share * place.z)};
+  const Point3 way{-place.x, -place.y, above_origin_m - place.z};
+  const double away_m = std::hypot(way.x, way.y, way.z);
+  const double share = away_m > furthest_m ? furthest_m / away_m : 1;
+  return {.x_m = static_cast<float>(share * way.x),
+          .y_m = static_cast<float>(share * way.y),
+          .z_m = static_cast<float>(share * way.z)};
 }
 
 /// By the pipeline, with `place` as its map's origin.
@@ -46,7 +81,7 @@ Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions opt
   if (options.fixed()) options.origin = {options.origin[0] - place.x, options.origin[1] - place.y};
   if (options.max_height_m) *options.max_height_m -= place.z;
   Settings settings;
-  settings.tilt.T_base_tilt = origin_seen_from(place);
+  settings.tilt.T_base_tilt = laser_seen_from(place, laser_above_origin_m(cloud));
   apply_window(options, settings.window);
   const Grid grid = asked_grid(options, settings.window);
   widen(settings.window);

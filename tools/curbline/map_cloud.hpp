@@ -11,7 +11,9 @@
 namespace curbline::tools {
 
 /// Window, cell size, height and method as the options have them; the robot stands at the origin. By curbline itself
-/// margin_cells around the window are mapped too, and not given out.
+/// margin_cells around the window are mapped too, and not given out. Shadows and veils are those of a laser at the
+/// origin, or 1 m above it where the ground is as high as the origin (the frame of a robot's base); of a cloud that is
+/// in neither frame nothing is known of them. O(points log points).
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
 
 /// The same by the paper's methods or its peers' (options.method is one of them) on a given grid.

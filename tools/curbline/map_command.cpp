@@ -44,7 +44,11 @@ void add_map(CLI::App& app) {
     MapOptions map;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("cloud", o->cloud, "point cloud, metres: .xyz .csv .pcd .bin")->check(file_name())->required();
+  command
+      ->add_option("cloud", o->cloud,
+                   "point cloud, metres, in the frame of its laser or of a robot's base: .xyz .csv .pcd .bin")
+      ->check(file_name())
+      ->required();
   add_map_options(*command, o->map);
   command->callback([o] {
     check_outputs(outputs_of(o->map), {{"the cloud", o->cloud}});
