@@ -77,10 +77,12 @@ class XilinxCan {
 
   explicit XilinxCan(Registers registers) : registers_(registers) {}
 
-  /// Sets the controller up and joins the bus. Without a filter every frame comes in. May be called again.
+  /// Sets the controller up and joins the bus. Without a filter every frame comes in. May be called again. If it fails
+  /// the controller is closed: in reset, off the bus, its interrupt off.
   Status open(const Settings& settings, std::span<const Filter> filters);
 
-  /// Sends frames of both kinds to itself, off the bus, and looks at what comes back. Then the controller is closed.
+  /// Sends frames of both kinds to itself, off the bus, and looks at what comes back. Then the controller is closed, as
+  /// after an open() that failed.
   Status self_test(const Settings& settings);
 
   /// Fills `out` from its start with the frames that have come, oldest first, and returns how many; what has no room
@@ -97,7 +99,10 @@ class XilinxCan {
  private:
   static constexpr int patience = 100'000;  ///< reads
 
+  void reset() { registers_.write(Register::software_reset, bits::reset); }
+  void close();
   Status start(std::uint32_t mode);
+  bool set_up(std::uint32_t mode);
   bool wait(std::uint32_t status_mask, std::uint32_t wanted) const;
   bool set_filters();
   bool take(can::Frame& frame, std::int64_t now_ns);
@@ -117,7 +122,7 @@ class XilinxCan {
 
 template <typename Registers>
 Status XilinxCan<Registers>::open(const Settings& settings, std::span<const Filter> filters) {
-  bus_ = BusState::closed;
+  close();
   if (filters.size() > max_filters) return Status::too_many_filters;
   const std::optional<BitTiming> timing = bit_timing(settings.clock_hz, settings.bits_s);
   if (!timing) return Status::bad_bit_rate;
@@ -128,24 +133,38 @@ Status XilinxCan<Registers>::open(const Settings& settings, std::span<const Filt
   return start(0);
 }
 
-/// Reset, set-up, and out of configuration mode into `mode`.
+/// In reset no interrupt is enabled. One of a closed bus would come for ever: receive() no longer takes what raised it.
+template <typename Registers>
+void XilinxCan<Registers>::close() {
+  bus_ = BusState::closed;
+  reset();
+}
+
+/// From reset into `mode`, or back to reset.
 template <typename Registers>
 Status XilinxCan<Registers>::start(std::uint32_t mode) {
-  registers_.write(Register::software_reset, bits::reset);
-  if (!wait(bits::in_configuration, bits::in_configuration)) return Status::no_answer;
+  if (!set_up(mode)) {
+    reset();
+    return Status::no_answer;
+  }
+  registers_.write(Register::interrupt_clear, bits::all);
+  bus_ = BusState::active;
+  return Status::ok;
+}
+
+template <typename Registers>
+bool XilinxCan<Registers>::set_up(std::uint32_t mode) {
+  if (!wait(bits::in_configuration, bits::in_configuration)) return false;
   const BitTiming& t = timing_;
   registers_.write(Register::prescaler, static_cast<std::uint32_t>(t.prescaler - 1));
   registers_.write(Register::bit_timing,
                    static_cast<std::uint32_t>((t.jump - 1) << 7 | (t.segment2 - 1) << 4 | (t.segment1 - 1)));
   registers_.write(Register::mode, mode);
   registers_.write(Register::interrupt_enable, bits::not_empty);
-  if (!set_filters()) return Status::no_answer;
+  if (!set_filters()) return false;
   registers_.write(Register::software_reset, bits::enable);
   const std::uint32_t wanted = mode == bits::loopback ? bits::in_loopback : bits::in_normal;
-  if (!wait(wanted, wanted)) return Status::no_answer;
-  registers_.write(Register::interrupt_clear, bits::all);
-  bus_ = BusState::active;
-  return Status::ok;
+  return wait(wanted, wanted);
 }
 
 template <typename Registers>
@@ -219,6 +238,7 @@ void XilinxCan<Registers>::follow_bus(std::int64_t now_ns) {
   }
   if (bus_ == BusState::off) {
     if (now_ns - off_since_ns_ < restart_after_ns_) return;
+    reset();
     if (start(0) == Status::ok) ++counters_.restarts;
     off_since_ns_ = now_ns;
     return;
@@ -253,7 +273,7 @@ Status XilinxCan<Registers>::send(const can::Frame& frame) {
 
 template <typename Registers>
 Status XilinxCan<Registers>::self_test(const Settings& settings) {
-  bus_ = BusState::closed;
+  close();
   const std::optional<BitTiming> timing = bit_timing(settings.clock_hz, settings.bits_s);
   if (!timing) return Status::bad_bit_rate;
   timing_ = *timing;
@@ -267,8 +287,7 @@ Status XilinxCan<Registers>::self_test(const Settings& settings) {
     for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(extended ? 0xA5 + i : 0x5A - i);
     if (status == Status::ok) status = echo(frame);
   }
-  registers_.write(Register::software_reset, bits::reset);
-  bus_ = BusState::closed;
+  close();
   return status;
 }
 

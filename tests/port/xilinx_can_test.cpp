@@ -434,6 +434,57 @@ TEST_CASE("xilinx_can: a controller that is dead at bus-off is tried again and a
   CHECK(b.bus.bus() == BusState::active);
 }
 
+TEST_CASE("xilinx_can: a controller that never answers is left in reset, its interrupt off") {
+  Bench b;
+  SECTION("it does not join the bus") {
+    b.controller.never_joins = true;
+  }
+  SECTION("it does not let go of its filters") {
+    b.controller.filters_stay_busy = true;
+  }
+  CHECK(b.bus.open(b.settings, {}) == Status::no_answer);
+  CHECK(b.controller.status_reads < 100'100);  // as the header says
+  CHECK(b.controller.in_reset());
+  CHECK(b.bus.bus() == BusState::closed);
+  b.controller.never_joins = false;
+  b.controller.arrive(standard(1));
+  CHECK_FALSE(b.controller.line());  // whose handler nothing would quiet: receive() of a closed bus does nothing
+}
+
+TEST_CASE("xilinx_can: a call that is refused leaves an open controller in reset") {
+  Bench b;
+  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
+  SECTION("no such bit rate") {
+    b.settings.bits_s = 300'001;
+    CHECK(b.bus.open(b.settings, {}) == Status::bad_bit_rate);
+  }
+  SECTION("too many filters") {
+    CHECK(b.bus.open(b.settings, std::array<Filter, 5>{}) == Status::too_many_filters);
+  }
+  SECTION("a self-test at no such bit rate") {
+    b.settings.bits_s = 300'001;
+    CHECK(b.bus.self_test(b.settings) == Status::bad_bit_rate);
+  }
+  CHECK(b.controller.in_reset());
+  CHECK(b.bus.bus() == BusState::closed);
+  CHECK(b.bus.receive(b.frames, 0) == 0);
+}
+
+TEST_CASE("xilinx_can: a restart that fails leaves the controller in reset until the next") {
+  Bench b;
+  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
+  b.controller.become(0x100);
+  b.bus.receive(b.frames, 0);
+  b.controller.never_joins = true;
+  b.bus.receive(b.frames, 100'000'000);
+  CHECK(b.controller.in_reset());
+  CHECK(b.bus.bus() == BusState::off);
+  b.controller.never_joins = false;
+  b.bus.receive(b.frames, 200'000'000);
+  CHECK(b.bus.bus() == BusState::active);
+  CHECK(b.bus.counters().restarts == 1);
+}
+
 TEST_CASE("xilinx_can: the bus's state follows the controller's") {
   Bench b;
   CHECK(b.bus.bus() == BusState::closed);
@@ -449,16 +500,28 @@ TEST_CASE("xilinx_can: the bus's state follows the controller's") {
 TEST_CASE("xilinx_can: the self-test passes in order, and fails for damage, for silence and for no controller") {
   Bench b;
   CHECK(b.bus.self_test(b.settings) == Status::ok);
+  CHECK(b.controller.in_reset());
   CHECK(b.bus.bus() == BusState::closed);
   b.controller.damage = 0x00010000;
   CHECK(b.bus.self_test(b.settings) == Status::self_test_failed);
+  CHECK(b.controller.in_reset());
   b.controller.damage = 0;
   b.controller.muted = true;
   CHECK(b.bus.self_test(b.settings) == Status::self_test_failed);
+  CHECK(b.controller.in_reset());
+  b.controller.never_joins = true;
+  CHECK(b.bus.self_test(b.settings) == Status::no_answer);
+  CHECK(b.controller.in_reset());
   b.controller.dead = true;
   CHECK(b.bus.self_test(b.settings) == Status::no_answer);
   CHECK(b.bus.open(b.settings, {}) == Status::no_answer);
   CHECK(b.bus.send(frame_of_id(1)) == Status::not_open);
+}
+
+TEST_CASE("xilinx_can: the self-test is off the bus, and hears itself whatever filters were set") {
+  Bench b;
+  REQUIRE(b.bus.open(b.settings, std::array{Filter{0x181, 0x7FF, false}}) == Status::ok);
+  CHECK(b.bus.self_test(b.settings) == Status::ok);
 }
 
 TEST_CASE("xilinx_can: a full queue refuses, and says so") {
