@@ -7,16 +7,20 @@
 //   std::array<can::Frame, 8> frames;
 //   const int n = bus.receive(frames, now_ns);
 //
-// Call receive() from the controller's interrupt, whose line is raised while a frame waits, and a few times a second
-// besides, which ends bus-off; or poll it, faster than the servo reports: a frame's time is that which receive() was
-// given, on the caller's clock, and of frames of one time TiltTrack takes the first. The controller's own stamp is not
-// used: 16 bits of a clock that no laser shares. The FIFO holds 64 frames, 3 ms of a full bus at 1 Mbit/s.
+// Poll receive(), faster than the servo reports; or call it from the controller's interrupt, whose line is up while a
+// frame waits, and receive({}, now_ns) from the main loop a few times a second besides, which takes no frame and ends
+// bus-off. A frame's time is that which receive() was given, on the caller's clock, and of frames of one time TiltTrack
+// takes the first. The controller's own stamp is not used: 16 bits of a clock that no laser shares. The FIFO holds 64
+// frames, 3 ms of a full bus at 1 Mbit/s.
+//
+// No call may interrupt another of the same object. With receive() in the interrupt, whatever the main loop calls, it
+// calls on the same core and with that interrupt masked: by something that the compiler moves no memory access across,
+// such as CMSIS's __disable_irq(). From two cores or threads: a lock is the caller's.
 //
 // What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
 // set up anew after Settings::restart_after_ns). open(), self_test() and a receive() that ends bus-off wait for the
 // controller, for each of up to three modes 100,000 reads of a register at most, some 10 ms; nothing else waits. No
-// heap. All calls of an object come from one context, which may be an interrupt. Registers is MemoryRegisters, or what
-// a test has instead. Source: UG1085 and UG1087, see registers.hpp.
+// heap. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
 #pragma once
 
 #include <algorithm>
@@ -93,7 +97,7 @@ class XilinxCan {
   Status send(const can::Frame& frame);
 
   BusState bus() const { return bus_; }
-  const Counters& counters() const { return counters_; }
+  Counters counters() const { return counters_; }  ///< a copy, to be looked at with the interrupt on again
   Registers& registers() { return registers_; }
 
  private:

@@ -336,6 +336,21 @@ TEST_CASE("xilinx_can: the interrupt's line is up while a frame waits, and falls
   CHECK(b.bus.counters().frames == 20);
 }
 
+TEST_CASE("xilinx_can: beside an interrupt that takes the frames, the main loop ends bus-off and takes none") {
+  Bench b;
+  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
+  const Counters& before = b.bus.counters();
+  b.controller.arrive(standard(1));
+  CHECK(b.bus.receive({}, 0) == 0);
+  CHECK(b.controller.line());
+  CHECK(b.bus.receive(b.frames, 0) == 1);
+  CHECK(before.frames == 0);  // what main looks at no longer changes under it
+  b.controller.become(0x100);
+  b.bus.receive({}, 0);
+  b.bus.receive({}, 100'000'000);
+  CHECK(b.bus.bus() == BusState::active);
+}
+
 TEST_CASE("xilinx_can: filters let through their ids of their kind, and no remote request") {
   Bench b;
   const std::array filters{filter_of(can::cia402_position(1)), Filter{0x100, 0x700, false},
