@@ -16,7 +16,6 @@ enum class Register : std::uint32_t {
   mode = 0x04,
   prescaler = 0x08,
   bit_timing = 0x0C,
-  error_counts = 0x10,
   error_status = 0x14,  ///< cleared by ones
   status = 0x18,
   interrupt_status = 0x1C,
@@ -41,7 +40,7 @@ constexpr std::uint32_t loopback = 1u << 1;                 // mode
 // status
 constexpr std::uint32_t in_configuration = 1u << 0, in_loopback = 1u << 1, in_normal = 1u << 3, error_warning = 1u << 6,
                         tx_full = 1u << 10, filters_busy = 1u << 11;
-constexpr std::uint32_t error_state = 3u << 7, error_active = 1u << 7, bus_off = 2u << 7, error_passive = 3u << 7;
+constexpr std::uint32_t error_state = 3u << 7, bus_off = 2u << 7, error_passive = 3u << 7;
 // interrupt_status, interrupt_clear
 constexpr std::uint32_t overflow = 1u << 6, not_empty = 1u << 7, error = 1u << 8, went_bus_off = 1u << 9, all = 0x7FFF;
 // ids, masks
