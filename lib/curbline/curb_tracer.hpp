@@ -292,7 +292,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
       variance_m2 += side.height_variance_m2();
     }
   }
-  if (curb.height_m > settings_.max_step_m || curb.height_m < -settings_.max_step_m) return;
+  if (curb.height_m > settings_.max_step_m) return;
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

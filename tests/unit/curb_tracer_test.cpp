@@ -489,11 +489,16 @@ TEST_CASE("curb tracer: clutter makes no curb, the ground beside it does") {
   }
 }
 
-TEST_CASE("curb tracer: the side of a box, higher than any curb, is none") {
+TEST_CASE("curb tracer: the side of a box, higher than any curb, is none; a drop is told, however deep") {
   const auto height = [](double step_m) { return [step_m](double x, double) { return x < 1.4 ? 0.0 : step_m; }; };
   CHECK(traced(height(0.29))->tracer.curbs().size() == 1);
   CHECK(traced(height(0.32))->tracer.curbs().empty());
-  CHECK(traced(height(-0.32))->tracer.curbs().empty());
+  for (const double drop_m : {0.32, 0.8}) {
+    const auto stages = traced(height(-drop_m));
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_down);
+    CHECK(stages->tracer.curbs()[0].height_m == Approx(-drop_m).margin(0.005));
+  }
 }
 
 TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across a wider one") {
