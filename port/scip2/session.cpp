@@ -145,10 +145,11 @@ void Session::take_reply(const Reply& reply, const scanner::Now& now) {
 
 void Session::take_parameters(const Reply& reply) {
   const Parameters p{field(reply.body, "DMIN:"), field(reply.body, "DMAX:"), field(reply.body, "ARES:"),
-                     field(reply.body, "AMIN:"), field(reply.body, "AMAX:"), field(reply.body, "AFRT:")};
+                     field(reply.body, "AMIN:"), field(reply.body, "AMAX:"), field(reply.body, "AFRT:"),
+                     field(reply.body, "SCAN:")};
   const bool good = reply.status == "00" && p.dmin_mm >= 0 && p.dmax_mm > p.dmin_mm && p.steps_a_turn > 0 &&
                     p.first_step >= 0 && p.last_step >= p.first_step && p.last_step < 10'000 &&
-                    p.last_step - p.first_step < most_steps && p.front_step >= 0;
+                    p.last_step - p.first_step < most_steps && p.front_step >= 0 && p.turns_a_minute > 0;
   if (good) {
     parameters_ = p;
     go_to(Step::clock_on);
@@ -185,9 +186,10 @@ bool Session::take_scan(const Scan& scan, const scanner::Now& now) {
     ranges_m_[i] = is_return ? static_cast<float>(range_mm / 1000.0) : std::numeric_limits<float>::quiet_NaN();
   }
   const double step_rad = 2.0 * std::numbers::pi / p.steps_a_turn;
+  const std::int64_t first_step_ns = *device_ns + p.since_step_0_ns();
   ++counters_.lines;
-  line_ = {now.to_host(clock_.to_steady(*device_ns)),
-           *device_ns,
+  line_ = {now.to_host(clock_.to_steady(first_step_ns)),
+           first_step_ns,
            true,
            static_cast<float>((p.first_step - p.front_step) * step_rad),
            static_cast<float>(step_rad),

@@ -2,10 +2,11 @@
 // and ranges), TM (its clock), BM (laser on) and MD (every scan, all steps, three characters a range: two end at 4.095
 // m), and asked again when it does not answer within half a second.
 //
-// Time: the stamp is that of the first step, in whole milliseconds, 24 bits. The scanner's clock is compared with the
-// host's by eight questions TM1 before measuring (the least delayed counts; right to the millisecond of the stamp and
-// the way there), and lines follow the drift after that. Sources: Hokuyo C-42-03320B; UTM-30LX specification C-42-3615;
-// that the stamp is that of step 0 is how the driver urg_stamped reads it.
+// Time: the stamp is that of step 0, in whole milliseconds, 24 bits; a line bears the time of its first step, which
+// comes AMIN steps of the turn later (a UTM-30LX has AMIN 0). The scanner's clock is compared with the host's by eight
+// questions TM1 before measuring (the least delayed counts; right to the millisecond of the stamp and the way there),
+// and lines follow the drift after that. Sources: Hokuyo C-42-03320B; UTM-30LX specification C-42-3615; that the stamp
+// is that of step 0 is how the driver urg_stamped reads it.
 #pragma once
 
 #include <array>
@@ -23,6 +24,12 @@ struct Parameters {
   int dmin_mm = 0, dmax_mm = 0;  ///< ranges outside are no returns
   int steps_a_turn = 0;          ///< ARES
   int first_step = 0, last_step = 0, front_step = 0;
+  int turns_a_minute = 0;  ///< SCAN
+
+  /// From step 0 to the first.
+  std::int64_t since_step_0_ns() const {
+    return std::int64_t{60'000'000'000} * first_step / (std::int64_t{turns_a_minute} * steps_a_turn);
+  }
 };
 
 class Session final : public scanner::Session {
@@ -69,7 +76,7 @@ class Session final : public scanner::Session {
   int clock_asked_ = 0;
   Parameters parameters_{};
   scanner::StampCounter stamps_{24, 1'000'000};
-  scanner::DeviceClock clock_{25'000'000};  ///< a turn, if the scanner refuses TM
+  scanner::DeviceClock clock_{25'000'000};  ///< a turn of a UTM-30LX, if the scanner refuses TM
   std::array<float, most_steps> ranges_m_{};
   scanner::Line line_{};
   std::string_view problem_{};
