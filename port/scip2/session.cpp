@@ -34,6 +34,7 @@ void Session::restart(const scanner::Now&) {
   decoder_.restart();
   stamps_.restart();
   clock_.restart();
+  parameters_ = {};
   problem_ = {};
   go_to(Step::stop);
 }
