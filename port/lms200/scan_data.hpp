@@ -42,9 +42,9 @@ enum class ScanResult : unsigned char {
   other_unit,    ///< neither centimetres nor millimetres
 };
 
-/// Reads the content of a telegram 0xB0. `range_bits` are the low bits of a value that hold the range, 13 to 15 by
-/// measuring mode; the rest are flags of fields. Metres; NaN for the eight highest numbers, which mean errors and no
-/// return.
+/// Reads the content of a telegram 0xB0. `range_bits` are the low bits of a value that hold the range, 13 to 16 by
+/// measuring mode; the rest are flags of fields. Metres; NaN for the nine highest numbers (8183 to 8191 of 13 bits),
+/// which mean errors and no return.
 ScanResult parse_scan_data(std::span<const std::uint8_t> content, int range_bits, std::span<float, most_beams> ranges_m,
                            std::size_t& count);
 

@@ -19,7 +19,8 @@ constexpr std::uint8_t mode_reply = 0xA0, configuration_reply = 0xF4, variant_re
                        power_on = 0x90;
 constexpr std::size_t measuring_mode_at = 6;  // in the reply to 74h
 
-/// Bits of the range, by measuring mode: 8 m, 16 m and 32 m in millimetres. 0: no ranges.
+/// Bits of the range, by measuring mode: 8 m, 16 m and 32 m in millimetres, and 15, which is 32 m without flags. 0: no
+/// ranges.
 int range_bits_of(std::uint8_t measuring_mode) {
   if (measuring_mode <= 2) return 13;
   if (measuring_mode <= 4) return 14;

@@ -214,8 +214,12 @@ TEST_CASE("lms200: millimetres, centimetres, flags of fields and error numbers")
   CHECK(range_of(1 << 14, 8182, 13) == 8.182f);
   for (const int error : {8183, 8187, 8190, 8191})
     CHECK(std::isnan(range_of(1 << 14, static_cast<std::uint16_t>(error), 13)));
-  CHECK(range_of(1 << 14, 12'000, 14) == 12.0f);
-  CHECK(std::isnan(range_of(1 << 14, 0x3FFF, 14)));
+  for (const int bits : {14, 15, 16}) {
+    const int first_error = (1 << bits) - 9;
+    CHECK(range_of(1 << 14, static_cast<std::uint16_t>(first_error - 1), bits) ==
+          static_cast<float>(first_error - 1) / 1000.0f);
+    CHECK(std::isnan(range_of(1 << 14, static_cast<std::uint16_t>(first_error), bits)));
+  }
 }
 
 TEST_CASE("lms200: interlaced partial scans, other units and other counts are refused by name") {
