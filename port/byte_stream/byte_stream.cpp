@@ -135,7 +135,7 @@ int ByteStream::set_baud(int baud) {
   if (::tcgetattr(fd_, &line) != 0) return errno;
   ::cfsetispeed(&line, speed);
   ::cfsetospeed(&line, speed);
-  return ::tcsetattr(fd_, TCSADRAIN, &line) == 0 ? 0 : errno;
+  return ::tcsetattr(fd_, TCSANOW, &line) == 0 ? 0 : errno;  // TCSADRAIN waits without a bound
 }
 
 ByteStream::Read ByteStream::read(std::span<std::uint8_t> bytes, std::size_t& count, Milliseconds patience) {

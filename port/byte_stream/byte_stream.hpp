@@ -1,7 +1,7 @@
 // Bytes over TCP or a serial line, on POSIX. Made once for an address (which looks up the host's name and may
-// allocate); after that nothing is allocated, and a lost connection is opened anew by connect(). No call blocks longer
-// than the time it is given. Not thread-safe; not for interrupts. A serial line is set raw: 8 bits, no parity, no flow
-// control.
+// allocate); after that nothing is allocated, and a lost connection is opened anew by connect(). No call waits longer
+// than the time it is given, but tcp() and close() as they say. Not thread-safe; not for interrupts. A serial line is
+// set raw: 8 bits, no parity, no flow control.
 #pragma once
 
 #include <netdb.h>
@@ -20,7 +20,7 @@ using Milliseconds = std::chrono::milliseconds;
 class ByteStream {
  public:
   /// A TCP server. A name may have several addresses, as localhost has ::1 and 127.0.0.1. Nothing if it cannot be
-  /// looked up; `error` then says why.
+  /// looked up; `error` then says why. The look-up waits as long as the system's resolver is set to.
   static std::optional<ByteStream> tcp(const std::string& host, std::uint16_t port, std::string& error);
 
   /// A serial device or pty.
@@ -35,9 +35,13 @@ class ByteStream {
   /// address.
   int connect(Milliseconds patience);
   bool is_open() const { return fd_ >= 0; }
+
+  /// What was written to a serial line leaves first; Linux waits for that, up to 30 s where it cannot. TCP does not
+  /// wait.
   void close();
 
-  /// Bits a second of a serial line; a speed that the system does not know is EINVAL. Nothing for TCP.
+  /// Bits a second of a serial line: 0, or an errno; a speed that the system does not know is EINVAL. Nothing for TCP.
+  /// Does not wait for bytes that are still to leave, and would garble them: call it when they have been answered.
   int set_baud(int baud);
 
   enum class Read : unsigned char { bytes, nothing, closed };

@@ -61,7 +61,7 @@ int LiveScanner::open() {
 
 LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
   const std::int64_t until_ns = steady_now_ns() + nanoseconds(patience);
-  while (true) {
+  for (bool looked = false;; looked = true) {
     if (!stream_.is_open()) return reopen(patience);
     if (more_) {
       more_ = session_.take(left_, received_);
@@ -74,6 +74,7 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
     const std::int64_t now_ns = steady_now_ns();
     if (now_ns - last_line_ns_ > nanoseconds(options_.silence)) return lose(ETIMEDOUT);
     const auto rest = std::chrono::duration_cast<port::Milliseconds>(std::chrono::nanoseconds(until_ns - now_ns));
+    if (looked && rest.count() <= 0) return Event::nothing;
     std::size_t count = 0;
     const auto got = stream_.read(buffer_, count, std::clamp(rest, port::Milliseconds{0}, look_again));
     if (got == port::ByteStream::Read::closed) return lose(0);
@@ -81,8 +82,8 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
       received_ = host_now();
       left_ = std::span(buffer_).first(count);
       more_ = true;
-    } else if (rest.count() <= 0 || (rest > look_again && steady_now_ns() - now_ns < nanoseconds(look_again) / 2)) {
-      return Event::nothing;  // the time is over, or a signal cut the wait short
+    } else if (rest > look_again && steady_now_ns() - now_ns < nanoseconds(look_again) / 2) {
+      return Event::nothing;  // a signal cut the wait short
     }
   }
 }
@@ -112,8 +113,6 @@ LiveScanner::Event LiveScanner::reopen(port::Milliseconds patience) {
 
 LiveScanner::Event LiveScanner::lose(int error) {
   stream_.close();
-  left_ = {};
-  more_ = false;
   last_error_ = error;
   next_attempt_ns_ = steady_now_ns();
   return Event::lost;

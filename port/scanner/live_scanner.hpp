@@ -35,11 +35,16 @@ class LiveScanner {
       : session_(session), stream_(std::move(stream)), options_(options) {}
   LiveScanner(const LiveScanner&) = delete;
   LiveScanner& operator=(const LiveScanner&) = delete;
+
+  /// Stops the scanner's stream, for which it waits half a second at most, and closes (ByteStream::close()).
   ~LiveScanner();
 
-  /// Connects now. 0, or the errno of what failed. read() does it by itself where it may reconnect.
+  /// Connects now: waits `connect_patience` at most. 0, or the errno of what failed. read() does it by itself where it
+  /// may reconnect.
   int open();
 
+  /// Waits `patience` at most; where it has to connect, `connect_patience` instead. Each command that the connection
+  /// does not take at once adds half a second at most. A serial line that is lost is closed, which may wait too.
   Event read(port::Milliseconds patience);
 
   bool is_open() const { return stream_.is_open(); }

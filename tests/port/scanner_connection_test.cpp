@@ -1,0 +1,201 @@
+// A live scanner's connection: how long calls wait, when it is made anew, what is told of it, and how it is left.
+#include <pty.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "cola/session.hpp"
+#include "lms200/session.hpp"
+#include "scanner/live_scanner.hpp"
+#include "scanner_support.hpp"
+#include "scip2/session.hpp"
+
+namespace curbline::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using scanner::LiveScanner;
+using Event = scanner::LiveScanner::Event;
+
+port::ByteStream stream_to(std::uint16_t port) {
+  std::string error;
+  return *port::ByteStream::tcp("127.0.0.1", port, error);
+}
+
+/// A connection as the scanner has it.
+class Accepted {
+ public:
+  explicit Accepted(const Listener& listener) : fd_(::accept(listener.fd(), nullptr, nullptr)) { REQUIRE(fd_ >= 0); }
+  ~Accepted() { close(); }
+  Accepted(const Accepted&) = delete;
+  Accepted& operator=(const Accepted&) = delete;
+
+  void send(const Bytes& bytes) const { ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL); }
+
+  /// What comes until the other side closes.
+  Bytes rest() const {
+    Bytes bytes(1000);
+    std::size_t size = 0;
+    for (ssize_t got = 1; got > 0 && size < bytes.size(); size += static_cast<std::size_t>(std::max<ssize_t>(got, 0)))
+      got = ::recv(fd_, bytes.data() + size, bytes.size() - size, 0);
+    bytes.resize(size);
+    return bytes;
+  }
+
+  void close() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+  }
+
+ private:
+  int fd_;
+};
+
+/// A line that a CoLa session takes at any time.
+Bytes cola_line() {
+  Scanner scanner = std::move(small_scanners()[1]);
+  start(scanner);
+  return telegrams_of(scanner, 1)[0];
+}
+
+TEST_CASE("connection: a scanner's stream is stopped before it is closed") {
+  scip2::Session scip2;
+  cola::Session cola;
+  lms200::Session lms200(181);
+  const Bytes stop_cola = from_hex("02 02 02 02 00 00 00 11 73 45 4E 20 4C 4D 44 73 63 61 6E 64 61 74 61 20 00 32");
+  for (const auto& [session, stop] : {std::pair<scanner::Session*, Bytes>{&scip2, {'Q', 'T', '\n'}},
+                                      {&cola, stop_cola},
+                                      {&lms200, from_hex("02 00 02 00 20 25 35 08")}}) {
+    const Listener listener;
+    { CHECK(LiveScanner(*session, stream_to(listener.port()), {}).open() == 0); }
+    CHECK(Accepted(listener).rest() == stop);
+  }
+}
+
+TEST_CASE("connection: a scanner is silent when its last line is long ago, not its connection") {
+  const Listener listener;
+  const Bytes line = cola_line();
+  cola::Session session;
+  LiveScanner live(session, stream_to(listener.port()), {.silence = 600ms});
+  REQUIRE(live.open() == 0);
+  const Accepted scanner(listener);
+  for (int i = 0; i < 8; ++i) {
+    scanner.send(line);
+    CHECK(live.read(500ms) == Event::line);
+    CHECK(live.read(100ms) == Event::nothing);
+  }
+  CHECK(live.connections() == 1);
+}
+
+/// A protocol of which only the reading matters.
+class ReadingSession final : public scanner::Session {
+ public:
+  using Take = bool (*)(std::span<const std::uint8_t>& bytes);
+  explicit ReadingSession(Take how) : take_(how) {}
+
+  void restart(const scanner::Now&) override {}
+  std::span<const std::uint8_t> to_send(const scanner::Now&) override { return {}; }
+  bool take(std::span<const std::uint8_t>& bytes, const scanner::Now&) override { return take_(bytes); }
+  const scanner::Line& line() const override { return line_; }
+  const scanner::Counters& counters() const override { return counters_; }
+  std::int64_t log_time_ns(std::int64_t near_ns) const override { return near_ns; }
+  std::string_view problem() const override { return {}; }
+  std::span<const std::uint8_t> farewell() const override { return {}; }
+
+ private:
+  Take take_;
+  scanner::Line line_{};
+  scanner::Counters counters_{};
+};
+
+/// Finds no line, and is slow about it: more bytes are always there.
+bool no_line(std::span<const std::uint8_t>& bytes) {
+  std::this_thread::sleep_for(2ms);
+  bytes = {};
+  return false;
+}
+
+bool line_a_byte(std::span<const std::uint8_t>& bytes) {
+  if (bytes.empty()) return false;
+  bytes = bytes.subspan(1);
+  return true;
+}
+
+TEST_CASE("connection: bytes that are no line do not keep a reader for longer than it gives") {
+  const Listener listener;
+  ReadingSession session(no_line);
+  LiveScanner live(session, stream_to(listener.port()), {.silence = 2s});
+  REQUIRE(live.open() == 0);
+  Accepted scanner(listener);
+  std::atomic<bool> stop = false, stopped = false;
+  std::thread noise([&] {
+    const Bytes bytes(1000, 0x55);
+    while (!stop) scanner.send(bytes);
+    stopped = true;
+  });
+  std::this_thread::sleep_for(20ms);
+  const auto before = Clock::now();
+  CHECK(live.read(50ms) == Event::nothing);
+  const auto took = Clock::now() - before;
+  CHECK(took >= 45ms);
+  CHECK(took < 1s);
+  stop = true;
+  while (!stopped) live.read(0ms);  // it may be waiting for room
+  noise.join();
+}
+
+TEST_CASE("connection: a look without waiting gives the line that is there") {
+  const Listener listener;
+  cola::Session session;
+  LiveScanner live(session, stream_to(listener.port()), {});
+  REQUIRE(live.open() == 0);
+  const Accepted scanner(listener);
+  scanner.send(cola_line());
+  std::this_thread::sleep_for(50ms);
+  CHECK(live.read(0ms) == Event::line);
+}
+
+TEST_CASE("connection: one that is opened anew gives nothing of what came before") {
+  const Listener listener;
+  ReadingSession session(line_a_byte);
+  LiveScanner live(session, stream_to(listener.port()), {});
+  REQUIRE(live.open() == 0);
+  const Accepted scanner(listener);
+  scanner.send({1, 2});
+  CHECK(live.read(5s) == Event::line);
+  REQUIRE(live.open() == 0);
+  CHECK(live.read(50ms) == Event::nothing);
+}
+
+TEST_CASE("connection: a serial line that is opened anew has the scanner's speed, whatever it had become") {
+  int ours = -1, theirs = -1;
+  std::array<char, 64> name{};
+  REQUIRE(::openpty(&ours, &theirs, name.data(), nullptr, nullptr) == 0);
+  lms200::Session session(181);
+  LiveScanner live(session, port::ByteStream::serial(name.data()), {.retry_after = 1ms, .silence = 100ms});
+  const auto speed = [theirs] {
+    termios line{};
+    ::tcgetattr(theirs, &line);
+    return ::cfgetospeed(&line);
+  };
+  REQUIRE(live.open() == 0);
+  CHECK(live.read(1ms) == Event::nothing);
+  CHECK(speed() == B500000);
+  termios line{};
+  ::tcgetattr(theirs, &line);
+  ::cfsetspeed(&line, B9600);
+  ::tcsetattr(theirs, TCSANOW, &line);
+  for (int i = 0; i < 100 && (live.connections() < 2 || speed() != B500000); ++i) live.read(10ms);
+  CHECK(live.connections() == 2);
+  CHECK(speed() == B500000);
+  ::close(theirs);
+  ::close(ours);
+}
+
+}  // namespace
+}  // namespace curbline::test
