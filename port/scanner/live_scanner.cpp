@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace curbline::scanner {
 namespace {
@@ -49,10 +50,10 @@ int LiveScanner::open() {
   left_ = {};
   more_ = false;
   baud_ = 0;
-  last_error_ = stream_.connect(options_.connect_patience);
+  const int failed = stream_.connect(options_.connect_patience);
   const Now now = host_now();
   next_attempt_ns_ = now.steady_ns + nanoseconds(options_.retry_after);
-  if (last_error_ != 0) return last_error_;
+  if (failed != 0) return last_error_ = failed;
   ++connections_;
   last_line_ns_ = now.steady_ns;
   session_.restart(now);
@@ -67,10 +68,11 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
       more_ = session_.take(left_, received_);
       if (more_) {
         last_line_ns_ = received_.steady_ns;
+        told_lost_ = false;
         return Event::line;
       }
     }
-    if (!send_what_is_due()) return lose(last_error_);
+    if (const auto lost = send_what_is_due()) return *lost;
     const std::int64_t now_ns = steady_now_ns();
     if (now_ns - last_line_ns_ > nanoseconds(options_.silence)) return lose(ETIMEDOUT);
     const auto rest = std::chrono::duration_cast<port::Milliseconds>(std::chrono::nanoseconds(until_ns - now_ns));
@@ -89,16 +91,14 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
 }
 
 /// Speed first: the command must leave at the one the session has chosen.
-bool LiveScanner::send_what_is_due() {
+std::optional<LiveScanner::Event> LiveScanner::send_what_is_due() {
   const auto command = session_.to_send(host_now());
   if (session_.baud() != baud_) {
     baud_ = session_.baud();
-    last_error_ = stream_.set_baud(baud_);
-    if (last_error_ != 0) return false;
+    if (const int failed = stream_.set_baud(baud_); failed != 0) return lose(failed);
   }
-  if (command.empty()) return true;
-  last_error_ = 0;
-  return stream_.write(command, send_patience);
+  if (!stream_.write(command, send_patience)) return lose(0);
+  return std::nullopt;
 }
 
 LiveScanner::Event LiveScanner::reopen(port::Milliseconds patience) {
@@ -108,14 +108,17 @@ LiveScanner::Event LiveScanner::reopen(port::Milliseconds patience) {
     std::this_thread::sleep_for(std::min(std::chrono::nanoseconds(wait_ns), std::chrono::nanoseconds(patience)));
     return Event::nothing;
   }
-  return open() == 0 ? Event::nothing : Event::lost;
+  return open() == 0 ? Event::nothing : tell_lost();
 }
 
 LiveScanner::Event LiveScanner::lose(int error) {
   stream_.close();
   last_error_ = error;
-  next_attempt_ns_ = steady_now_ns();
-  return Event::lost;
+  return tell_lost();
+}
+
+LiveScanner::Event LiveScanner::tell_lost() {
+  return std::exchange(told_lost_, true) ? Event::nothing : Event::lost;
 }
 
 }  // namespace curbline::scanner

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "byte_stream/byte_stream.hpp"
 #include "scanner/session.hpp"
@@ -17,7 +18,7 @@ namespace curbline::scanner {
 struct LiveOptions {
   bool reconnect = true;                       ///< false: a connection that ends is the end
   port::Milliseconds connect_patience{2'000};  ///< for one attempt
-  port::Milliseconds retry_after{500};         ///< between attempts
+  port::Milliseconds retry_after{500};         ///< from one attempt to the next, at the least
   port::Milliseconds silence{3'000};           ///< without a line: the scanner is taken as lost, and connected anew
 };
 
@@ -26,8 +27,8 @@ class LiveScanner {
   enum class Event : unsigned char {
     line,     ///< session.line() is new
     nothing,  ///< not within the time given, or a signal came
-    lost,  ///< the connection ended, could not be made, or the scanner is silent; told once, read() goes on if it may
-           ///< reconnect
+    lost,  ///< the connection ended, could not be made, or the scanner is silent. Told once until a line comes again;
+           ///< read() goes on. Where a connection that ended is the end, told each time
   };
 
   /// `session` must outlive it.
@@ -54,7 +55,8 @@ class LiveScanner {
  private:
   Event reopen(port::Milliseconds patience);
   Event lose(int error);
-  bool send_what_is_due();
+  Event tell_lost();
+  std::optional<Event> send_what_is_due();
 
   Session& session_;
   port::ByteStream stream_;
@@ -62,6 +64,7 @@ class LiveScanner {
   std::array<std::uint8_t, 4096> buffer_{};
   std::span<const std::uint8_t> left_{};                 ///< of buffer_, not yet read by the session
   bool more_ = false;                                    ///< the session may hold another line
+  bool told_lost_ = false;                               ///< and no line since
   std::int64_t last_line_ns_ = 0, next_attempt_ns_ = 0;  ///< steady
   Now received_{};
   std::uint64_t connections_ = 0;

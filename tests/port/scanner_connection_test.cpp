@@ -77,6 +77,16 @@ TEST_CASE("connection: a scanner's stream is stopped before it is closed") {
   }
 }
 
+TEST_CASE("connection: attempts are apart by the time given, though they succeed and the scanner is lost at once") {
+  const Listener listener;
+  cola::Session session;
+  LiveScanner live(session, stream_to(listener.port()), {.retry_after = 200ms, .silence = 1ms});
+  const auto before = Clock::now();
+  while (live.connections() < 3 && Clock::now() - before < 10s) live.read(5ms);
+  CHECK(live.connections() == 3);
+  CHECK(Clock::now() - before >= 400ms);
+}
+
 TEST_CASE("connection: a scanner is silent when its last line is long ago, not its connection") {
   const Listener listener;
   const Bytes line = cola_line();
@@ -90,6 +100,31 @@ TEST_CASE("connection: a scanner is silent when its last line is long ago, not i
     CHECK(live.read(100ms) == Event::nothing);
   }
   CHECK(live.connections() == 1);
+}
+
+TEST_CASE("connection: a loss is told once, and again when there has been a line since") {
+  std::uint16_t free_port = 0;
+  {
+    const Listener gone;
+    free_port = gone.port();
+  }
+  const Bytes line = cola_line();
+  cola::Session session;
+  LiveScanner live(session, stream_to(free_port), {.retry_after = 5ms, .silence = 10s});
+  CHECK(live.read(20ms) == Event::lost);
+  for (int i = 0; i < 10; ++i) CHECK(live.read(20ms) == Event::nothing);
+  CHECK(live.last_error() == ECONNREFUSED);
+  const Listener listener("127.0.0.1", free_port);
+  for (int connection = 0; connection < 2; ++connection) {
+    for (int i = 0; i < 100 && !live.is_open(); ++i) CHECK(live.read(20ms) == Event::nothing);
+    REQUIRE(live.is_open());
+    Accepted scanner(listener);
+    scanner.send(line);
+    CHECK(live.read(5s) == Event::line);
+    scanner.close();
+    CHECK(live.read(5s) == Event::lost);
+    CHECK(live.last_error() == 0);
+  }
 }
 
 /// A protocol of which only the reading matters.
