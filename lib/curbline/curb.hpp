@@ -63,13 +63,15 @@ float overlap_m(const Curb& now, const Curb& before, float near_m);
 struct DrawnBorder {
   float height_m, height_sd_m;  ///< second plane less first there
   float half_gap_m;             ///< between the cells of the one and the other
+  float place_variance_m2;      ///< of where the border lies, across it
   float texture_m2;             ///< of the ground, PlanePrior::texture_m2
 };
 
 /// Planes of different slope make a crease where they meet. A border between them is one if they differ in height there
-/// by no more than their slopes make up across half the gap, and what is not known (95 %) of the planes and of the
-/// cells by which the border was drawn, which err by the ground's texture at least. CurbKind::step_up stands for either
-/// step.
+/// by no more than is not known (95 %): of the planes, of the cells by which the border was drawn, which err by the
+/// ground's texture at least, and of its place, by which their slopes make them differ. A face, too steep for ground,
+/// begins at its foot, anywhere in the gap: as much more as the slopes make up across half of it. CurbKind::step_up
+/// stands for either step.
 CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 }  // namespace curbline

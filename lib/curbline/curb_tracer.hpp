@@ -210,7 +210,9 @@ Curb CurbTracer<limits>::curb_of(const Stages& stages, const Border& border, con
   const Deviations sides = deviations_of(stages, border, piece, height_m, 0.0f);
   const float too_far_m2 = sides.low.too_far_m2(piece.borders) + sides.high.too_far_m2(piece.borders);
   const float height_sd_m = square_root(piece.variance_m2 + too_far_m2);
-  curb.kind = kind_of(low, high, piece.line, {height_m, height_sd_m, piece.half_gap_m, stages.dem.prior().texture_m2});
+  curb.kind =
+      kind_of(low, high, piece.line,
+              {height_m, height_sd_m, piece.half_gap_m, piece.place_variance_m2, stages.dem.prior().texture_m2});
   if (curb.kind != CurbKind::step_up) return curb;
   curb.height_m = piece.low_is_near ? height_m : -height_m;
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;

@@ -196,6 +196,23 @@ TEST_CASE("curb tracer: a plane and a ramp meet at the edge of a ramp, not a ste
   }
 }
 
+//           _-
+//         _-         askew: the place of the lip is known better than to a cell
+//  ______|
+TEST_CASE("curb tracer: a lip at the foot of a ramp is a step, a ramp without one has an edge") {
+  const auto ramp_behind = [](double lip_m) {
+    return [=](double x, double y) { return x + 0.2 * y < 1.4 ? 0.0 : lip_m + 0.17 * (x + 0.2 * y - 1.4); };
+  };
+  const auto with_lip = traced(ramp_behind(0.025)), without = traced(ramp_behind(0.0));
+  REQUIRE_FALSE(with_lip->tracer.curbs().empty());
+  for (const Curb& curb : with_lip->tracer.curbs()) {
+    CHECK(curb.kind == CurbKind::step_up);
+    CHECK(curb.height_m == Approx(0.025).margin(0.01));
+  }
+  REQUIRE_FALSE(without->tracer.curbs().empty());
+  for (const Curb& curb : without->tracer.curbs()) CHECK(curb.kind == CurbKind::ramp_edge);
+}
+
 TEST_CASE("curb tracer: a step down to two rows, of which the first holds some of the edge, is no ramp") {
   for (const double share : {0.2, 0.3}) {
     const auto stages = traced([=](double x, double) { return x < 2.2 ? 0.06 : x < 2.3 ? 0.06 * share : 0.0; });
