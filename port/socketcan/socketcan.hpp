@@ -59,7 +59,7 @@ enum class LinkState : std::uint8_t { closed, up, down, gone };
 /// What the controller last said of itself (CAN's fault confinement). A bus that never complained is active.
 enum class BusState : std::uint8_t { active, warning, passive, off };
 
-/// Everything only grows. A healthy bus sees nothing but the first.
+/// Everything only grows, from open() on. A healthy bus sees nothing but the first.
 struct Counters {
   std::uint64_t frames = 0;
   std::uint64_t frames_lost = 0;  ///< by a full receive buffer, as the kernel counts them (SO_RXQ_OVFL)

@@ -45,7 +45,9 @@ class Manifests(unittest.TestCase):
         module = yaml(folder / "zephyr" / "module.yml")
         self.assertEqual(module["name"], "curbline")
         self.assertTrue((folder / module["build"]["cmake"] / "CMakeLists.txt").exists())
-        self.assertIn("config CURBLINE\n", (folder / module["build"]["kconfig"]).read_text())
+        kconfig = (folder / module["build"]["kconfig"]).read_text()
+        self.assertIn("config CURBLINE\n", kconfig)
+        self.assertIn("\tselect REQUIRES_FULL_LIBCPP\n", kconfig)  # Zephyr's minimal one has no <array>, <span>, <optional>
 
     def test_the_esp_idf_component_has_the_version(self):
         component = yaml(ROOT / "port" / "esp_idf" / "curbline" / "idf_component.yml")
