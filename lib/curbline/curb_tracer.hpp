@@ -69,6 +69,8 @@ class CurbTracer {
   };
   static Deviations deviations_of(const Stages& stages, const Border& border, const Piece& piece, float height_m,
                                   float shadow_m);
+  static const Plane& nearest_ground(const Stages& stages);
+  bool obstacle(const Stages& stages, const Curb& curb, const Piece& piece) const;
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   static void tell_once(Work& work, float cell_m);
   void keep_ids(Work& work, float near_m);
@@ -269,6 +271,31 @@ float CurbTracer<limits>::leave_shadow(const Stages& stages, const Borders<limit
   return move_before_shadow(piece.line, view, {drop_m, above_m, piece.gap_m + piece.cell_m});
 }
 
+/// The plane that is borne nearest to the laser: the robot's own ground, as far as is seen.
+template <Limits limits>
+const Plane& CurbTracer<limits>::nearest_ground(const Stages& stages) {
+  int nearest = 0;
+  float least_m2 = -1.0f;
+  stages.dem.for_each_valid([&](int i, int j, int s) {
+    if (stages.field.label(s) == no_label<limits> || !stages.mixture.on_ground(s)) return;
+    const float away_m2 = square((static_cast<float>(i) + 0.5f) * stages.dem.cell_x_m() - stages.view.x_m) +
+                          square((static_cast<float>(j) + 0.5f) * stages.dem.cell_y_m() - stages.view.y_m);
+    if (least_m2 >= 0.0f && away_m2 >= least_m2) return;
+    least_m2 = away_m2;
+    nearest = stages.field.label(s);
+  });
+  return stages.mixture.plane(nearest);
+}
+
+/// Is a step the side of an obstacle: higher than any, or the drop behind one, from where no robot gets to?
+template <Limits limits>
+bool CurbTracer<limits>::obstacle(const Stages& stages, const Curb& curb, const Piece& piece) const {
+  if (curb.height_m >= -settings_.max_step_m) return curb.height_m > settings_.max_step_m;
+  const Plane& near = stages.mixture.plane(curb.near_label);
+  const float ground_m = nearest_ground(stages).height_m(piece.x_m, piece.y_m);
+  return near.height_m(piece.x_m, piece.y_m) - ground_m > settings_.max_step_m;
+}
+
 template <Limits limits>
 void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int length, Work& work,
                                   Counters& counters) const {
@@ -294,7 +321,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
       variance_m2 += side.height_variance_m2();
     }
   }
-  if (curb.height_m > settings_.max_step_m) return;
+  if (obstacle(stages, curb, piece)) return;
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

@@ -107,7 +107,8 @@ struct LabelSettings {
 struct CurbSettings {
   int link_reach = 5;       ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
   float max_step_m = 0.3f;  ///< a step up that is higher is an obstacle, no curb: kerbs and steps of stairs stay below
-                            ///< 0.2 m, and half as much again for the unusual. A step down is told however deep it is
+                            ///< 0.2 m, and half as much again for the unusual. A step down is told however deep it is,
+                            ///< but from what is as much higher than the ground nearest to the laser
 };
 
 /// Everything, as Pipeline::init() takes it.

@@ -516,6 +516,8 @@ TEST_CASE("curb tracer: the side of a box, higher than any curb, is none; a drop
     CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_down);
     CHECK(stages->tracer.curbs()[0].height_m == Approx(-drop_m).margin(0.005));
   }
+  const auto platform = [](double x, double) { return x < 0.8 ? 0.0 : x < 1.8 ? 0.35 : 0.0; };
+  CHECK(traced(platform)->tracer.curbs().empty());
 }
 
 TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across a wider one") {
