@@ -15,7 +15,7 @@
 // tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
 // for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
 // away more steeply than a ramp and is no wider than the shadow of what it falls and the laser's spot on an edge,
-// however the rays pass it, blurs that edge, unless the ground rises beyond: a gutter.
+// however the rays pass it, blurs that edge.
 // Cost: three passes over the window.
 #pragma once
 
@@ -61,10 +61,9 @@ class Ground {
   /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
   /// beam is on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
-  static constexpr float beam_rad = 0.01f;         ///< divergence of a beam
-  static constexpr int widest_gap = 2;             ///< between a strip and the planes beside it, in cells
-  static constexpr float narrow = 1.5f;            ///< cells: a wider strip has cells of its own
-  static constexpr float repeatability_m = 0.01f;  ///< of a range-finder
+  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
+  static constexpr int widest_gap = 2;      ///< between a strip and the planes beside it, in cells
+  static constexpr float narrow = 1.5f;     ///< cells: a wider strip has cells of its own
 
   /// How far something falls from its end near the laser to the far one, and how far the rays there do.
   struct Fall {
@@ -90,7 +89,6 @@ class Ground {
     // By the axis along which the strip was found, x or y.
     std::array<Shadowed, 2> shadow{};
     std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
-    std::array<float, 2> gutter_cells{};   ///< of those, before ground that rises
     std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
     /// A strip between two others, which are no obstacles: a step up to one would be no kerb's. Its cells spread beyond
@@ -113,8 +111,7 @@ class Ground {
     }
     bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
-    bool gutter() const { return most(gutter_cells[0]) || most(gutter_cells[1]); }
-    bool blurred_edge() const { return !gutter() && (all(blurred_cells[0]) || all(blurred_cells[1])); }
+    bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
 
    private:
     bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
@@ -178,13 +175,6 @@ class Ground {
     float begins_below_m(const Run& before, const Run& next, const Sight& sight) const {
       if (sight.ahead(first)) return before.label == none ? 0.0f : before.last_height_m - first_height_m;
       return next.label == none ? 0.0f : next.first_height_m - last_height_m;
-    }
-    /// Does what follows it, away from the laser, begin above its end there, by more than a range repeats and half of
-    /// what it falls? A gutter before a kerb does.
-    bool rises_beyond(const Run& before, const Run& next, const Sight& sight) const {
-      const float least_m = repeatability_m + 0.5f * (highest_m - lowest_m);
-      if (sight.ahead(first)) return next.label != none && next.first_height_m - last_height_m > least_m;
-      return before.label != none && before.last_height_m - first_height_m > least_m;
     }
     /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of
     /// what the run falls, and one more. If a step of more than that parts it from the run before it, it is not the
@@ -286,10 +276,7 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
         const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
         const Sight across = along.across(planes[run.label], axis, aside_m);
         if (Fall fall; leads && run.in_shadow(before, next, across, fall)) tally.shadow[axis].add(cells, fall);
-        if (drops[run.label]) {
-          tally.blurred_cells[axis] += run.blurred_cells(before, next, across, aside_m);
-          if (run.rises_beyond(before, next, across)) tally.gutter_cells[axis] += cells;
-        }
+        if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, across, aside_m);
       }
       if (run.length() > longest_strip) return;
       const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;

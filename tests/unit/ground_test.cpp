@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "support/small_map.hpp"
@@ -283,21 +282,6 @@ TEST_CASE("ground: the veil of an edge that bends about the laser is left to bot
   };
   CHECK(borne(down(0.5)) == 2);
   CHECK(borne(down(0.0)) == 3);
-}
-
-//              _
-//  ______     |      ______
-//        `-._|             `-._       a gutter before a kerb, and an edge of which the fall is blurred
-TEST_CASE("ground: a gutter that falls toward a kerb may be no veil, an edge that is blurred may be one") {
-  const auto may_be_veil = [](double beyond_m) {
-    Stages<small_limits> stages(small_settings());
-    stages.view = {0.0f, 1.2f, 0.7f};
-    fill(stages.dem, [=](double x, double) { return x < 2.0 ? 0.0 : x < 2.2 ? -0.15 * (x - 2.0) : beyond_m; });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
-    return stages.mixture.may_be_veil(stages.label_at(21, 12));
-  };
-  CHECK_FALSE(may_be_veil(0.06));
-  CHECK(may_be_veil(std::numeric_limits<double>::quiet_NaN()));
 }
 
 //  _____
