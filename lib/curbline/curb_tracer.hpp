@@ -1,8 +1,8 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height.
 // Each tells how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the
-// window, 50 look-ups a border point, 60 operations for each border of what is left of a chain and each of its pieces,
-// and 20 for each pair of a curb and one of the call before.
+// window, a third where there is a deep drop, 50 look-ups a border point, 60 operations for each border of what is left
+// of a chain and each of its pieces, and 20 for each pair of a curb and one of the call before.
 #pragma once
 
 #include <algorithm>
@@ -43,6 +43,7 @@ class CurbTracer {
     std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of three borders at least
     std::array<Curb, limits.curbs> curb;
     int curbs;
+    const Plane* nearest_ground;  ///< null until a deep drop asks for it
   };
 
   /// Finds all curbs of the window, in working memory that is the caller's.
@@ -70,7 +71,7 @@ class CurbTracer {
   static Deviations deviations_of(const Stages& stages, const Border& border, const Piece& piece, float height_m,
                                   float shadow_m);
   static const Plane& nearest_ground(const Stages& stages);
-  bool obstacle(const Stages& stages, const Curb& curb, const Piece& piece) const;
+  bool obstacle(const Stages& stages, const Curb& curb, const Piece& piece, Work& work) const;
   void give_out(const Stages& stages, int first, int last, int length, Work& work, Counters& counters) const;
   static void tell_once(Work& work, float cell_m);
   void keep_ids(Work& work, float near_m);
@@ -85,6 +86,7 @@ template <Limits limits>
 void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
                                const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
+  work.nearest_ground = nullptr;
   work.borders.clear();
   BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
   const Stages stages{dem, mixture, field, view};
@@ -289,11 +291,12 @@ const Plane& CurbTracer<limits>::nearest_ground(const Stages& stages) {
 
 /// Is a step the side of an obstacle: higher than any, or the drop behind one, from where no robot gets to?
 template <Limits limits>
-bool CurbTracer<limits>::obstacle(const Stages& stages, const Curb& curb, const Piece& piece) const {
+bool CurbTracer<limits>::obstacle(const Stages& stages, const Curb& curb, const Piece& piece, Work& work) const {
   if (curb.height_m >= -settings_.max_step_m) return curb.height_m > settings_.max_step_m;
   const Plane& near = stages.mixture.plane(curb.near_label);
-  const float ground_m = nearest_ground(stages).height_m(piece.x_m, piece.y_m);
-  return near.height_m(piece.x_m, piece.y_m) - ground_m > settings_.max_step_m;
+  if (work.nearest_ground == nullptr) work.nearest_ground = &nearest_ground(stages);
+  return near.height_m(piece.x_m, piece.y_m) - work.nearest_ground->height_m(piece.x_m, piece.y_m) >
+         settings_.max_step_m;
 }
 
 template <Limits limits>
@@ -321,7 +324,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
       variance_m2 += side.height_variance_m2();
     }
   }
-  if (obstacle(stages, curb, piece)) return;
+  if (obstacle(stages, curb, piece, work)) return;
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

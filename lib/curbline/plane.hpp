@@ -146,6 +146,8 @@ struct Plane {
   /// Mean square of how far its cells lie from the centroid, along x and y together.
   float scatter_m2() const { return (pxx + pyy) / (cells * (pxx * pyy - square(pxy))); }
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
+  /// By three standard deviations of the slopes of ground: a face.
+  bool steeper_than_ground() const { return square(slope_x) + square(slope_y) > gate * square(steepest_ramp); }
 
   /// Variance of height_m() at a place: each supporting cell counts as one observation, since the points of a cell
   /// share their errors of tilt and mount.

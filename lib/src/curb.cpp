@@ -23,11 +23,6 @@ struct Line {
   float x0_m, y0_m, dx_m, dy_m, length_m;
 };
 
-/// Steeper than ground by three standard deviations of its slopes.
-bool is_face(const Plane& plane) {
-  return square(plane.slope_x) + square(plane.slope_y) > gate * square(steepest_ramp);
-}
-
 }  // namespace
 
 const char* to_string(CurbKind kind) {
@@ -52,7 +47,7 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
   const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
   const float cell_m2 = mean_m2 > drawn.texture_m2 ? mean_m2 : drawn.texture_m2;
   const float unknown_m2 = square(drawn.height_sd_m) + cell_m2 + square(steep) * drawn.place_variance_m2;
-  const float open_m = is_face(first) || is_face(second) ? steep * drawn.half_gap_m : 0.0f;
+  const float open_m = first.steeper_than_ground() || second.steeper_than_ground() ? steep * drawn.half_gap_m : 0.0f;
   if (step_m > open_m + 2.0f * square_root(unknown_m2)) return CurbKind::step_up;
   const auto is_ramp = [&](const Plane& plane) {
     const float slope = border.normal_x * plane.slope_x + border.normal_y * plane.slope_y;

@@ -3,36 +3,19 @@
 #include <catch2/catch.hpp>
 
 #include "cola/session.hpp"
-#include "cola/telegram.hpp"
+#include "scanner/cola_content.hpp"
 #include "scanner_support.hpp"
 
 namespace curbline::test {
 namespace {
+
+using tools::ColaContent;
 
 constexpr std::int64_t ms = 1'000'000;
 
 bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
-
-struct Content {
-  Bytes bytes;
-
-  Content& text(std::string_view letters) {
-    bytes.insert(bytes.end(), letters.begin(), letters.end());
-    return *this;
-  }
-  Content& number(std::uint64_t value, int size) {
-    for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-    return *this;
-  }
-  Bytes telegram() const {
-    Bytes framed(cola::Format::header + bytes.size() + 1);
-    std::copy(bytes.begin(), bytes.end(), framed.begin() + cola::Format::header);
-    cola::frame(framed, bytes.size());
-    return framed;
-  }
-};
 
 /// A scan telegram: what its fields are where nothing is said of them.
 struct Scan {
@@ -43,8 +26,8 @@ struct Scan {
   std::vector<std::uint16_t> values{1000, 1001};
 
   Bytes telegram() const {
-    Content content;
-    content.text("sSN LMDscandata ").number(0, 8).number(status, 2).number(0, 4).number(1000, 4).number(1000, 4);
+    ColaContent content("sSN LMDscandata ");
+    content.number(0, 8).number(status, 2).number(0, 4).number(1000, 4).number(1000, 4);
     content.number(0, 6).number(0, 8).number(encoders.size(), 2);
     for (const std::uint16_t speed : encoders) content.number(0xFFFFFFFF, 4).number(speed, 2);
     content.number(1, 2).text(channel).number(std::bit_cast<std::uint32_t>(1.0f), 4);
@@ -105,8 +88,8 @@ TEST_CASE("cola: telegrams without values, or with more than a scan has, are dro
 TEST_CASE("cola: a scanner is asked for its scans every half second until it confirms that it sends them") {
   Sick sick;
   CHECK(sick.asks());
-  for (const Bytes& answer : {Bytes{}, Content{}.text("sEA LMDscandata ").number(0, 1).telegram(),
-                              Content{}.text("sFA ").number(1, 2).telegram()}) {
+  for (const Bytes& answer : {Bytes{}, ColaContent("sEA LMDscandata ").number(0, 1).telegram(),
+                              ColaContent("sFA ").number(1, 2).telegram()}) {
     sick.hear(answer);
     sick.now_ns += 499 * ms;
     CHECK_FALSE(sick.asks());
@@ -116,7 +99,7 @@ TEST_CASE("cola: a scanner is asked for its scans every half second until it con
   CHECK(sick.session.counters().resent == 3);
   CHECK(sick.session.counters().refused == 1);
   CHECK(has(sick.session.problem(), "refuses"));
-  sick.hear(Content{}.text("sEA LMDscandata ").number(1, 1).telegram());
+  sick.hear(ColaContent("sEA LMDscandata ").number(1, 1).telegram());
   CHECK(sick.session.problem().empty());
   sick.now_ns += 500 * ms;
   CHECK_FALSE(sick.asks());
@@ -124,7 +107,7 @@ TEST_CASE("cola: a scanner is asked for its scans every half second until it con
 
 TEST_CASE("cola: what was refused is forgotten with its connection") {
   Sick sick;
-  sick.hear(Content{}.text("sFA ").number(1, 2).telegram());
+  sick.hear(ColaContent("sFA ").number(1, 2).telegram());
   sick.session.restart({});
   CHECK(sick.session.problem().empty());
 }

@@ -202,6 +202,13 @@ struct Bench {
   XilinxCan<Wire> bus{Wire{&controller}};
   Settings settings{.clock_hz = 100'000'000};
   std::array<can::Frame, 8> frames{};
+
+  /// On the bus, and thrown off it at time 0.
+  void go_off() {
+    REQUIRE(bus.open(settings, {}) == Status::ok);
+    controller.become(0x100);
+    bus.receive(frames, 0);
+  }
 };
 
 constexpr std::uint32_t standard_request = 1u << 20, extended_request = 1u << 0;  // in the first word
@@ -462,9 +469,7 @@ TEST_CASE("xilinx_can: a bus-off that the controller has left by itself is one t
 
 TEST_CASE("xilinx_can: a controller that is dead at bus-off is tried again and again, once each time") {
   Bench b;
-  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
-  b.controller.become(0x100);
-  b.bus.receive(b.frames, 0);
+  b.go_off();
   b.controller.dead = true;
   b.bus.receive(b.frames, 100'000'000);
   CHECK(b.bus.bus() == BusState::off);
@@ -513,9 +518,7 @@ TEST_CASE("xilinx_can: a call that is refused leaves an open controller in reset
 
 TEST_CASE("xilinx_can: a restart that fails leaves the controller in reset until the next") {
   Bench b;
-  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
-  b.controller.become(0x100);
-  b.bus.receive(b.frames, 0);
+  b.go_off();
   b.controller.never_joins = true;
   b.bus.receive(b.frames, 100'000'000);
   CHECK(b.controller.in_reset());

@@ -23,14 +23,19 @@ void widen(WindowSettings& window) {
   window.cols += 2 * margin_cells;
 }
 
+/// The upper one of the middle two. Of some values, which change places.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 /// Whole kilometres to the window and to most of the cloud's heights: from there on float tells points apart.
 Point3 whole_kilometres(std::span<const Point3> cloud, const MapOptions& options) {
   const auto whole = [](double metres) { return 1000 * std::round(metres / 1000); };
   std::vector<double> heights;
   for (const Point3& p : cloud) heights.push_back(p.z);
-  const auto middle = heights.begin() + std::ssize(heights) / 2;
-  std::nth_element(heights.begin(), middle, heights.end());
-  const double z = heights.empty() ? 0 : whole(*middle);
+  const double z = heights.empty() ? 0 : whole(median(heights));
   return options.fixed() ? Point3{whole(options.origin[0]), whole(options.origin[1]), z} : Point3{0, 0, z};
 }
 
@@ -50,9 +55,7 @@ std::optional<double> ground_about_origin_m(std::span<const Point3> cloud) {
   }
   std::vector<double> heights;
   for (const auto& [square, height] : lowest) heights.push_back(height);
-  const auto middle = heights.begin() + std::ssize(heights) / 2;
-  std::ranges::nth_element(heights, middle);
-  return *middle;
+  return median(heights);
 }
 
 /// How high above the origin the laser was: at it, in the frame of a laser; in that of a robot's base, where the ground

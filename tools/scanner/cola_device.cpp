@@ -6,6 +6,7 @@
 #include "cola/session.hpp"
 #include "cola/telegram.hpp"
 #include "formats/bad_input.hpp"
+#include "scanner/cola_content.hpp"
 #include "scanner/device.hpp"
 
 namespace curbline::tools {
@@ -14,28 +15,6 @@ namespace {
 constexpr std::uint8_t unknown_command = 1, unknown_variable = 3;  // of sFA
 constexpr double turn_ns = 20e6, ahead_deg = 90.0;
 constexpr std::uint16_t first_range = 16;
-
-class Content {
- public:
-  explicit Content(std::string_view command) { bytes_.assign(command.begin(), command.end()); }
-  Content& number(std::uint32_t value, int size) {
-    for (int i = size - 1; i >= 0; --i) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-    return *this;
-  }
-  Content& text(std::string_view letters) {
-    bytes_.insert(bytes_.end(), letters.begin(), letters.end());
-    return *this;
-  }
-  Bytes telegram() const {
-    Bytes telegram(cola::Format::header + bytes_.size() + 1);
-    std::copy(bytes_.begin(), bytes_.end(), telegram.begin() + cola::Format::header);
-    cola::frame(telegram, bytes_.size());
-    return telegram;
-  }
-
- private:
-  Bytes bytes_;
-};
 
 std::uint16_t range_mm(float range_m) {
   if (!(range_m > 0.0f)) return 0;
@@ -80,17 +59,17 @@ class ColaDevice final : public Device {
     constexpr std::string_view stream = "sEN LMDscandata ";
     if (cola::begins(content, stream) && content.size() == stream.size() + 1) {
       measuring_ = content.back() == 1;
-      return Content("sEA LMDscandata ").number(content.back(), 1).telegram();
+      return ColaContent("sEA LMDscandata ").number(content.back(), 1).telegram();
     }
     if (cola::begins(content, "sRN LMDscandata") && content.size() == 15) return scan_data("sRA LMDscandata ");
-    return Content("sFA ").number(cola::begins(content, "sRN ") ? unknown_variable : unknown_command, 2).telegram();
+    return ColaContent("sFA ").number(cola::begins(content, "sRN ") ? unknown_variable : unknown_command, 2).telegram();
   }
 
   Bytes scan_data(std::string_view command) {
     constexpr double tenthousandths = 1e4 * 180.0 / std::numbers::pi;
     const auto start_us = static_cast<std::uint32_t>((last_.time_ns + 500) / 1000);
     ++count_;
-    Content content(command);
+    ColaContent content(command);
     content.number(1, 2).number(1, 2).number(0x00C0FFEE, 4).number(0, 2).number(count_, 2).number(count_, 2);
     content.number(start_us, 4).number(start_us + static_cast<std::uint32_t>(line_duration_ns() / 1000), 4);
     content.number(0, 2).number(0x0700, 2).number(0, 2).number(5000, 4).number(540, 4).number(0, 2).number(1, 2);
