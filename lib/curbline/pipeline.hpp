@@ -311,9 +311,13 @@ bool Pipeline<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, 
 /// before, nor do those after.
 template <Limits limits>
 void Pipeline<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping) {
-  const PoseSteps steps = pose_track_.take_steps(line_ns);
-  pose_offset_.follow(steps, pose.x_m, pose.y_m);
-  if ((jumping || steps.begun) && !jumped_) dem_.begin_marking();
+  pose_offset_.follow(pose.x_m, pose.y_m);
+  bool begun = false;
+  while (const auto step = pose_track_.next_step(line_ns)) {
+    pose_offset_.follow(*step);
+    begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
+  }
+  if ((jumping || begun) && !jumped_) dem_.begin_marking();
   jumped_ = jumping;
 }
 

@@ -1,4 +1,4 @@
-// What a localisation that thinks better of itself has moved the poses by, against the map. Its poses step (PoseSteps),
+// What a localisation that thinks better of itself has moved the poses by, against the map. Its poses step (PoseStepNews),
 // and where poses come seldom so do those of a robot that has met a kerb. The laser alone tells which of the two it
 // was: lines after the step look at ground that was mapped before it, and their heights lie off the map's by the step,
 // or not at all. Both likelihoods are multiplied up line by line until the one is twenty times the other; meanwhile a
@@ -21,9 +21,10 @@ class PoseOffset {
  public:
   void init(const PoseSettings& settings);
 
-  /// A line begins, with the robot there and these steps since the last. What is not decided of an earlier step is
-  /// taken as it seems to be.
-  void follow(const PoseSteps& steps, float x_m, float y_m);
+  /// A line begins, with the robot there.
+  void follow(float x_m, float y_m);
+  /// A pose before it has told of a step. What is not decided of an earlier one is taken as it seems to be.
+  void follow(const PoseStepNews& step);
 
   /// Is it open who has made the last step?
   bool undecided() const { return undecided_; }

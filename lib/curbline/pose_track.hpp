@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "curbline/extrapolation.hpp"
 #include "curbline/frames.hpp"
@@ -42,25 +43,12 @@ struct PoseShift {
   }
 };
 
-/// Steps of the poses: one lies off where those before it lead, and the next goes on from it as fast as they did. No
-/// robot does that, a localisation does; if poses come seldom a robot does, too. Until the next has come a pose that
-/// jumps may be either.
-struct PoseSteps {
-  PoseShift by{};  ///< of a step that has begun since
-  bool begun = false;
-  /// What has become of the one that had begun before; of one that has begun since, if it was confirmed.
-  bool confirmed = false, withdrawn = false;
-
-  void begin(const PoseShift& shift) {
-    by = begun ? by + shift : shift;
-    begun = true;
-    confirmed = false;
-  }
-  void confirm() { confirmed = true; }
-  void withdraw() {
-    withdrawn = !begun;
-    begun = false;
-  }
+/// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by going
+/// on from it as fast as they did. No robot does that, a localisation does; if poses come seldom a robot does, too.
+/// Until the next has come a pose that jumps may be either; one that jumps on withdraws the step.
+struct PoseStepNews {
+  enum class Kind { begun, confirmed, withdrawn } kind;
+  PoseShift by{};  ///< of one that has begun
 };
 
 /// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
@@ -105,10 +93,10 @@ class PoseTrack {
   /// Jumps of the poses later than a line's first beam, up to the first that is not before its last. O(poses).
   PoseJumps jumps(std::int64_t first_ns, std::int64_t last_ns) const;
 
-  /// What the poses since the last call, as far as they are not later than a line's first beam, say of steps. O(1) a
-  /// pose.
-  PoseSteps take_steps(std::int64_t until_ns);
-  /// By those poses: do they jump on end, as a robot's do that climbs?
+  /// What the next of the poses not asked yet says of a step; nothing if none says anything, as far as they are not
+  /// later than a line's first beam. O(1) a pose.
+  std::optional<PoseStepNews> next_step(std::int64_t until_ns);
+  /// By the poses that were asked: do they jump on end, as a robot's do that climbs?
   bool climbs() const { return moves_; }
 
   bool empty() const { return size_ == 0; }
@@ -184,22 +172,22 @@ PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) 
 }
 
 template <Limits limits>
-PoseSteps PoseTrack<limits>::take_steps(std::int64_t until_ns) {
-  PoseSteps steps;
-  for (; fresh_ > 0 && back(fresh_ - 1).time_ns <= until_ns; --fresh_) {
-    const int age = fresh_ - 1;
+std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) {
+  using Kind = PoseStepNews::Kind;
+  while (fresh_ > 0 && back(fresh_ - 1).time_ns <= until_ns) {
+    const int age = --fresh_;
     // As fast as after the last jump, if there are two poses to tell, else as before it.
     const int last = since_jump_ == 1 ? age + 2 : age + 1;
     const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
     const detail::PoseStep by = step(last, most, age);
     const bool stepped = since_jump_ == 1 && !moves_;
-    if (stepped && by.jumps()) steps.withdraw();
-    if (stepped && !by.jumps()) steps.confirm();
-    if (by.jumps() && !stepped && !moves_) steps.begin(detail::shift_of(by, back(age)));
+    const bool begins = by.jumps() && !stepped && !moves_;
     moves_ = by.jumps() && (stepped || moves_);
     since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
+    if (stepped) return PoseStepNews{by.jumps() ? Kind::withdrawn : Kind::confirmed};
+    if (begins) return PoseStepNews{Kind::begun, detail::shift_of(by, back(age))};
   }
-  return steps;
+  return {};
 }
 
 /// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it

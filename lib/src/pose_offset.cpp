@@ -40,21 +40,28 @@ void PoseOffset::init(const PoseSettings& settings) {
   fades_ = {fade_share * settings.height_sd_m, slope, slope};
 }
 
-void PoseOffset::follow(const PoseSteps& steps, float x_m, float y_m) {
+void PoseOffset::follow(float x_m, float y_m) {
   x_m_ = x_m;
   y_m_ = y_m;
   for (PoseShift* shift : {&offset_, &stepped_}) {
     *shift = {faded(shift->height_m, fades_.height_m), faded(shift->slope_x, fades_.slope_x),
               faded(shift->slope_y, fades_.slope_y)};
   }
-  if (steps.withdrawn) undecided_ = likelier_ = false;
-  if (steps.begun) {
-    settle();
-    open(offset_ - steps.by, poses_of_a_step * height_variance_m2_, poses_of_a_step * attitude_variance_);
-  }
-  if (steps.confirmed) {
-    confirmed_ = true;
-    evidence_ += rarely;
+}
+
+void PoseOffset::follow(const PoseStepNews& step) {
+  switch (step.kind) {
+    case PoseStepNews::Kind::begun:
+      settle();
+      open(offset_ - step.by, poses_of_a_step * height_variance_m2_, poses_of_a_step * attitude_variance_);
+      break;
+    case PoseStepNews::Kind::confirmed:
+      confirmed_ = true;
+      evidence_ += rarely;
+      break;
+    case PoseStepNews::Kind::withdrawn:
+      undecided_ = likelier_ = false;
+      break;
   }
 }
 
@@ -76,7 +83,7 @@ void PoseOffset::open(const PoseShift& stepped, float height_variance_m2, float 
 }
 
 void PoseOffset::settle() {
-  offset_ = offset();
+  if (undecided_ && evidence_ > 0.0f) offset_ = stepped_;
   undecided_ = likelier_ = false;
 }
 

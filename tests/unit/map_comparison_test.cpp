@@ -108,7 +108,7 @@ struct Jumping {
     const Settings settings = test::small_settings();
     latency.init(settings.tilt, settings.pose);
     offset.init(test::noisy_poses());
-    offset.follow({}, 0.0f, 1.2f);
+    offset.follow(0.0f, 1.2f);
   }
   /// Is a line across, with its points so high, off the map?
   bool off(float above_m, float slope_y = 0.0f) const {

@@ -16,11 +16,11 @@ PoseOffset made() {
   return offset;
 }
 
-PoseSteps step(const PoseShift& by, bool confirmed = true) {
-  PoseSteps steps;
-  steps.begin(by);
-  if (confirmed) steps.confirm();
-  return steps;
+/// A line begins, the robot at the origin, after a pose that steps and, if it is confirmed, the next.
+void step(PoseOffset& offset, const PoseShift& by, bool confirmed = true) {
+  offset.follow(0.0f, 0.0f);
+  offset.follow({PoseStepNews::Kind::begun, by});
+  if (confirmed) offset.follow({PoseStepNews::Kind::confirmed});
 }
 
 /// A line across, ahead_m before the robot, which is at the origin. Its heights lie off the ground by `off` less what
@@ -42,7 +42,7 @@ constexpr PoseShift jump{0.02f, -0.007f, 0.007f};
 TEST_CASE("pose offset: what a localisation has stepped by is taken off, of the line that tells as well") {
   test::Noise lot(1);
   PoseOffset offset = made();
-  offset.follow(step(jump), 0.0f, 0.0f);
+  step(offset, jump);
   REQUIRE(offset.undecided());
   const PoseShift back = see_line(offset, 1.0, jump, lot);
   CHECK_FALSE(offset.undecided());
@@ -59,7 +59,7 @@ TEST_CASE("pose offset: what a localisation has stepped by is taken off, of the 
 TEST_CASE("pose offset: what a robot has stepped by is left alone") {
   test::Noise lot(2);
   PoseOffset offset = made();
-  offset.follow(step(jump), 0.0f, 0.0f);
+  step(offset, jump);
   CHECK_FALSE(see_line(offset, 1.0, {}, lot).any());
   CHECK_FALSE(offset.undecided());
   CHECK_FALSE(offset.offset().any());
@@ -72,7 +72,7 @@ TEST_CASE("pose offset: a step is measured better by the lines after it than by 
     PoseOffset offset = made();
     const PoseShift told{jump.height_m + static_cast<float>(0.005 * lot.normal()), jump.slope_x,
                          jump.slope_y + static_cast<float>(0.0016 * lot.normal())};
-    offset.follow(step(told), 0.0f, 0.0f);
+    step(offset, told);
     see_line(offset, 1.0, jump, lot);
     by_poses_m2 += std::pow(told.at(1.0f, 1.0f) - jump.at(1.0f, 1.0f), 2);
     by_lines_m2 += std::pow(offset.offset().at(1.0f, 1.0f) + jump.at(1.0f, 1.0f), 2);
@@ -84,14 +84,14 @@ TEST_CASE("pose offset: a step that cannot be seen yet stays open, and heights w
   test::Noise lot(4);
   PoseOffset offset = made();
   const PoseShift level{0.02f, -0.02f, 0.0f};  // nothing of it is seen 1 m ahead
-  offset.follow(step(level), 0.0f, 0.0f);
+  step(offset, level);
   CHECK(std::abs(see_line(offset, 1.0, level, lot).at(1.0f, 0.0f)) < 0.003f);
   CHECK(offset.undecided());
   CHECK(offset.doubt_m2(1.0f, 0.0f) < 1e-5f);
   CHECK(offset.doubt_m2(3.0f, 0.0f) == Approx(0.04 * 0.04).epsilon(0.3));
-  offset.follow({}, 0.0f, 0.0f);
+  offset.follow(0.0f, 0.0f);
   see_line(offset, 2.0, level, lot);
-  offset.follow({}, 0.0f, 0.0f);
+  offset.follow(0.0f, 0.0f);
   see_line(offset, 3.0, level, lot);
   CHECK_FALSE(offset.undecided());
   CHECK(offset.offset().at(3.0f, 0.0f) == Approx(0.04).margin(0.005));
@@ -100,7 +100,7 @@ TEST_CASE("pose offset: a step that cannot be seen yet stays open, and heights w
 TEST_CASE("pose offset: a line of which less than half lies on known ground decides nothing") {
   test::Noise lot(5);
   PoseOffset offset = made();
-  offset.follow(step(jump), 0.0f, 0.0f);
+  step(offset, jump);
   CHECK_FALSE(see_line(offset, 1.0, jump, lot, 200, 201).any());
   CHECK(offset.undecided());
 }
@@ -108,15 +108,22 @@ TEST_CASE("pose offset: a line of which less than half lies on known ground deci
 TEST_CASE("pose offset: a step that was none is forgotten, even after a line has fallen for it") {
   test::Noise lot(6);
   PoseOffset offset = made();
-  offset.follow(step(jump, false), 0.0f, 0.0f);
+  step(offset, jump, false);
   see_line(offset, 1.0, jump, lot);
   CHECK(offset.undecided());
   REQUIRE(offset.offset().any());
-  PoseSteps none;
-  none.withdraw();
-  offset.follow(none, 0.0f, 0.0f);
+  offset.follow({PoseStepNews::Kind::withdrawn});
   CHECK_FALSE(offset.undecided());
   CHECK_FALSE(offset.offset().any());
+}
+
+TEST_CASE("pose offset: of two steps before a line the first, confirmed, is the localisation's, the second forgotten") {
+  PoseOffset offset = made();
+  step(offset, jump);
+  offset.follow({PoseStepNews::Kind::begun, {0.1f, 0.0f, 0.0f}});
+  offset.follow({PoseStepNews::Kind::withdrawn});
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().height_m == Approx(-jump.height_m));
 }
 
 TEST_CASE("pose offset: steps follow each other, and the offset is their sum") {
@@ -125,7 +132,7 @@ TEST_CASE("pose offset: steps follow each other, and the offset is their sum") {
   PoseShift sum;
   for (int k = 0; k < 5; ++k) {
     sum = sum + jump;
-    offset.follow(step(jump), 0.0f, 0.0f);
+    step(offset, jump);
     see_line(offset, 1.0, sum, lot);
   }
   CHECK(offset.offset().at(1.0f, 0.0f) == Approx(-5 * 0.013).margin(0.005));
@@ -134,13 +141,13 @@ TEST_CASE("pose offset: steps follow each other, and the offset is their sum") {
 TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses tremble") {
   test::Noise lot(8);
   PoseOffset offset = made();
-  offset.follow(step(jump), 0.0f, 0.0f);
+  step(offset, jump);
   see_line(offset, 1.0, jump, lot);
   const PoseShift first = offset.offset();
-  for (int line = 0; line < 400; ++line) offset.follow({}, 0.0f, 0.0f);
+  for (int line = 0; line < 400; ++line) offset.follow(0.0f, 0.0f);
   CHECK(offset.offset().height_m == Approx(first.height_m + 0.003f).margin(1e-5));
   CHECK(offset.offset().slope_x == Approx(first.slope_x - 0.001f).margin(1e-5));
-  for (int line = 0; line < 4000; ++line) offset.follow({}, 0.0f, 0.0f);
+  for (int line = 0; line < 4000; ++line) offset.follow(0.0f, 0.0f);
   CHECK_FALSE(offset.offset().any());
 }
 

@@ -240,19 +240,27 @@ TEST_CASE("pose track: a drive, its turns and the noise that is told of are no j
   CHECK(jumps < 25);  // by chance, 3 in 1000 each of height and, of two angles, 11
 }
 
-/// What each of eight poses says of steps as it comes: 'S' one begins, 'C' it is confirmed, 'W' it was none.
+/// What those poses say of steps that have not been asked: 'S' one begins, 'C' it is confirmed, 'W' it was none.
+std::string told_until(Track& track, std::int64_t time_ns) {
+  std::string told;
+  while (const auto step = track.next_step(time_ns)) {
+    told += step->kind == PoseStepNews::Kind::begun ? 'S' : step->kind == PoseStepNews::Kind::confirmed ? 'C' : 'W';
+  }
+  return told;
+}
+
+/// The same of each of eight poses as it comes, '.' for nothing.
 template <typename Changed>
 std::string told_by_each(Changed&& changed) {
   std::string told;
-  PoseSteps steps;
   Track track;
   track.init(noisy_poses());
   for (int k = 0; k < 8; ++k) {
     Pose pose = on_ramp(k);
     changed(pose, k);
     REQUIRE(track.push(pose));
-    steps = track.take_steps(pose.time_ns);
-    told += steps.begun ? 'S' : steps.confirmed ? 'C' : steps.withdrawn ? 'W' : '.';
+    const std::string news = told_until(track, pose.time_ns);
+    told += news.empty() ? "." : news;
   }
   return told;
 }
@@ -275,6 +283,18 @@ TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, no
   }
 }
 
+TEST_CASE("pose track: poses that come many at a time say of steps what they say one by one") {
+  Track track;
+  track.init(noisy_poses());
+  for (int k = 0; k < 10; ++k) {
+    Pose pose = on_ramp(k);
+    pose.z_m += k < 5 ? 0.0f : k < 8 ? 0.3f : 0.3f + 0.1f * static_cast<float>(k - 7);  // steps, then climbs
+    REQUIRE(track.push(pose));
+  }
+  CHECK(told_until(track, t0 + 20 * ms * 9) == "SCSW");
+  CHECK(told_until(track, t0 + 20 * ms * 9).empty());
+}
+
 TEST_CASE("pose track: a robot climbs while poses jump on end, and not by one that jumps") {
   const auto climbing = [](auto&& z_m) {
     std::string told;
@@ -284,7 +304,7 @@ TEST_CASE("pose track: a robot climbs while poses jump on end, and not by one th
       Pose pose = on_ramp(k);
       pose.z_m += z_m(k);
       REQUIRE(track.push(pose));
-      track.take_steps(pose.time_ns);
+      told_until(track, pose.time_ns);
       told += track.climbs() ? 'c' : '.';
     }
     return told;
@@ -305,8 +325,9 @@ TEST_CASE("pose track: a step is told in the map's frame, whatever way the robot
     const Eigen::Quaternionf q = Eigen::AngleAxisf(0.5f * pi, Eigen::Vector3f::UnitZ()) *
                                  Eigen::AngleAxisf(k >= 5 ? 0.01f : 0.0f, Eigen::Vector3f::UnitX());
     REQUIRE(track.push({t0 + 20 * ms * k, 0.0f, 0.02f * static_cast<float>(k), 0.0f, q.x(), q.y(), q.z(), q.w()}));
-    const PoseSteps steps = track.take_steps(t0 + 20 * ms * k);
-    if (steps.begun) by = steps.by;
+    while (const auto step = track.next_step(t0 + 20 * ms * k)) {
+      if (step->kind == PoseStepNews::Kind::begun) by = step->by;
+    }
   }
   CHECK(by.slope_x == Approx(-0.01).margin(1e-5));
   CHECK(by.slope_y == Approx(0.0).margin(1e-5));
