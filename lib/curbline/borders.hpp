@@ -43,7 +43,7 @@ class Borders {
 
   /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each,
   /// within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50
-  /// look-ups a border.
+  /// look-ups a border; (2 reach + 1)^2 where no other lies within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
 

@@ -25,7 +25,7 @@ struct Counters {
   std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no attitude, before init()
   // Bounds that were hit.
   std::uint32_t cells_deferred = 0;  ///< labels that waited for a later call (LabelSettings::max_messages)
-  std::uint32_t regions_full = 0;    ///< leaves that had no node of their own
+  std::uint32_t regions_full = 0;    ///< leaves without room, which have no region
   std::uint32_t links_full = 0;      ///< pairs of cells of which the regions' link was left out
   std::uint32_t planes_full = 0;     ///< regions large enough for a plane that got none
   std::uint32_t borders_full = 0;    ///< border points of curbs that were left out

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "curbline/line_fit.hpp"
 #include "curbline/math.hpp"
@@ -58,6 +59,11 @@ float to_far_side_m(const Curb& curb, float x_m, float y_m);
 /// How much of `now` lies along `before`, metres: of its projection, if its middle lies within `near_m` of that line.
 /// Else 0 or less.
 float overlap_m(const Curb& now, const Curb& before, float near_m);
+
+/// Cells that an edge crosses may bear a third plane, and part it from one of the others: a second step, of another
+/// height, within a cell of the first. Of steps that lie along each other, all but a cell of the shorter, the longer one
+/// tells the edge, of equals the first. Says for each curb whether another tells it; O(curbs^2).
+void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told);
 
 /// A border as it was drawn between two planes.
 struct DrawnBorder {

@@ -2,7 +2,7 @@
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height.
 // Each tells how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the
 // window, a third where there is a deep drop, 50 look-ups a border point, 60 operations for each border of what is left
-// of a chain and each of its pieces, and 20 for each pair of a curb and one of the call before.
+// of a chain and each of its pieces, and 20 for each pair of curbs, and of one and one of the call before.
 #pragma once
 
 #include <algorithm>
@@ -42,6 +42,7 @@ class CurbTracer {
     Borders<limits> borders;
     std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of three borders at least
     std::array<Curb, limits.curbs> curb;
+    std::array<bool, limits.curbs> told;  ///< told_by_longer()
     int curbs;
     const Plane* nearest_ground;  ///< null until a deep drop asks for it
   };
@@ -98,19 +99,13 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   keep_ids(work, 2.0f * cell_m);
 }
 
-/// Cells that an edge crosses may bear a third plane, and part it from one of the others: a second step, of another
-/// height, within a cell of the first. Of steps that lie along each other the longer one is told.
 template <Limits limits>
 void CurbTracer<limits>::tell_once(Work& work, float cell_m) {
-  const std::span<Curb> curbs(work.curb.data(), static_cast<std::size_t>(work.curbs));
+  const auto found = static_cast<std::size_t>(work.curbs);
+  told_by_longer(std::span(work.curb.data(), found), cell_m, work.told);
   work.curbs = 0;
-  for (const Curb& curb : curbs) {
-    const float length_m = length_of(curb);
-    const auto tells_it = [&](const Curb& other) {
-      return is_step(other) && length_of(other) > length_m && overlap_m(curb, other, cell_m) > length_m - cell_m;
-    };
-    if (is_step(curb) && std::any_of(curbs.begin(), curbs.end(), tells_it)) continue;
-    work.curb[static_cast<std::size_t>(work.curbs++)] = curb;
+  for (std::size_t k = 0; k < found; ++k) {
+    if (!work.told[k]) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
   }
 }
 
@@ -135,10 +130,17 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
     now.id = same->id;
     same->id = 0;  // taken
   }
+  const std::span<const Curb> kept(work.curb.data(), static_cast<std::size_t>(work.curbs));
+  const auto new_id = [&] {
+    do {
+      last_id_ = static_cast<std::uint16_t>(last_id_ == 65535 ? 1 : last_id_ + 1);
+    } while (std::any_of(kept.begin(), kept.end(), [this](const Curb& curb) { return curb.id == last_id_; }));
+    return last_id_;
+  };
   for (int n = 0; n < work.curbs; ++n) {
     Curb& curb = curb_[static_cast<std::size_t>(n)];
     curb = work.curb[static_cast<std::size_t>(n)];
-    if (curb.id == 0) curb.id = last_id_ = static_cast<std::uint16_t>(last_id_ == 65535 ? 1 : last_id_ + 1);
+    if (curb.id == 0) curb.id = new_id();
   }
   curbs_ = work.curbs;
 }

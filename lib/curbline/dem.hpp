@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "curbline/cell.hpp"
@@ -43,8 +44,8 @@ class Dem {
   void follow(float x_m, float y_m, Left&& left);
 
   /// Takes a point into its cell; false if it lies outside the window, beyond Pose::furthest_m above or below, or has a
-  /// value that is not finite, or no variance at all. Its weight is the expected noise over its variance plus the
-  /// ground's texture. The first of a sweep makes what a cell of more than one surface has of earlier ones fade. O(1).
+  /// value that is not finite. Its weight is the expected noise over its variance plus the ground's texture; none
+  /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones fade. O(1).
   bool add(const Point& point);
 
   /// What is known before any point; PlanePrior::common_share by what was found last.
@@ -210,6 +211,8 @@ class Dem {
 
  private:
   static constexpr int growth_scale = 1024;
+  /// Of a point: with others float loses what it tells, or what they do.
+  static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
   static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
@@ -225,7 +228,7 @@ class Dem {
     auto& distances = distances_[static_cast<std::size_t>(slot)];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
   }
-  void add_growth(std::size_t s, float growth_m_s, float weight);
+  void add_growth(std::size_t s, const Point& point, float weight);
   void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
@@ -365,29 +368,32 @@ bool Dem<limits>::add(const Point& point) {
   if (!is_finite(point.x_m) || !is_finite(point.y_m) || !near || !is_finite(point.variance_m2)) return false;
   const float variance_m2 = point.variance_m2 + prior_.texture_m2;
   if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
+  const float weight = prior_.noise_m2 / variance_m2;
+  if (!(weight >= least_weight && weight <= most_weight)) return false;
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
   const auto s = static_cast<std::size_t>(slot(i, j));
   if (!cells_[s].valid()) meet_neighbours(i, j);
   if (mapped_before(static_cast<int>(s)) && several_surfaces(cells_[s])) cells_[s].fade(memory);
-  const float weight = prior_.noise_m2 / variance_m2;
   cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
                 (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
-  add_growth(s, point.growth_m_s, weight);
+  add_growth(s, point, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
   touched_[s] = flags_;
   any_touched_ = true;
   return true;
 }
 
-/// After the point has been added.
+/// After the point has been added. A mean of many points changes by less than what is stored: it is rounded up as often
+/// as its fraction says, by the lot that the last bits of the point's height draw.
 template <Limits limits>
-void Dem<limits>::add_growth(std::size_t s, float growth_m_s, float weight) {
-  const float before = static_cast<float>(growth_[s]), point = growth_m_s * growth_scale;
-  const float now = before + weight / cells_[s].weight * (point - before);
+void Dem<limits>::add_growth(std::size_t s, const Point& point, float weight) {
+  const float before = static_cast<float>(growth_[s]);
+  const float now = before + weight / cells_[s].weight * (point.growth_m_s * growth_scale - before);
+  const float lot = static_cast<float>((std::bit_cast<std::uint32_t>(point.z_m) * 2654435769u) >> 8) * 0x1p-24f;
   if (now > -most_growth_m_s * growth_scale && now < most_growth_m_s * growth_scale)
-    growth_[s] = static_cast<std::int16_t>(now + (now < 0.0f ? -0.5f : 0.5f));
+    growth_[s] = static_cast<std::int16_t>(floor_to_int(now + lot));
 }
 
 template <Limits limits>

@@ -6,7 +6,7 @@
 namespace curbline {
 
 /// Every size is a capacity. The window in use may be smaller (Settings::window); a store that is full refuses and
-/// counts (Counters).
+/// counts (Counters). More cells want more regions, links, borders and curbs, as many times.
 struct Limits {
   int rows = 40;          ///< cells of the window along x, a multiple of 4
   int cols = 40;          ///< cells of the window along y, a multiple of 4

@@ -63,7 +63,7 @@ class LineProjection {
 
  private:
   bool returned(float range_m) const {
-    return range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
+    return range_m > 0.0f && range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
   /// How much farther than a beam the two beside it see, on the mean, as long as all three see one surface, agreeing
   /// with each other within three standard deviations; else 0. What did not return does not agree.

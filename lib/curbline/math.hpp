@@ -5,6 +5,10 @@
 #include <bit>
 #include <cstdint>
 
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "curbline keeps its bits and drops what is not finite: build without -ffast-math and -ffinite-math-only"
+#endif
+
 namespace curbline {
 
 inline constexpr float pi = 3.14159265f;

@@ -42,7 +42,7 @@ template <Limits limits>
 class Pipeline {
  public:
   static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
-  static_assert(limits.planes >= 2 && limits.planes <= 255, "a label is a byte, of which 255 says none");
+  static_assert(limits.planes >= 2 && limits.planes <= 255, "labels are 0 to 254 at most, 255 says none");
   static_assert(limits.borders >= 1 && limits.borders < 65535,
                 "a border's number is 16 bits, of which 65535 says none");
   static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
@@ -55,7 +55,7 @@ class Pipeline {
   Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
-  /// dropped.
+  /// dropped: not finite, beyond 1e6 rad, not later than the one before. init() forgets those before it.
   bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
 
   /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond
@@ -88,7 +88,8 @@ class Pipeline {
   /// sweep do not tell it. Returns the passes made.
   int settle(int passes = 10);
 
-  /// Curbs in the window, in the map frame. Valid until the next take(), infer(), settle() or init().
+  /// Curbs in the window, in the map frame; where it has moved since they were traced, up to a line before, as it was
+  /// then. Valid until the next take(), infer(), settle() or init().
   std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
   /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or over
@@ -102,7 +103,7 @@ class Pipeline {
   }
 
   /// Plane that the readings in a valid cell are of (i along x, j along y, from the window's lowest corner, 0 <= i <
-  /// dem().rows(), 0 <= j < dem().cols()); no_label<limits> for the others.
+  /// dem().rows(), 0 <= j < dem().cols()); no_label<limits> for the others. It may outlive its plane by a line.
   Label<limits> label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label<limits>; }
   /// Probability of that label; 0 before init().
   float label_probability(int i, int j) const;

@@ -127,7 +127,8 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   Ranking ranking;
   rank_regions(work, ranking, counters);
   const auto rank_of = [&](int slot) {
-    return ranking.of_node[work.graph.root(work.node_of_cell[static_cast<std::size_t>(slot)])];
+    const Node node = work.node_of_cell[static_cast<std::size_t>(slot)];
+    return node == RegionGraph<limits>::none ? none : ranking.of_node[work.graph.root(node)];
   };
   dem.for_each_valid([&](int, int, int s) {
     const LabelType rank = rank_of(s);
@@ -214,6 +215,9 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   for (std::size_t l = 0; l < clean.size(); ++l) {
     PlaneMoments& moments = clean[l].inner;
     PlaneMoments& beside = clean[l].beside;
+    if (!clean[l].wanted) continue;
+    const float points_a_cell = clean[l].points / clean[l].cells;
+    planes_[l].points_a_cell = points_a_cell;
     if (moments.cells + beside.cells < settings_.min_cells) continue;
     if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
     moments.add(beside);
@@ -221,7 +225,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     planes_[l] =
         clean[l].steep ? fit_plane(moments, dem.prior()) : fit_plane_to_means(moments, dem.prior(), dem.common_m2());
     planes_[l].variance_m2 = of_region_m2;
-    planes_[l].points_a_cell = clean[l].points / clean[l].cells;
+    planes_[l].points_a_cell = points_a_cell;
   }
 }
 
@@ -333,7 +337,9 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
     if (!planes_[l].alive() || moments[l].cells < 3.0f) continue;
+    const float points_a_cell = planes_[l].points_a_cell;
     planes_[l] = fit_plane(moments[l], dem.prior());
+    planes_[l].points_a_cell = points_a_cell;
   }
 }
 

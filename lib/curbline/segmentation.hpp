@@ -62,6 +62,7 @@ class Segmentation {
   template <typename Obstructed>
   void update(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters);
 
+  /// Of a valid cell; `none` if the store of regions was full when it came to its leaf.
   Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
 
   /// Calls visit(node, moments) for the node of each region, right after an update() that had something to do.
@@ -154,16 +155,16 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   RegionGraph<limits>& graph = work.graph;
   graph.clear(dem.cell_x_m(), dem.cell_y_m());
   work.node_of_cell.fill(no_node);
-  Node last = no_node;
   dem.for_each_valid([&](int i, int j, int s) {
-    Node& node = work.node_of_cell[representative(static_cast<std::size_t>(s))];  // a cell that bears the name
+    const Region name = representative(static_cast<std::size_t>(s));  // a cell that bears it
+    Node& node = work.node_of_cell[name];
     if (node == no_node) node = graph.add_node();
     if (node == no_node) {
-      ++counters.regions_full;
-      node = last;  // full: the leaf joins the one before it
+      counters.regions_full += static_cast<int>(name) == s;
+      return;
     }
     graph.moments(node).add_cell(dem.moments(i, j, dem.cell(s)));
-    work.node_of_cell[static_cast<std::size_t>(s)] = last = node;
+    work.node_of_cell[static_cast<std::size_t>(s)] = node;
   });
   const auto join = [&](Node a, Node b) {
     const Node end = graph.link(a, b);
@@ -172,7 +173,7 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   };
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
-    if (a == b) return;
+    if (a == b || a == no_node || b == no_node) return;
     const Cell& from = dem.cell(static_cast<int>(link.from));
     const Cell& to = dem.cell(static_cast<int>(link.to));
     const Node end = join(a, b);
@@ -180,7 +181,8 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
     if (!obstructed(static_cast<int>(link.to)) || obstructed(static_cast<int>(link.from))) return;
     const int beyond = beyond_obstacle(dem, link, settings_.link_reach, obstructed);
     if (beyond < 0) return;
-    if (const Node c = work.node_of_cell[static_cast<std::size_t>(beyond)]; c != a) join(a, c);
+    const Node c = work.node_of_cell[static_cast<std::size_t>(beyond)];
+    if (c != a && c != no_node) join(a, c);
   });
 }
 
@@ -190,6 +192,8 @@ void Segmentation<limits>::name_regions(const Dem<limits>& dem, Work& work) {
   work.region_of_node.fill(none);
   dem.for_each_valid([&](int, int, int slot) {
     const auto s = static_cast<std::size_t>(slot);
+    region_[s] = none;
+    if (work.node_of_cell[s] == no_node) return;
     Region& region = work.region_of_node[graph.root(work.node_of_cell[s])];
     if (region == none) region = static_cast<Region>(s);
     region_[s] = region;

@@ -20,7 +20,7 @@ struct WindowSettings {
   int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
   float cell_x_m = 0.1f;      ///< [0.001, 10]
   float cell_y_m = 0.1f;      ///< [0.001, 10]
-  float origin_x_m = 0.0f;    ///< lowest corner, [-1e6, 1e6]
+  float origin_x_m = 0.0f;    ///< lowest corner, [-1e5, 1e5]
   float origin_y_m = -2.0f;   ///< the same along y
   bool fixed = false;         ///< true: the window never moves
   float max_height_m = 1e9f;  ///< points above it are ignored
@@ -32,10 +32,10 @@ struct LaserSettings {
   float first_bearing_rad = -2.3561945f;    ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
   float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0
   float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
-  float min_range_m = 0.1f;                 ///< readings below are no returns, >= 0
-  float max_range_m = 60.0f;                ///< readings at or above are no returns
-  float range_sd_m = 0.01f;                 ///< standard deviation of a range, >= 0
-  float bearing_sd_rad = 0.0005f;           ///< of a bearing, >= 0
+  float min_range_m = 0.1f;                 ///< readings below are no returns, nor is 0; [0, 1e6]
+  float max_range_m = 60.0f;                ///< readings at or above are no returns; at most 1e6
+  float range_sd_m = 0.01f;                 ///< standard deviation of a range, [0, 10]
+  float bearing_sd_rad = 0.0005f;           ///< of a bearing, [0, 1]
 
   /// Between two beams, in whole nanoseconds.
   std::int64_t beam_interval_ns() const { return static_cast<std::int64_t>(beam_interval_s * 1e9f + 0.5f); }
@@ -60,19 +60,19 @@ struct TiltSettings {
   float fixed_tilt_rad = 0.0f;        ///< [-pi, pi]
   float latency_s = 0.0f;             ///< [-10, 10]: an angle stamped t was true at t - latency_s
   float latency_sd_s = 0.01f;         ///< [0, 1]: how far it may be off, and change by sweeps; 0: it is not estimated
-  float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; >= 0
-  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error; >= 0
+  float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; [0, 1]
+  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error; [0, 1]
   float max_extrapolation_s = 0.05f;  ///< [0, 10]: beams later than the newest reading by more are dropped
   float max_gap_s = 0.2f;             ///< (0, 10]: readings further apart are not interpolated across
-  float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin, >= 0
+  float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin, [0, 1]
   float pitch_sd_rad = 0.0f;          ///< the same about y
 };
 
 /// The robot's pose, T_map_base. A robot that stands gives none.
 struct PoseSettings {
   bool still = true;                 ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;          ///< of z between two poses, >= 0; if it stands, by how much it sways
-  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, >= 0; the same
+  float height_sd_m = 0.0f;          ///< of z between two poses, [0, 10]; if it stands, by how much it sways
+  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, [0, 1]; the same
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 
@@ -91,7 +91,7 @@ enum class PlaneUpdate : unsigned char {
 
 struct PlaneSettings {
   PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 4.0f;  ///< >= 3; fewer make no plane: one more than it has parameters
+  float min_cells = 4.0f;  ///< 3 to 1e6; fewer make no plane: one more than it has parameters
   PlaneUpdate update = PlaneUpdate::regions;
 };
 

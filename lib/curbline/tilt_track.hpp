@@ -18,7 +18,7 @@ namespace curbline {
 
 struct TiltReading {
   std::int64_t time_ns = 0;
-  float angle_rad = 0.0f;  ///< tilt > 0 looks down
+  float angle_rad = 0.0f;  ///< tilt > 0 looks down; continuous: an encoder's zero does not lie within the sweep
 };
 
 /// The angle at one time.

@@ -28,7 +28,7 @@ void PatchResiduals::add(float x_cells, float y_cells, float above_m) {
 
 float PatchResiduals::common_m2() const {
   const float n = cells;
-  // Scatter times n: whole numbers, so the determinant is exact.
+  // Scatter times n: whole numbers.
   const float sxx = n * xx - x * x, sxy = n * xy - x * y, syy = n * yy - y * y, determinant = sxx * syy - sxy * sxy;
   const float sxz = n * x_off_m - x * off_m, syz = n * y_off_m - y * off_m;
   const float slope[2] = {(syy * sxz - sxy * syz) / determinant, (sxx * syz - sxy * sxz) / determinant};

@@ -1,5 +1,6 @@
 #include "curbline/curb.hpp"
 
+#include <cstddef>
 #include <limits>
 
 #include "curbline/ground.hpp"
@@ -54,6 +55,18 @@ CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment
     return slope > least_ramp || slope < -least_ramp;
   };
   return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
+}
+
+void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told) {
+  for (std::size_t k = 0; k < curbs.size(); ++k) {
+    const float length_m = length_of(curbs[k]);
+    told[k] = false;
+    for (std::size_t o = 0; is_step(curbs[k]) && o < curbs.size() && !told[k]; ++o) {
+      const float other_m = length_of(curbs[o]);
+      const bool longer = other_m > length_m || (other_m == length_m && o < k);
+      told[k] = longer && is_step(curbs[o]) && overlap_m(curbs[k], curbs[o], cell_m) > length_m - cell_m;
+    }
+  }
 }
 
 float to_far_side_m(const Curb& curb, float x_m, float y_m) {

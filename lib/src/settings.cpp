@@ -13,8 +13,12 @@ bool within(float x, float low, float high) {
 bool positive(float x) {
   return is_finite(x) && x > 0.0f;
 }
-bool not_negative(float x) {
-  return is_finite(x) && x >= 0.0f;
+/// Of standard deviations: larger ones are a wrong unit.
+bool deviation_m(float x) {
+  return within(x, 0.0f, 10.0f);
+}
+bool deviation_rad(float x) {
+  return within(x, 0.0f, 1.0f);
 }
 bool whole_blocks(int cells, int most) {
   return cells >= block_side && cells <= most && cells % block_side == 0;
@@ -38,8 +42,8 @@ Bad first_bad(const WindowSettings& w, const Limits& limits) {
   if (!whole_blocks(w.cols, limits.cols)) return "window.cols";
   if (!within(w.cell_x_m, 0.001f, 10.0f)) return "window.cell_x_m";
   if (!within(w.cell_y_m, 0.001f, 10.0f)) return "window.cell_y_m";
-  if (!within(w.origin_x_m, -1e6f, 1e6f)) return "window.origin_x_m";
-  if (!within(w.origin_y_m, -1e6f, 1e6f)) return "window.origin_y_m";
+  if (!within(w.origin_x_m, -1e5f, 1e5f)) return "window.origin_x_m";
+  if (!within(w.origin_y_m, -1e5f, 1e5f)) return "window.origin_y_m";
   return is_finite(w.max_height_m) ? nullptr : "window.max_height_m";
 }
 
@@ -51,10 +55,10 @@ Bad first_bad(const LaserSettings& l, const Limits& limits) {
       !within(last_rad, -4.0f * pi, 4.0f * pi))
     return "laser.bearing_step_rad";
   if (!within(l.beam_interval_s, 0.0f, 1.0f)) return "laser.beam_interval_s";
-  if (!not_negative(l.min_range_m)) return "laser.min_range_m";
-  if (!is_finite(l.max_range_m) || l.max_range_m <= l.min_range_m) return "laser.max_range_m";
-  if (!not_negative(l.range_sd_m)) return "laser.range_sd_m";
-  return not_negative(l.bearing_sd_rad) ? nullptr : "laser.bearing_sd_rad";
+  if (!within(l.min_range_m, 0.0f, 1e6f)) return "laser.min_range_m";
+  if (!within(l.max_range_m, 0.0f, 1e6f) || l.max_range_m <= l.min_range_m) return "laser.max_range_m";
+  if (!deviation_m(l.range_sd_m)) return "laser.range_sd_m";
+  return deviation_rad(l.bearing_sd_rad) ? nullptr : "laser.bearing_sd_rad";
 }
 
 Bad first_bad(const TiltSettings& t) {
@@ -63,32 +67,32 @@ Bad first_bad(const TiltSettings& t) {
   if (!within(t.fixed_tilt_rad, -pi, pi)) return "tilt.fixed_tilt_rad";
   if (!within(t.latency_s, -10.0f, 10.0f)) return "tilt.latency_s";
   if (!within(t.latency_sd_s, 0.0f, 1.0f)) return "tilt.latency_sd_s";
-  if (!not_negative(t.angle_sd_rad)) return "tilt.angle_sd_rad";
-  if (!not_negative(t.time_sd_s)) return "tilt.time_sd_s";
+  if (!deviation_rad(t.angle_sd_rad)) return "tilt.angle_sd_rad";
+  if (!within(t.time_sd_s, 0.0f, 1.0f)) return "tilt.time_sd_s";
   if (!within(t.max_extrapolation_s, 0.0f, 10.0f)) return "tilt.max_extrapolation_s";
   if (!positive(t.max_gap_s) || t.max_gap_s > 10.0f) return "tilt.max_gap_s";
-  if (!not_negative(t.roll_sd_rad)) return "tilt.roll_sd_rad";
-  return not_negative(t.pitch_sd_rad) ? nullptr : "tilt.pitch_sd_rad";
+  if (!deviation_rad(t.roll_sd_rad)) return "tilt.roll_sd_rad";
+  return deviation_rad(t.pitch_sd_rad) ? nullptr : "tilt.pitch_sd_rad";
 }
 
 Bad first_bad(const PoseSettings& p) {
-  if (!not_negative(p.height_sd_m)) return "pose.height_sd_m";
-  if (!not_negative(p.attitude_sd_rad)) return "pose.attitude_sd_rad";
+  if (!deviation_m(p.height_sd_m)) return "pose.height_sd_m";
+  if (!deviation_rad(p.attitude_sd_rad)) return "pose.attitude_sd_rad";
   return within(p.max_extrapolation_s, 0.0f, 10.0f) ? nullptr : "pose.max_extrapolation_s";
 }
 
 Bad first_bad_of_inference(const Settings& s) {
-  if (!positive(s.segmentation.cell.degrees)) return "segmentation.cell.degrees";
-  if (!positive(s.segmentation.cell.variance_m2)) return "segmentation.cell.variance_m2";
+  if (!within(s.segmentation.cell.degrees, 1e-3f, 1e6f)) return "segmentation.cell.degrees";
+  if (!within(s.segmentation.cell.variance_m2, 1e-10f, 100.0f)) return "segmentation.cell.variance_m2";
   if (!positive(s.segmentation.leaf_scale)) return "segmentation.leaf_scale";
   if (!reach(s.segmentation.link_reach)) return "segmentation.link_reach";
   const PlanePrior& prior = s.planes.prior;
-  if (!positive(prior.noise_m2)) return "planes.prior.noise_m2";
-  if (!not_negative(prior.texture_m2)) return "planes.prior.texture_m2";
+  if (!within(prior.noise_m2, 1e-10f, 100.0f)) return "planes.prior.noise_m2";
+  if (!within(prior.texture_m2, 0.0f, 100.0f)) return "planes.prior.texture_m2";
   if (!within(prior.degrees, 1.0f, 1e6f)) return "planes.prior.degrees";
   if (!within(prior.common_share, PlanePrior::least_common_share, 1.0f)) return "planes.prior.common_share";
   if (!within(prior.curvature_1_m, 0.0f, 10.0f)) return "planes.prior.curvature_1_m";
-  if (!(s.planes.min_cells >= 3.0f)) return "planes.min_cells";
+  if (!within(s.planes.min_cells, 3.0f, 1e6f)) return "planes.min_cells";
   if (!within(s.labels.coupling, 0.01f, 7.9f)) return "labels.coupling";
   if (!reach(s.labels.link_reach)) return "labels.link_reach";
   if (s.labels.refresh_rows < 0) return "labels.refresh_rows";

@@ -15,6 +15,10 @@ constexpr float sweep_share = 0.2f;
 /// Of lines on end that disagree with what is known, each by three standard deviations at least.
 constexpr int lines_of_a_step = 10;
 
+/// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have it
+/// known exactly, which is said of what is not estimated.
+constexpr float least_share = 1e-7f;
+
 float within(float x, float bound) {
   return x < -bound ? -bound : x > bound ? bound : x;
 }
@@ -155,7 +159,10 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   constant_s_ = within(constant_s_ + cross[constant] * weight, largest_offset_s_);
   offset_s_ = within(offset_s_ + cross[now] * weight, largest_offset_s_);
   for (std::size_t a = 0; a < states; ++a) {
+    const bool open = !known(static_cast<State>(a));
     for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
+    const float least_s2 = least_share * prior_variance_s2_;
+    if (open && covariance_[a][a] < least_s2) covariance_[a][a] = least_s2;
   }
   correction = {offset_s_ - before_s, cross[earlier] * weight};
   mended_s_ += correction.earlier_s;

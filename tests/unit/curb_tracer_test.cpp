@@ -2,6 +2,7 @@
 #include "curbline/curb_tracer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
@@ -484,6 +485,40 @@ TEST_CASE("curb tracer: the overlap of two pieces is what of the one lies along 
   CHECK(overlap_m(piece(1.0f, 1.5f, 3.5f), before, 0.2f) == Approx(0.5));
   CHECK(overlap_m(piece(1.0f, 2.5f, 3.5f), before, 0.2f) <= 0.0f);
   CHECK(overlap_m(piece(1.3f, 0.5f, 1.5f), before, 0.2f) == 0.0f);
+}
+
+TEST_CASE("curb tracer: of steps along each other the longest is told, whatever their order, of equals one") {
+  const auto step = [](float x_m, float length_m) {
+    return Curb{.x0_m = x_m, .y0_m = 0.0f, .x1_m = x_m, .y1_m = length_m, .kind = CurbKind::step_up};
+  };
+  std::array<Curb, 3> curbs{step(1.0f, 3.0f), step(1.08f, 2.0f), step(1.16f, 1.0f)};
+  const auto by_x = [](const Curb& a, const Curb& b) { return a.x0_m < b.x0_m; };
+  do {
+    std::array<bool, 3> told{};
+    told_by_longer(curbs, 0.1f, told);
+    for (std::size_t k = 0; k < curbs.size(); ++k) CHECK(told[k] == (curbs[k].x0_m > 1.0f));
+  } while (std::next_permutation(curbs.begin(), curbs.end(), by_x));
+  std::array<bool, 2> told{};
+  told_by_longer(std::array{step(1.0f, 2.0f), step(1.05f, 2.0f)}, 0.1f, told);
+  CHECK_FALSE(told[0]);
+  CHECK(told[1]);
+}
+
+TEST_CASE("curb tracer: numbers begin anew with 1, but for those that curbs still bear") {
+  // Two maps in turn, of which each has a curb that the other has not: a new number a trace.
+  const auto first = traced([](double x, double) { return x < 0.6 ? 0.0 : x < 1.8 ? 0.12 : 0.24; });
+  const auto second = traced([](double x, double) { return x < 1.2 ? 0.0 : x < 1.8 ? 0.12 : 0.24; });
+  REQUIRE(first->tracer.curbs().size() == 2);
+  REQUIRE(second->tracer.curbs().size() == 2);
+  CurbTracer<test::small_limits> tracer;
+  tracer.init(CurbSettings{});
+  int doubled = 0;
+  for (int trace = 0; trace < 65'600; ++trace) {
+    const auto& of = trace % 2 == 0 ? first : second;
+    tracer.trace(of->dem, of->mixture, of->field, of->view, of->work.curbs(), of->counters);
+    doubled += tracer.curbs()[0].id == tracer.curbs()[1].id;
+  }
+  CHECK(doubled == 0);
 }
 
 TEST_CASE("curb tracer: a step of three cells' width is two curbs") {

@@ -470,6 +470,33 @@ TEST_CASE("dem: a cell that comes into the window has no growth left of the one 
   CHECK(dem.growth_m_s(slot) == 0.0f);
 }
 
+TEST_CASE("dem: the mean growth of many points follows what little each of them changes") {
+  Map dem = make_map(moving());
+  test::Noise lot(3);
+  const auto add = [&](int points, float growth_m_s) {
+    for (int k = 0; k < points; ++k) {
+      Point point = at(0.05, 0.05, 0.01 * lot.normal());
+      point.growth_m_s = growth_m_s;
+      REQUIRE(dem.add(point));
+    }
+  };
+  add(400, 1.0f);
+  add(2000, 0.8f);
+  CHECK(dem.growth_m_s(dem.slot_at(0.05f, 0.05f)) == Approx(0.804).margin(0.02));
+}
+
+TEST_CASE("dem: a point that float cannot weigh against others is not taken") {
+  Map dem = make_map(moving());
+  CHECK_FALSE(dem.add(at(0.05, 0.05, 0.0, 1e38f)));
+  CHECK_FALSE(dem.add(at(0.05, 0.05, 0.0, 1e6f)));
+  CHECK(dem.add(at(0.05, 0.05, 0.0, 1.0f)));
+  PlanePrior smooth;
+  smooth.texture_m2 = 0.0f;
+  dem.init(moving(), smooth);
+  CHECK_FALSE(dem.add(at(0.05, 0.05, 0.0, 1e-40f)));
+  CHECK(dem.add(at(0.05, 0.05, 0.0, 1e-8f)));
+}
+
 TEST_CASE("dem: a growth that no servo makes is not kept") {
   Map dem = make_map(moving());
   Point point = at(0.05, 0.05);

@@ -132,6 +132,18 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, "curbs.max_step_m", [](Settings& s) -> float& { return s.curbs.max_step_m; }, {0.0f, nan, infinity});
 }
 
+TEST_CASE("settings: a standard deviation in the wrong unit is named") {
+  refuses(Status::bad_laser, "laser.range_sd_m", [](Settings& s) -> float& { return s.laser.range_sd_m; }, {11.0f});
+  refuses(Status::bad_laser, "laser.bearing_sd_rad", [](Settings& s) -> float& { return s.laser.bearing_sd_rad; },
+          {1.1f});
+  refuses(Status::bad_tilt, "tilt.angle_sd_rad", [](Settings& s) -> float& { return s.tilt.angle_sd_rad; }, {1.1f});
+  refuses(Status::bad_tilt, "tilt.time_sd_s", [](Settings& s) -> float& { return s.tilt.time_sd_s; }, {1.1f});
+  refuses(Status::bad_tilt, "tilt.pitch_sd_rad", [](Settings& s) -> float& { return s.tilt.pitch_sd_rad; }, {1.1f});
+  refuses(Status::bad_pose, "pose.height_sd_m", [](Settings& s) -> float& { return s.pose.height_sd_m; }, {11.0f});
+  refuses(Status::bad_pose, "pose.attitude_sd_rad", [](Settings& s) -> float& { return s.pose.attitude_sd_rad; },
+          {1.1f});
+}
+
 TEST_CASE("settings: the last beam of a line is measured as many whole intervals after the first") {
   LaserSettings laser;
   laser.beam_interval_s = 1.5e-6f;
