@@ -115,7 +115,8 @@ void put_histogram(JsonLine& json, std::string_view key, const LatencyHistogram&
 
 void put_curb(JsonLine& json, const Curb& c) {
   json.open('{').key("x0_m").metres(c.x0_m).key("y0_m").metres(c.y0_m).key("x1_m").metres(c.x1_m);
-  json.key("y1_m").metres(c.y1_m).key("height_m").metres(c.height_m).key("height_sd_m").metres(c.height_sd_m);
+  json.key("y1_m").metres(c.y1_m).key("position_sd_m").metres(c.position_sd_m);
+  json.key("height_m").metres(c.height_m).key("height_sd_m").metres(c.height_sd_m);
   json.key("probability").metres(c.probability).key("kind").text(to_string(c.kind));
   json.key("face_width_m").metres(c.face_width_m).key("id").whole(c.id).close('}');
 }

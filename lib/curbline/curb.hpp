@@ -25,6 +25,7 @@ const char* to_string(CurbKind kind);
 /// CurbSettings::link_reach farther if one is hidden there.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
+  float position_sd_m = 0.0f;  ///< across it, of its middle; twice that at its ends
   float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them and of the piece, along
                           ///< which it changes by 2 cm at most; more where the ground beside it lies farther apart than
                           ///< its planes, as in a gutter; above 0 is a step up; 0 of a crease or the edge of a ramp
@@ -61,8 +62,8 @@ float to_far_side_m(const Curb& curb, float x_m, float y_m);
 float overlap_m(const Curb& now, const Curb& before, float near_m);
 
 /// Cells that an edge crosses may bear a third plane, and part it from one of the others: a second step, of another
-/// height, within a cell of the first. Of steps that lie along each other, all but a cell of the shorter, the longer one
-/// tells the edge, of equals the first. Says for each curb whether another tells it; O(curbs^2).
+/// height, within a cell of the first. Of steps that lie along each other, all but a cell of the shorter, the longer
+/// one tells the edge, of equals the first. Says for each curb whether another tells it; O(curbs^2).
 void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told);
 
 /// A border as it was drawn between two planes.

@@ -51,7 +51,8 @@ struct CurbPiece {
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
   float borders = 0.0f;                ///< how many
-  float place_variance_m2 = 0.0f;      ///< of the borders, across the line
+  float place_variance_m2 = 0.0f;      ///< of a border, across the line
+  float middle_variance_m2 = 0.0f;     ///< of the line's middle, across it
   float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
   bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
   bool low_is_right = false;           ///< of the line, from its first end to its second
@@ -106,6 +107,8 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
+  // Each lies anywhere in its gap, on its own; those without a far plane as little known as one of them.
+  piece.middle_variance_m2 = (1.0f / 3) * (a.high == no_label<limits> ? n : 1.0f) / fit.weight();
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());

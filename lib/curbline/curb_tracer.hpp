@@ -327,6 +327,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
     }
   }
   if (obstacle(stages, curb, piece, work)) return;
+  curb.position_sd_m = square_root(piece.middle_variance_m2);
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

@@ -53,7 +53,7 @@ class Result {
  public:
   // Offsets from the end of the header, for readers.
   static constexpr std::size_t curbs_at = 12 + sizeof(Counters) + 4;
-  static constexpr std::size_t curb_bytes = 8 * sizeof(float) + 4 * sizeof(std::uint16_t);
+  static constexpr std::size_t curb_bytes = 9 * sizeof(float) + 4 * sizeof(std::uint16_t);
 
   Result(const ScanLine& line, Status status, const Counters& counters, std::span<const Curb> curbs) {
     const RecordHeader header{RecordKind::result, 0};
@@ -80,8 +80,9 @@ class Result {
   }
 
   void put_curb(const Curb& curb) {
-    const auto& [x0, y0, x1, y1, height, height_sd, probability, face_width, kind, id, near_label, far_label] = curb;
-    for (const float value : {x0, y0, x1, y1, height, height_sd, probability, face_width}) put(value);
+    const auto& [x0, y0, x1, y1, position_sd, height, height_sd, probability, face_width, kind, id, near_label,
+                 far_label] = curb;
+    for (const float value : {x0, y0, x1, y1, height, height_sd, probability, face_width, position_sd}) put(value);
     for (const std::uint16_t value : {static_cast<std::uint16_t>(kind), id, near_label, far_label}) put(value);
   }
 

@@ -16,7 +16,7 @@ Curb curb(float x_m) {
   Curb c{};
   c.x0_m = x_m, c.y0_m = -1.5f, c.x1_m = x_m, c.y1_m = 1.5f;
   c.height_m = 0.1234564f, c.height_sd_m = 0.01f, c.probability = 1.0f, c.kind = CurbKind::step_up;
-  c.face_width_m = 0.05f, c.id = 7;
+  c.position_sd_m = 0.02f, c.face_width_m = 0.05f, c.id = 7;
   return c;
 }
 
@@ -27,9 +27,17 @@ TEST_CASE("reports: curbs are JSON with the names and the rounding of replay's")
   const auto line = nlohmann::json::parse(curbs_line(1'700'000'000'025'000'999, curbs, buffer, left_out));
   CHECK(line.at("time_s") == 1'700'000'000.025);
   REQUIRE(line.at("curbs").size() == 2);
-  const nlohmann::json wanted{
-      {"x0_m", 1.0},         {"y0_m", -1.5},       {"x1_m", 1.0},       {"y1_m", 1.5},          {"height_m", 0.123456},
-      {"height_sd_m", 0.01}, {"probability", 1.0}, {"kind", "step_up"}, {"face_width_m", 0.05}, {"id", 7}};
+  const nlohmann::json wanted{{"x0_m", 1.0},
+                              {"y0_m", -1.5},
+                              {"x1_m", 1.0},
+                              {"y1_m", 1.5},
+                              {"position_sd_m", 0.02},
+                              {"height_m", 0.123456},
+                              {"height_sd_m", 0.01},
+                              {"probability", 1.0},
+                              {"kind", "step_up"},
+                              {"face_width_m", 0.05},
+                              {"id", 7}};
   CHECK(line.at("curbs").at(0) == wanted);
   CHECK(line.at("curbs").at(1).at("x0_m") == -2.25);
   CHECK(left_out == 0);

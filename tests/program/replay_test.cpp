@@ -303,11 +303,12 @@ TEST_CASE("program: --curbs - streams one JSON object a line, the last as in the
   REQUIRE(lines.size() > 1);
   for (const std::string& line : lines) {
     const nlohmann::json curb = nlohmann::json::parse(line);
-    for (const char* key : {"x0_m", "y0_m", "x1_m", "y1_m", "height_m", "height_sd_m", "probability", "face_width_m"})
+    for (const char* key :
+         {"x0_m", "y0_m", "x1_m", "y1_m", "position_sd_m", "height_m", "height_sd_m", "probability", "face_width_m"})
       CHECK(curb.at(key).is_number());
     CHECK(curb.at("kind").is_string());
     CHECK(curb.at("id").get<int>() > 0);
-    CHECK(curb.size() == 10);
+    CHECK(curb.size() == 11);
   }
   replay(logs);
   const std::vector<MapCurb> curbs = read_curbs(logs.path("curbs.csv"));

@@ -207,6 +207,14 @@ TEST_CASE("scores: calibration is by each piece's own sd, and by length") {
   CHECK(c.within_2_sd == Approx(1));
 }
 
+TEST_CASE("scores: positions are calibrated by the distance of each piece's middle") {
+  MapCurb half = piece(2.01, -2, 1, 0.1), three_halves = piece(1.97, 1, 2, 0.1);
+  half.position_sd_m = three_halves.position_sd_m = 0.02;
+  const Calibration c = scores_of({half, three_halves, piece(2.05, -2, 2, 0.1)}).position_calibration;
+  CHECK(c.pieces == 2);  // the third states none
+  CHECK(c.mean_square == Approx((3 * 0.25 + 2.25) / 4));
+}
+
 TEST_CASE("scores: of a step that grows along the way what counts is how high it is beside a piece") {
   Truth growing = step_of(0.1);
   growing.curbs[0].from_step_m = 0.0;  // 5 cm in the middle

@@ -77,12 +77,13 @@ TEST_CASE("curbs: a row a piece, and back") {
 }
 
 TEST_CASE(
-    "curbs: a JSON line bears the names of the columns, in their order, then the width of the face and the number") {
+    "curbs: a JSON line bears the names of the columns, in their order, the deviation of the place, the width of the "
+    "face and the number") {
   std::ostringstream text;
-  write_curb_json(text, {1, 2, 3.5, -4, static_cast<double>(0.12f), 0.004, 0.97, "step_up", 0.03, 12});
+  write_curb_json(text, {1, 2, 3.5, -4, static_cast<double>(0.12f), 0.004, 0.97, "step_up", 0.02, 0.03, 12});
   CHECK(
       text.str() ==
-      R"({"x0_m":1.0,"y0_m":2.0,"x1_m":3.5,"y1_m":-4.0,"height_m":0.12,"height_sd_m":0.004,"probability":0.97,"kind":"step_up","face_width_m":0.03,"id":12})"
+      R"({"x0_m":1.0,"y0_m":2.0,"x1_m":3.5,"y1_m":-4.0,"position_sd_m":0.02,"height_m":0.12,"height_sd_m":0.004,"probability":0.97,"kind":"step_up","face_width_m":0.03,"id":12})"
       "\n");
 }
 

@@ -453,6 +453,13 @@ TEST_CASE("curb tracer: between planes of different slope the height is as uncer
   CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.15));
 }
 
+TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number") {
+  const auto stages = traced(up);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  // 24 borders, each anywhere within half a cell of 5 cm.
+  CHECK(stages->tracer.curbs()[0].position_sd_m == Approx(0.05 / std::sqrt(3.0 * 24.0)).epsilon(0.02));
+}
+
 TEST_CASE("curb tracer: a sharp step has no width to tell") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);

@@ -199,6 +199,9 @@ void print_table(const Scored& here, const std::optional<Scored>& reference, con
   line(
       "              95 %, cm", [](const Scored& s) { return s.curbs.height_m.most; }, 100, 1, none);
   line(
+      "error / sd of positions, mean square", [](const Scored& s) { return s.curbs.position_calibration.mean_square; },
+      1, 2, none);
+  line(
       "error / sd of heights, mean square", [](const Scored& s) { return s.curbs.calibration.mean_square; }, 1, 2,
       none);
   line(

@@ -121,9 +121,9 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
 }
 
 MapCurb to_map_curb(const Curb& curb) {
-  return {curb.x0_m,         curb.y0_m,        curb.x1_m,        curb.y1_m,
-          curb.height_m,     curb.height_sd_m, curb.probability, to_string(curb.kind),
-          curb.face_width_m, curb.id};
+  return {curb.x0_m,          curb.y0_m,         curb.x1_m,        curb.y1_m,
+          curb.height_m,      curb.height_sd_m,  curb.probability, to_string(curb.kind),
+          curb.position_sd_m, curb.face_width_m, curb.id};
 }
 
 }  // namespace curbline::tools

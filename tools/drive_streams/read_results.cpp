@@ -20,7 +20,7 @@ T value_at(const std::vector<char>& bytes, std::size_t at) {
 
 MapCurb curb_at(const std::vector<char>& bytes, std::size_t at) {
   const auto f = [&](std::size_t k) { return static_cast<double>(value_at<float>(bytes, at + k * sizeof(float))); };
-  const auto kind = static_cast<CurbKind>(value_at<std::uint16_t>(bytes, at + 8 * sizeof(float)));
+  const auto kind = static_cast<CurbKind>(value_at<std::uint16_t>(bytes, at + 9 * sizeof(float)));
   return {f(0), f(1), f(2), f(3), f(4), f(5), f(6), to_string(kind)};
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "evaluation/scores.hpp"
 
@@ -103,25 +104,39 @@ double share_within(const std::vector<Sample>& samples, double tolerance_m, Coun
   return all > 0 ? static_cast<double>(near) / all : nan;
 }
 
-Calibration calibrate(const Found& found, const Nearest& nearest, const Seen& seen) {
-  Calibration out;
-  double all_m = 0;
+/// Errors in standard deviations, weighted.
+class NormalisedErrors {
+ public:
+  void add(double error, double weight) {
+    ++sums_.pieces;
+    weight_ += weight;
+    sums_.mean_square += weight * error * error;
+    sums_.within_1_sd += weight * (std::abs(error) <= 1);
+    sums_.within_2_sd += weight * (std::abs(error) <= 2);
+  }
+  Calibration calibration() const {
+    const double each = weight_ > 0 ? 1 / weight_ : nan;
+    return {sums_.pieces, each * sums_.mean_square, each * sums_.within_1_sd, each * sums_.within_2_sd};
+  }
+
+ private:
+  Calibration sums_;
+  double weight_ = 0;
+};
+
+void calibrate(const Found& found, const Nearest& nearest, const Seen& seen, CurbScores& out) {
+  NormalisedErrors height, position;
   for (const MapCurb& c : found.curbs) {
     const Point2 middle{(c.x0_m + c.x1_m) / 2, (c.y0_m + c.y1_m) / 2};
-    if (!is_step(c) || !(c.height_sd_m > 0) || !seen(middle.x, middle.y)) continue;
+    if (!is_step(c) || !seen(middle.x, middle.y)) continue;
     const FoundSample sample = nearest.of(middle, c.height_m);
     if (sample.distance_m > band_tolerance_m || std::abs(sample.height_error_m) >= std::abs(c.height_m)) continue;
-    const double error = sample.height_error_m / c.height_sd_m;
     const double length_m = std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
-    ++out.pieces;
-    all_m += length_m;
-    out.mean_square += length_m * error * error;
-    out.within_1_sd += length_m * (std::abs(error) <= 1);
-    out.within_2_sd += length_m * (std::abs(error) <= 2);
+    if (c.height_sd_m > 0) height.add(sample.height_error_m / c.height_sd_m, length_m);
+    if (c.position_sd_m > 0) position.add(sample.distance_m / c.position_sd_m, length_m);
   }
-  for (double* share : {&out.mean_square, &out.within_1_sd, &out.within_2_sd})
-    *share = all_m > 0 ? *share / all_m : nan;
-  return out;
+  out.calibration = height.calibration();
+  out.position_calibration = position.calibration();
 }
 
 }  // namespace
@@ -191,7 +206,7 @@ CurbScores score_curbs(const Found& found, const Truth& truth, const Seen& seen)
   }
   out.position_m = errors_of(position);
   out.height_m = errors_of(height);
-  out.calibration = calibrate(found, nearest, seen);
+  calibrate(found, nearest, seen, out);
   return out;
 }
 
@@ -213,11 +228,13 @@ nlohmann::json to_json(const CurbScores& scores) {
   out["position_error_95_m"] = scores.position_m.most;
   out["height_error_median_m"] = scores.height_m.median;
   out["height_error_95_m"] = scores.height_m.most;
-  const Calibration& c = scores.calibration;
-  out["calibration"] = {{"pieces", c.pieces},
-                        {"mean_square", c.mean_square},
-                        {"within_1_sd", c.within_1_sd},
-                        {"within_2_sd", c.within_2_sd}};
+  for (const auto& [name, c] :
+       {std::pair{"calibration", scores.calibration}, {"position_calibration", scores.position_calibration}}) {
+    out[name] = {{"pieces", c.pieces},
+                 {"mean_square", c.mean_square},
+                 {"within_1_sd", c.within_1_sd},
+                 {"within_2_sd", c.within_2_sd}};
+  }
   return out;
 }
 

@@ -54,18 +54,18 @@ struct BandRates {
   int found = 0, truth = 0;  ///< samples
 };
 
-/// (found - true) / sd of the heights of found steps that are right: within 0.1 m of a true one and in the same
-/// direction. Pieces weigh by their length.
+/// (found - true) / sd of found steps that are right: within 0.1 m of a true one and in the same direction. Pieces
+/// weigh by their length.
 struct Calibration {
   int pieces = 0;
   double mean_square = 0, within_1_sd = 0, within_2_sd = 0;
 };
 
 struct CurbScores {
-  std::array<StepRates, 4> at;    ///< 0.05, 0.1, 0.15 and 0.3 m
-  std::array<BandRates, 2> band;  ///< 2 to 4 cm and above, at 0.1 m
-  Errors position_m, height_m;    ///< of samples of found steps within 0.15 m of a true one
-  Calibration calibration;
+  std::array<StepRates, 4> at;                    ///< 0.05, 0.1, 0.15 and 0.3 m
+  std::array<BandRates, 2> band;                  ///< 2 to 4 cm and above, at 0.1 m
+  Errors position_m, height_m;                    ///< of samples of found steps within 0.15 m of a true one
+  Calibration calibration, position_calibration;  ///< of heights; of the middles' distance from the true step
 };
 
 /// One true curb: how it was found.

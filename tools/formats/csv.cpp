@@ -84,6 +84,7 @@ void write_curb_json(std::ostream& out, const MapCurb& c) {
       {"y0_m", rounded(c.y0_m)},
       {"x1_m", rounded(c.x1_m)},
       {"y1_m", rounded(c.y1_m)},
+      {"position_sd_m", rounded(c.position_sd_m)},
       {"height_m", rounded(c.height_m)},
       {"height_sd_m", rounded(c.height_sd_m)},
       {"probability", rounded(c.probability)},

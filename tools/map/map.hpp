@@ -55,7 +55,7 @@ struct MapCurb {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
   double height_m = 0, height_sd_m = 0, probability = 0;
   std::string kind{};  ///< step_up, step_down, crease, ramp_edge
-  double face_width_m = 0;
+  double position_sd_m = 0, face_width_m = 0;
   int id = 0;         ///< 0: it has none
   double rise_m = 0;  ///< how much height_m, which is that of the middle, grows from one end to the other
 };
