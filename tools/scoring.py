@@ -1,5 +1,5 @@
 """What the scripts that score many scenes share."""
-import argparse, os, shutil, signal, subprocess, sys
+import argparse, contextlib, json, os, shutil, signal, subprocess, sys
 
 signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/streets | head` ends without a traceback
 
@@ -44,12 +44,58 @@ def number(kind, lowest, highest):
     return read
 
 
+def script(main):
+    """Runs a script. What stops it is told by one line; exit status 1, or 130 of one that was interrupted."""
+    try:
+        try:
+            main()
+        finally:
+            print(end="", flush=True)  # here, where a full disk can be told
+    except KeyboardInterrupt:
+        status, why = 130, "interrupted"
+    except OSError as error:
+        status, why = 1, f"{error.filename or 'standard output'}: {error.strerror}"
+    else:
+        return
+    print(f"{os.path.basename(sys.argv[0])}: {why}", file=sys.stderr)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what Python still holds and would fail to write once more
+    sys.exit(status)
+
+
+@contextlib.contextmanager
+def whole_file(path):
+    """A file to write, which is at PATH once it is whole: until then, or if it never is, an earlier one stays."""
+    part = path + ".part"
+    try:
+        with open(part, "w") as file:
+            yield file
+        os.replace(part, path)
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            os.unlink(part)
+        if isinstance(error, OSError) and error.filename in (None, part):
+            error.filename = path
+        raise
+
+
 def run(*words):
     """Runs curbline to its end; its standard output. Ends the script where it fails."""
     done = subprocess.run([CURBLINE, *words], stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"curbline {' '.join(words)}: exit status {done.returncode}")
     return done.stdout
+
+
+def parsed(text, words):
+    """What curbline says with --json. Ends the script where that is nothing."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        sys.exit(f"{CURBLINE} {' '.join(words)}: no JSON on its standard output; expected curbline")
+
+
+def run_json(*words):
+    return parsed(run(*words, "--json"), words)
 
 
 def robot(name):
@@ -61,7 +107,7 @@ def late_robot(laser, directory, errors):
     with open(robot(laser)) as file:
         text = file.read()
     path = os.path.join(directory, "late.toml")
-    with open(path, "w") as file:
+    with whole_file(path) as file:
         file.write(text.replace("[simulated]\n", f"[simulated]\n{errors}\n"))
     return path
 

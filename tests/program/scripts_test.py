@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""The scripts that score many scenes refuse wrong usage before they begin: one line, exit status 2, nothing written."""
+"""Scripts refuse wrong usage before they begin: one line, exit status 2, nothing written. What stops those that score many scenes later is one
+line too, exit status 1, and earlier figures stay."""
+import glob
 import os
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools")
@@ -48,6 +51,67 @@ class Scripts(unittest.TestCase):
             done = subprocess.run([os.path.join(TOOLS, "budget"), *words], capture_output=True, text=True, timeout=5)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertEqual(done.stderr, f"budget: {' '.join(words)}; expected --keep, or nothing\n")
+
+    def stopped(self, script, folder, status=1, program=sys.argv[1], stdout=subprocess.DEVNULL, interrupted_at=None):
+        """Its error output."""
+        words = {"streets": ["1"], "paper": ["--seeds", "1"], "long-drive": ["200"]}[script]
+        running = subprocess.Popen([sys.executable, os.path.join(TOOLS, script), *words, "--out", folder], text=True, stdout=stdout,
+                                   env={**os.environ, "CURBLINE": program}, stderr=subprocess.PIPE)
+        if interrupted_at is not None:
+            give_up = time.monotonic() + 30
+            while not os.path.exists(interrupted_at) and time.monotonic() < give_up:
+                time.sleep(0.01)
+            running.send_signal(signal.SIGINT)
+        error = running.communicate(timeout=60)[1]
+        self.assertEqual(running.returncode, status, error)
+        self.assertEqual(error.count("\n"), 1, error)
+        self.assertEqual(glob.glob(os.path.join(folder, "**", "*.part"), recursive=True), [])
+        return error
+
+    def test_a_program_that_is_another(self):
+        for script in ["streets", "paper", "long-drive"]:
+            with tempfile.TemporaryDirectory() as folder:
+                self.assertRegex(self.stopped(script, folder, program="/bin/true"), "^/bin/true .*: no JSON .*; expected curbline\n$")
+
+    def test_a_file_or_a_directory_in_the_way(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = os.path.join(folder, "utm30lx-1")
+            open(place, "w").close()
+            self.assertEqual(self.stopped("streets", folder), f"streets: {place}: File exists\n")
+        with tempfile.TemporaryDirectory() as folder:
+            place = os.path.join(folder, "late.toml")
+            os.mkdir(place)
+            self.assertEqual(self.stopped("long-drive", folder), f"long-drive: {place}: Is a directory\n")
+
+    def test_standard_output_that_is_full_costs_no_figures(self):
+        with tempfile.TemporaryDirectory() as folder, open("/dev/full", "w") as full:
+            self.assertEqual(self.stopped("streets", folder, stdout=full), "streets: standard output: No space left on device\n")
+            self.assertTrue(os.path.exists(os.path.join(folder, "streets.json")))
+
+    def test_a_full_disk_leaves_the_earlier_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "figures.json")
+            with open(path, "w") as file:
+                file.write("earlier")
+            code = ("import resource, signal, sys; sys.path.insert(0, sys.argv[1]); sys.dont_write_bytecode = True; import scoring\n"
+                    "def main():\n  with scoring.whole_file(sys.argv[2]) as file: file.write(100 * 'later')\n"
+                    "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); resource.setrlimit(resource.RLIMIT_FSIZE, (99, 99)); scoring.script(main)")
+            done = subprocess.run([sys.executable, "-c", code, TOOLS, path], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (1, f"-c: {path}: File too large\n"))
+            self.assertEqual(os.listdir(folder), ["figures.json"])
+            with open(path) as file:
+                self.assertEqual(file.read(), "earlier")
+
+    def test_an_interrupt(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = os.path.join(folder, "curbline")
+            with open(program, "w") as file:
+                file.write('#!/bin/sh\n: >"$0.began"\nexec sleep 60\n')
+            os.chmod(program, 0o700)
+            for script in ["streets", "paper", "long-drive"]:
+                error = self.stopped(script, os.path.join(folder, script), 130, program, interrupted_at=program + ".began")
+                self.assertEqual(error, f"{script}: interrupted\n")
+                os.remove(program + ".began")
 
     def test_who_reads_no_more_gets_no_traceback(self):
         with tempfile.TemporaryDirectory() as folder:
