@@ -46,11 +46,28 @@ class Scripts(unittest.TestCase):
         self.refuses("/nonexist", "paper", "/nonexist")
         self.refuses("/", "paper", "/")
 
-    def test_a_word_that_budget_does_not_know_before_it_builds(self):
-        for words in [["--kep"], ["--keep", "--keep"]]:
-            done = subprocess.run([os.path.join(TOOLS, "budget"), *words], capture_output=True, text=True, timeout=5)
-            self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertEqual(done.stderr, f"budget: {' '.join(words)}; expected --keep, or nothing\n")
+    def shell(self, script, *words):
+        done = subprocess.run([os.path.join(TOOLS, script), *words], capture_output=True, text=True, timeout=5)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_words_that_shell_scripts_do_not_know_before_they_do_anything(self):
+        nothing = {"budget": "--keep, or nothing", "build": "a folder to build into, or nothing", "demo": "nothing", "setup": "nothing"}
+        for script, expected in nothing.items():
+            for words in [["--kep"], ["--keep", "--keep"]]:
+                self.assertEqual(self.shell(script, *words), (2, "", f"{script}: {' '.join(words)}; expected {expected}\n"))
+        self.assertEqual(self.shell("bench", "--benchmark_filter=x", "--kep"),
+                         (2, "", "bench: --kep; expected options of Google Benchmark, such as --benchmark_filter=NAME\n"))
+        self.assertEqual(self.shell("test", "kep"), (2, "", "test: kep; expected options of ctest, such as -R NAME\n"))
+        self.assertEqual(self.shell("with-vcan", "--kep"),
+                         (2, "", "with-vcan: --kep: expected a command; with-vcan [--timeout SECONDS] COMMAND [ARGUMENT...]\n"))
+
+    def test_help_of_shell_scripts_is_their_head(self):
+        for script in ["bench", "budget", "build", "demo", "setup", "test", "with-vcan"]:
+            with open(os.path.join(TOOLS, script)) as file:
+                head = file.read().split("set -eu\n")[0].splitlines()[1:]
+            text = "".join(line[2:] + "\n" for line in head)
+            for word in ["--help", "-h"]:
+                self.assertEqual(self.shell(script, word), (0, text, ""))
 
     def stopped(self, script, folder, status=1, program=sys.argv[1], stdout=subprocess.DEVNULL, interrupted_at=None):
         """Its error output."""
