@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "curbline/endpoint.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::daemon {
@@ -58,14 +59,15 @@ CurbServer::~CurbServer() {
 
 void CurbServer::open(const std::string& address) {
   address_ = address;
-  const std::size_t colon = address.rfind(':');
   if (address.starts_with(unix_scheme) && address.size() > unix_scheme.size()) {
     listen_unix(address.substr(unix_scheme.size()));
-  } else if (address.starts_with(tcp_scheme) && colon > tcp_scheme.size() && colon + 1 < address.size()) {
-    listen_tcp(address.substr(tcp_scheme.size(), colon - tcp_scheme.size()), address.substr(colon + 1));
-  } else {
-    throw BadInput(address + ": no address; expected unix:PATH or tcp:HOST:PORT");
+    return;
   }
+  if (address.starts_with(tcp_scheme)) {
+    const tools::Endpoint endpoint = tools::parse_endpoint(address, tcp_scheme.size(), 0);
+    if (!endpoint.host.empty() && endpoint.port) return listen_tcp(endpoint.host, *endpoint.port);
+  }
+  throw BadInput(address + ": no address; expected unix:PATH or tcp:HOST:PORT");
 }
 
 void CurbServer::listen_unix(const std::string& path) {
@@ -80,13 +82,11 @@ void CurbServer::listen_unix(const std::string& path) {
   if (::listen(listener_, max_clients) != 0) throw BadInput(address_ + ": " + std::strerror(errno));
 }
 
-void CurbServer::listen_tcp(const std::string& host, const std::string& port) {
-  std::string name = host;
-  if (name.size() > 2 && name.front() == '[' && name.back() == ']') name = name.substr(1, name.size() - 2);
+void CurbServer::listen_tcp(const std::string& host, std::uint16_t port) {
   addrinfo wanted{}, *found = nullptr;
   wanted.ai_socktype = SOCK_STREAM;
   wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
-  if (const int failed = ::getaddrinfo(name.c_str(), port.c_str(), &wanted, &found); failed != 0) {
+  if (const int failed = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found); failed != 0) {
     throw BadInput(address_ + ": " + ::gai_strerror(failed) + "; expected tcp:HOST:PORT of this machine");
   }
   listener_ = ::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -97,7 +97,7 @@ void CurbServer::listen_tcp(const std::string& host, const std::string& port) {
   const int error = errno;
   ::freeaddrinfo(found);
   if (!listens) throw BadInput(address_ + ": " + std::strerror(error) + "; expected a free port of this machine");
-  address_ = std::string(tcp_scheme) + host + ":" + std::to_string(port_of(listener_));
+  address_ = address_.substr(0, address_.rfind(':') + 1) + std::to_string(port_of(listener_));
 }
 
 int CurbServer::accept_client() {

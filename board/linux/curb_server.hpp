@@ -48,7 +48,7 @@ class CurbServer {
 
  private:
   void listen_unix(const std::string& path);
-  void listen_tcp(const std::string& host, const std::string& port);
+  void listen_tcp(const std::string& host, std::uint16_t port);
   void drop(int client);
 
   std::string address_, path_;  ///< path_: of the socket file, to be removed

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "curbline/outputs.hpp"
 #include "curbline/run_program.hpp"
 #include "daemon.hpp"
 #include "robot/robot.hpp"
@@ -16,14 +17,20 @@ int main(int argc, char** argv) {
       "curblined");
   std::string robot;
   daemon::Options options;
-  app.add_option("--robot", robot, "robot description (TOML) of a robot that stands")->required();
+  app.add_option("--robot", robot, "robot description (TOML) of a robot that stands")
+      ->check(tools::file_name())
+      ->required();
   auto* can =
-      app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0; none for a fixed tilt");
+      app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0; none for a fixed tilt")
+          ->check(tools::not_empty("a CAN interface"));
   app.add_option("--scans", options.scans,
                  "a live scanner, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE, or a CARMEN log, played at its "
                  "own times")
+      ->check(tools::not_empty("a scanner or a log"))
       ->required();
-  app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")->required();
+  app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")
+      ->check(tools::not_empty("unix:PATH or tcp:HOST:PORT"))
+      ->required();
   app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too, those of `curbline dbc --curbs`")
       ->needs(can);
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on

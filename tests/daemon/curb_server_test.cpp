@@ -122,7 +122,7 @@ TEST_CASE("curb server: a socket file that was left over is replaced, one in use
 }
 
 TEST_CASE("curb server: an address that makes no sense is refused with what was expected") {
-  for (const char* address : {"", "unix:", "tcp:", "tcp:7000", "tcp:127.0.0.1:", "udp:127.0.0.1:7000"}) {
+  for (const char* address : {"", "unix:", "tcp:", "tcp:7000", "tcp:127.0.0.1", "tcp::7000", "udp:127.0.0.1:7000"}) {
     CurbServer server;
     CHECK_THROWS_WITH(server.open(address), Catch::Contains("expected unix:PATH or tcp:HOST:PORT"));
   }

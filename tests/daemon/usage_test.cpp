@@ -33,12 +33,29 @@ TEST_CASE("curblined: what it cannot run with is refused with one line") {
   const std::string odrive = directory.write("odrive.toml", "[tilt.signal]\nservo = \"odrive\"\nnode = 53\n");
   check_refused(curbline(words + Words{odrive, "--can", "none7", "--can-out"}), odrive + ": ", "as those of --can-out");
   const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
-  check_refused(curbline({"--robot", fixed, "--scans", scans, "--curbs", "here"}), "here: ", "unix:PATH");
+  const auto at = [&](const std::string& address) {
+    return curbline({"--robot", fixed, "--scans", scans, "--curbs", address});
+  };
+  check_refused(at("here"), "here: ", "unix:PATH");
+  for (const std::string none : {"tcp:", "tcp::7000", "tcp:localhost", "unix:"})
+    check_refused(at(none), none + ": no address", "unix:PATH or tcp:HOST:PORT");
+  for (const std::string port : {"65536", "72345", "-1", "abc", "80x", ""})
+    check_refused(at("tcp:127.0.0.1:" + port), "tcp:127.0.0.1:" + port + ": ",
+                  "port is \"" + port + "\"; expected a number from 0 to 65535");
+  check_refused(curbline({"--robot", fixed, "--scans", "lms200:", "--curbs", curbs}),
+                "lms200:: ", "no device; expected lms200:DEVICE");
 }
 
 TEST_CASE("curblined: wrong usage is told") {
   check_wrong_usage(curbline({"--robot", nodding}), "--scans");
   check_wrong_usage(curbline({"--robot", nodding, "--scans", "a", "--curbs", "b", "--can-out"}), "--can");
+  const auto empty = [](const Words& others, const std::string& option, const std::string& expected) {
+    check_wrong_usage(curbline(others + Words{option, ""}), option + ": empty; expected " + expected + "\n");
+  };
+  empty({"--robot", nodding, "--curbs", "b"}, "--scans", "a scanner or a log");
+  empty({"--robot", nodding, "--scans", "a"}, "--curbs", "unix:PATH or tcp:HOST:PORT");
+  empty({"--scans", "a", "--curbs", "b"}, "--robot", "a file name");
+  empty({"--robot", nodding, "--scans", "a", "--curbs", "b"}, "--can", "a CAN interface");
 }
 
 TEST_CASE("curblined: a laser at a fixed tilt needs no CAN, and the end of its log is the end") {

@@ -157,6 +157,7 @@ TEST_CASE("program: a scanner that is not there, or has other beams than the rob
   check_refused(curbline(logs.replay("scans", "cola:")), "cola:: ", "expected cola:HOST");
   check_refused(curbline(logs.replay("scans", "scip2:no.such.host.invalid")),
                 "scip2:no.such.host.invalid: ", "expected the name or address");
+  check_refused(curbline(logs.replay("scans", "lms200:")), "lms200:: ", "no device; expected lms200:DEVICE");
   check_refused(curbline(logs.replay("scans", "lms200:/dev/null")), "lms200:/dev/null: ", "bear no time");
   const Playing scanner(Protocol::cola, logs.path("scans.carmen"));
   const Outcome outcome = curbline(

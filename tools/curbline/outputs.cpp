@@ -25,8 +25,11 @@ void check_apart(const NamedFile& output, const NamedFile& other) {
 }  // namespace
 
 CLI::Validator file_name() {
-  return CLI::Validator(
-      [](const std::string& name) { return name.empty() ? std::string("empty; expected a file name") : ""; }, "");
+  return not_empty("a file name");
+}
+
+CLI::Validator not_empty(const std::string& expected) {
+  return CLI::Validator([=](const std::string& name) { return name.empty() ? "empty; expected " + expected : ""; }, "");
 }
 
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {

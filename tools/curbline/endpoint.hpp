@@ -1,0 +1,18 @@
+// Host and port of a name such as scip2:HOST:PORT, for --scans and for --curbs of the daemon.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace curbline::tools {
+
+struct Endpoint {
+  std::string host;  ///< without the brackets of an IPv6 address
+  std::optional<std::uint16_t> port;
+};
+
+/// HOST, HOST:PORT, [IPV6] or [IPV6]:PORT behind the scheme. Throws BadInput for a port that is none.
+Endpoint parse_endpoint(const std::string& name, std::size_t scheme_size, std::uint16_t lowest_port = 1);
+
+}  // namespace curbline::tools
