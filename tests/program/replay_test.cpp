@@ -399,6 +399,34 @@ TEST_CASE("program: a window that no point falls in is told") {
   CHECK(outcome.err.ends_with(" points lies in the window\n"));
 }
 
+/// The recording's scan lines with all ranges put through `change`.
+std::string with_ranges(const Recording& logs, const std::function<double(double)>& change) {
+  std::string text;
+  for (const std::string& line : lines_of(read_file(logs.path("scans.carmen")))) {
+    std::istringstream words(line);
+    std::string word;
+    for (int k = 0, beams = 0; words >> word; ++k) {
+      if (k == 8) beams = std::stoi(word);
+      const bool is_range = k > 8 && k <= 8 + beams;
+      text += (k > 0 ? " " : "") + (is_range ? std::to_string(change(std::stod(word))) : word);
+    }
+    text += "\n";
+  }
+  return logs.directory().write("changed.carmen", text);
+}
+
+TEST_CASE("program: ranges in millimetres, or a laser that is covered, are told as beams that do not return") {
+  const Recording logs("street", "lms200", {"--duration", "0.5"});
+  for (const double factor : {1000.0, 0.0, 1e-3}) {
+    const std::string scans = with_ranges(logs, [=](double range_m) { return factor * range_m; });
+    const Outcome outcome = curbline(logs.replay("scans", scans));
+    INFO("standard error: " << outcome.err);
+    CHECK(outcome.status == 0);
+    CHECK(outcome.err.starts_with(scans + ": none of "));
+    CHECK(outcome.err.ends_with(" beams returned; expected ranges in metres from 0.1 to 8\n"));
+  }
+}
+
 TEST_CASE("program: --line-costs has a row for each scan line, and their sums are the summary's") {
   const Recording logs("street", "lms200");
   const Outcome outcome = curbline(logs.replay() + Words{"--json", "--line-costs", logs.path("lines.csv")});

@@ -213,6 +213,10 @@ std::string Replay::remarks() const {
       std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
   if (c.points == 0 && c.outside > 0)
     say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
+  if (c.points + c.outside + c.beams_without_tilt == 0 && c.no_returns > 0) {
+    say(logs_.scans, "none of " + std::to_string(c.no_returns) + " beams returned; expected ranges in metres from " +
+                         shortest(robot_.laser.min_range_m) + " to " + shortest(robot_.laser.max_range_m));
+  }
   const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
   if (std::error_code none; logs_.poses.empty() && !is_scanner(logs_.scans) && std::filesystem::exists(poses, none))
     say(poses.string(), "not read, the robot was taken to stand; expected --poses");
