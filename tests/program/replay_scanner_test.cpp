@@ -35,18 +35,25 @@ Words results(const Recording& logs, const std::string& name) {
   return {"--labels", logs.path(name + ".labels.csv"), "--curbs", logs.path(name + ".curbs.csv"), "--json"};
 }
 
-nlohmann::json replay(const Words& arguments) {
+/// What a scanner that has played its log leaves on stderr.
+std::string played(const Playing& scanner, const nlohmann::json& summary) {
+  return scanner.address() + ": closed the connection after " + summary.at("lines").dump() +
+         " scan lines; taken as its end\n";
+}
+
+nlohmann::json replay(const Words& arguments, const Playing* scanner = nullptr) {
   const Outcome outcome = curbline(arguments);
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);
-  CHECK(outcome.err.empty());
-  return nlohmann::json::parse(outcome.out);
+  const nlohmann::json summary = nlohmann::json::parse(outcome.out);
+  CHECK(outcome.err == (scanner == nullptr ? "" : played(*scanner, summary)));
+  return summary;
 }
 
 void check_same(const Recording& logs, Protocol protocol) {
   const nlohmann::json from_log = replay(logs.replay() + results(logs, "log"));
   const Playing scanner(protocol, logs.path("scans.carmen"));
-  const nlohmann::json live = replay(logs.replay("scans", scanner.address()) + results(logs, "live"));
+  const nlohmann::json live = replay(logs.replay("scans", scanner.address()) + results(logs, "live"), &scanner);
   CHECK(live == from_log);
   CHECK(live.at("lines") > 40);
   CHECK(read_file(logs.path("live.labels.csv")) == read_file(logs.path("log.labels.csv")));
@@ -116,8 +123,8 @@ TEST_CASE("program: lines of an LMS200 on a pty give the log's map") {
                     live_labels = directory.path("live.csv");
   const auto from_log = replay({"replay", "--scans", scans, "--robot", robot, "--labels", log_labels, "--json"});
   const Playing scanner(Protocol::lms200, scans);
-  CHECK(replay({"replay", "--scans", scanner.address(), "--robot", robot, "--labels", live_labels, "--json"}) ==
-        from_log);
+  CHECK(replay({"replay", "--scans", scanner.address(), "--robot", robot, "--labels", live_labels, "--json"},
+               &scanner) == from_log);
   CHECK(read_file(live_labels) == read_file(log_labels));
 }
 
@@ -128,10 +135,10 @@ TEST_CASE("program: poses in the folder from which a live scanner is read are no
   const auto before = std::filesystem::current_path();
   std::filesystem::current_path(logs.folder());
   const Outcome outcome =
-      curbline({"replay", "--scans", scanner.address(), "--can", "can.log", "--robot", "robot.toml"});
+      curbline({"replay", "--scans", scanner.address(), "--can", "can.log", "--robot", "robot.toml", "--json"});
   std::filesystem::current_path(before);
   CHECK(outcome.status == 0);
-  CHECK(outcome.err.empty());
+  CHECK(outcome.err == played(scanner, nlohmann::json::parse(outcome.out)));
 }
 
 TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {

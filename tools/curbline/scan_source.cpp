@@ -100,14 +100,16 @@ class LiveSource final : public ScanSource {
     return scan;
   }
 
-  /// A connection that ends after its first line is an end like that of a log.
+  /// A connection that ends after its first line is an end like that of a log; why it ended only the user can know.
   void end() const {
-    const bool silent = scanner_.last_error() == ETIMEDOUT;
-    std::string what = silent ? "no scan line for " + std::to_string(silence_.count() / 1000) + " s"
-                              : "closed the connection before its first scan line";
+    const int error = scanner_.last_error();
+    std::string what = error == ETIMEDOUT ? "no scan line for " + std::to_string(silence_.count() / 1000) + " s"
+                       : error != 0       ? std::string(std::strerror(error))
+                                          : "closed the connection";
+    what += lines_ == 0 ? " before its first scan line" : " after " + std::to_string(lines_) + " scan lines";
     if (!session_.problem().empty()) what += ", " + std::string(session_.problem());
     if (lines_ == 0) throw BadInput(name_ + ": " + what + "; expected scan lines");
-    if (silent) std::cerr << name_ << ": " << what << "; taken as its end\n";
+    std::cerr << name_ << ": " << what << "; taken as its end\n";
   }
 
   std::string name_;

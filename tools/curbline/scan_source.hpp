@@ -8,8 +8,8 @@
 // has it; the line's time is exact to the millisecond (SCIP 2.0) or microsecond (CoLa). LMS2xx telegrams bear no time
 // and cannot be joined with a log.
 //
-// A live source ends when the scanner closes the connection, or at Ctrl-C (SIGINT), as a log ends; a second Ctrl-C
-// kills.
+// A live source ends when the scanner closes the connection or falls silent, of which a line on stderr tells, or at
+// Ctrl-C (SIGINT), as a log ends; a second Ctrl-C kills.
 #pragma once
 
 #include <memory>
