@@ -214,6 +214,15 @@ TEST_CASE("robot: values out of range are refused with the range") {
       error_in("[tilt.signal]\nbyte_order = \"intel\"\n").starts_with("r.toml:2: tilt.signal.byte_order is \"intel\""));
 }
 
+TEST_CASE("robot: line ends and other control characters of a string or a key leave the message one line") {
+  CHECK(error_in("[laser]\nmodel = \"a\\nb\\u001b[2J\"\n") ==
+        "r.toml:2: laser.model is \"a\\nb\\x1b[2J\"; expected utm-30lx, lms-151 or lms-200");
+  for (const std::string key : {"[tilt.signal]\nservo", "[tilt.signal]\nbyte_order", "[tuning.planes]\nupdate"})
+    CHECK(error_in(key + " = \"a\\nb\"\n").find(" is \"a\\nb\"; expected ") != std::string::npos);
+  CHECK(error_in("[laser]\nbeams = \"a\\nb\"\n").find("a\\nb") != std::string::npos);
+  CHECK(error_in("\"a\\nb\" = 1\n").starts_with("r.toml:1: unknown key a\\nb; expected one of "));
+}
+
 TEST_CASE("robot: what is no TOML, or cannot be read, is refused") {
   const TemporaryDirectory dir;
   CHECK(error_in("[laser\n").starts_with("r.toml:1: "));

@@ -21,17 +21,34 @@ std::string shortest(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+/// What a string of the file may hold, in one line.
+std::string in_one_line(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      out += "\\n";
+    } else if (code < ' ' || code == 0x7F) {
+      out += {'\\', 'x', digits[code >> 4], digits[code & 15]};
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
 /// A number or string as it is, anything else by its type.
 std::string shown(const toml::node& node) {
   std::ostringstream text;
   if (node.is_number()) {
     text << shortest(node.value_or(0.0));
   } else if (const auto* string = node.as_string(); string != nullptr && string->get().size() <= 40) {
-    text << *string;  // quoted and escaped
+    text << *string;  // quoted
   } else {
     text << "of type " << node.type();
   }
-  return text.str();
+  return in_one_line(text.str());
 }
 
 }  // namespace
@@ -69,6 +86,10 @@ const toml::node* TomlTable::find(const char* key) {
 void TomlTable::refuse(const char* key, const std::string& why) const {
   const toml::node* const node = table_.get(key);
   throw BadInput(path_, line_of(node != nullptr ? *node : table_), full_name(key) + " " + why);
+}
+
+void TomlTable::refuse_word(const char* key, const std::string& word, const std::string& expected) const {
+  refuse(key, "is \"" + in_one_line(word) + "\"; expected " + expected);
 }
 
 void TomlTable::refuse_value(const char* key, const toml::node& node, const std::string& expected) const {
@@ -176,7 +197,7 @@ void TomlTable::done() const {
     std::string expected;
     for (const std::string& known : known_) expected += (expected.empty() ? "" : ", ") + known;
     throw BadInput(path_, static_cast<long>(key.source().begin.line),
-                   "unknown key " + full_name(key.str()) + "; expected one of " + expected);
+                   "unknown key " + in_one_line(full_name(key.str())) + "; expected one of " + expected);
   }
 }
 

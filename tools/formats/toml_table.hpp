@@ -59,6 +59,7 @@ class TomlTable {
 
   /// For what a range cannot say: throws BadInput at the key, or at the table if the key is absent.
   [[noreturn]] void refuse(const char* key, const std::string& why) const;
+  [[noreturn]] void refuse_word(const char* key, const std::string& word, const std::string& expected) const;
 
  private:
   const toml::node* find(const char* key);

@@ -69,7 +69,7 @@ void check_scan(const TomlTable& table, const Robot& robot) {
 void read_laser(TomlTable table, Robot& robot) {
   table.read("model", robot.laser_model);
   if (!set_model(robot.laser_model, robot)) {
-    table.refuse("model", "is \"" + robot.laser_model + "\"; expected utm-30lx, lms-151 or lms-200");
+    table.refuse_word("model", robot.laser_model, "utm-30lx, lms-151 or lms-200");
   }
   LaserSettings& laser = robot.laser;
   table.read("scan_rate_hz", robot.scan_rate_hz, {0.1, 1000.0});

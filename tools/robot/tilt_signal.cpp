@@ -27,13 +27,13 @@ can::Signal read_servo(TomlTable& table) {
     table.read("p_max_rad", p_max_rad, {0.1, 1000.0});
     return can::mini_cheetah_reply(0, p_max_rad);  // the master's id by default
   }
-  table.refuse("servo", "is \"" + servo + "\"; expected cia402, odrive, vesc, cubemars, robstride or mini-cheetah");
+  table.refuse_word("servo", servo, "cia402, odrive, vesc, cubemars, robstride or mini-cheetah");
 }
 
 can::ByteOrder read_byte_order(TomlTable& table, can::ByteOrder otherwise) {
   std::string word = otherwise == can::ByteOrder::little ? "little" : "big";
   table.read("byte_order", word);
-  if (word != "little" && word != "big") table.refuse("byte_order", "is \"" + word + "\"; expected little or big");
+  if (word != "little" && word != "big") table.refuse_word("byte_order", word, "little or big");
   return word == "little" ? can::ByteOrder::little : can::ByteOrder::big;
 }
 

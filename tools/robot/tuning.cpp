@@ -23,7 +23,7 @@ void read_planes(TomlTable table, PlaneSettings& planes) {
   std::string update = planes.update == PlaneUpdate::regions ? "regions" : "responsibilities";
   table.read("update", update);
   if (update != "regions" && update != "responsibilities") {
-    table.refuse("update", "is \"" + update + "\"; expected regions or responsibilities");
+    table.refuse_word("update", update, "regions or responsibilities");
   }
   planes.update = update == "regions" ? PlaneUpdate::regions : PlaneUpdate::responsibilities;
   table.done();

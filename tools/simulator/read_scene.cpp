@@ -200,7 +200,7 @@ RobotPath read_path(TomlTable table) {
     std::string attitude = "level";
     table.read("attitude", attitude);
     if (attitude != "level" && attitude != "terrain") {
-      table.refuse("attitude", "is \"" + attitude + "\"; expected level or terrain");
+      table.refuse_word("attitude", attitude, "level or terrain");
     }
     path.follows_terrain = attitude == "terrain";
     if (const double whole_s = duration_s(path); whole_s > longest_s) {
