@@ -130,6 +130,19 @@ TEST_CASE("cloud: a PCD that is not what its header says is refused") {
             .starts_with("a.pcd:9: POINTS is 3; expected WIDTH x HEIGHT, 4"));
 }
 
+TEST_CASE("cloud: a coordinate that two columns bear is refused, since only the file's maker knows which is meant") {
+  const TemporaryDirectory dir;
+  const auto error = [&](const std::string& name, const std::string& text) {
+    return error_of([&] { read_cloud(dir.write(name, text)); });
+  };
+  CHECK(error("a.csv", "x,y,z,x\n1,2,3,4\n") == "a.csv:1: column x twice; expected it once");
+  CHECK(error("a.csv", "X Y_m Z y\n1 2 3 4\n") == "a.csv:1: column y twice; expected it once");
+  const std::string twice = "FIELDS x y z x\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n";
+  CHECK(error("a.pcd", pcd_header(twice, 1, "ascii") + "1 2 3 4\n") == "a.pcd:3: column x twice; expected it once");
+  const std::string padding = "FIELDS _ x y z _\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\n";
+  CHECK(is(read_cloud(dir.write("a.pcd", pcd_header(padding, 1, "ascii") + "0 1 2 3 4\n")).at(0), 1, 2, 3));
+}
+
 TEST_CASE("cloud: damaged clouds are read or refused, and nothing worse") {
   const auto read = [](const std::string& path) { read_cloud(path); };
   survive_damage("x,y,z,i\n1,2,3,4\n-4,0.5,6,1\n", "a.csv", read);

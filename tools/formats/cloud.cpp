@@ -43,7 +43,10 @@ Columns read_header(const LineReader& source, Fields fields) {
   Columns columns{{-1, -1, -1}};
   for (int column = 0; !fields.at_end(); ++column) {
     const int axis = axis_of(fields.word("a column name"));
-    if (axis >= 0) columns.of_axis[static_cast<std::size_t>(axis)] = column;
+    if (axis < 0) continue;
+    int& place = columns.of_axis[static_cast<std::size_t>(axis)];
+    if (place >= 0) source.fail(std::string("column ") + "xyz"[axis] + " twice; expected it once");
+    place = column;
   }
   for (const int column : columns.of_axis) {
     if (column < 0) source.fail("no such columns; expected numbers, or names with x, y and z among them");

@@ -1,5 +1,6 @@
 #include "formats/pcd.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -43,11 +44,22 @@ struct Layout {
   std::int64_t bytes = 0;
 };
 
-void read_field_words(Fields& words, const std::string& key, Header& header) {
+bool is_axis(const std::string& name) {
+  return name == "x" || name == "y" || name == "z";
+}
+
+void add_field(const LineReader& source, const std::string& name, Header& header) {
+  const auto same = [&](const Field& field) { return field.name == name; };
+  if (is_axis(name) && std::ranges::any_of(header.fields, same))
+    source.fail("column " + name + " twice; expected it once");
+  header.fields.push_back({.name = name});
+}
+
+void read_field_words(const LineReader& source, Fields& words, const std::string& key, Header& header) {
   if (key == "FIELDS") {
     while (!words.at_end()) {
       if (std::ssize(header.fields) == most_fields) words.fail(key, "more", "at most 1000 fields");
-      header.fields.push_back({.name = std::string(words.word("a field name"))});
+      add_field(source, std::string(words.word("a field name")), header);
     }
     return;
   }
@@ -82,7 +94,7 @@ Header read_header(LineReader& source) {
       const std::string_view version = words.word(key);
       if (version != "0.7" && version != ".7") words.fail(key, version, "0.7");
     } else if (key == "FIELDS" || key == "SIZE" || key == "TYPE" || key == "COUNT") {
-      read_field_words(words, key, header);
+      read_field_words(source, words, key, header);
     } else if (key == "WIDTH") {
       header.width = words.whole(key, 0, most_points);
     } else if (key == "HEIGHT") {
@@ -108,7 +120,7 @@ Layout lay_out(const LineReader& source, const Header& header) {
   Layout layout;
   std::array<bool, 3> seen{};
   for (const Field& field : header.fields) {
-    if (field.name.size() == 1 && field.name[0] >= 'x' && field.name[0] <= 'z') {
+    if (is_axis(field.name)) {
       const auto axis = static_cast<std::size_t>(field.name[0] - 'x');
       if (field.type != 'F' || field.count != 1 || (field.size != 4 && field.size != 8)) {
         source.fail("field " + field.name + " has another type; expected one F of 4 or 8 bytes");
