@@ -175,6 +175,13 @@ TEST_CASE("program: a cloud without a point in the window is refused with the ex
   }
 }
 
+TEST_CASE("program: where a cloud lies is told in few digits, however far away it is") {
+  const TemporaryDirectory dir;
+  const Outcome outcome = curbline({"map", dir.write("far.xyz", "1e300 1e300 -1e300\n")});
+  check_refused(outcome, dir.path("far.xyz") + ": no point within ",
+                "the cloud has x 1e+300 to 1e+300, y 1e+300 to 1e+300, z -1e+300 to -1e+300\n");
+}
+
 TEST_CASE("program: a cloud in coordinates of a national grid gives its map there") {
   const TemporaryDirectory dir;
   const Files files(dir);

@@ -76,6 +76,8 @@ TEST_CASE("carmen: fields that are no finite numbers are refused by name") {
   };
   CHECK(error_in(dir, with("1.5", "nan")) == "s.carmen:1: a range is \"nan\"; expected a finite number");
   CHECK(error_in(dir, with("1.5", "inf")) == "s.carmen:1: a range is \"inf\"; expected a finite number");
+  CHECK(error_in(dir, with("1.5", "-inf")) == "s.carmen:1: a range is \"-inf\"; expected a finite number");
+  CHECK(error_in(dir, with("60.00", "1e300")).starts_with("s.carmen:1: maximum_range is \"1e+300\"; expected"));
   CHECK(error_in(dir, with("1.5", "1.5m")) == "s.carmen:1: a range is \"1.5m\"; expected a number");
   CHECK(error_in(dir, with("-1.0", "left")) == "s.carmen:1: start_angle is \"left\"; expected a number");
   CHECK(error_in(dir, with("60.00", "-1")).starts_with("s.carmen:1: maximum_range is "));

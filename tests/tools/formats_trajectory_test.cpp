@@ -54,6 +54,11 @@ TEST_CASE("trajectory: positions in coordinates of a national grid are refused, 
         "p.tum:2: ty is \"5247000.250\"; expected metres within 1000 km, better 1 km, of the map's origin");
 }
 
+TEST_CASE("trajectory: a number of 300 digits is told in few") {
+  const TemporaryDirectory dir;
+  CHECK(error_in(dir, "1 1e300 0 0 0 0 0 1\n").starts_with("p.tum:1: tx is \"1e+300\"; expected metres"));
+}
+
 TEST_CASE("trajectory: cut lines, junk and times that go back are refused") {
   const TemporaryDirectory dir;
   CHECK(error_in(dir, "1 0 0 0 0 0 0\n") == "p.tum:1: the line ends before qw; expected one field more");

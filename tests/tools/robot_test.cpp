@@ -177,7 +177,10 @@ TEST_CASE("robot: the manual lists the keys that are read, and no others") {
 
 TEST_CASE("robot: a wrong type is refused with what was expected") {
   CHECK(error_in("[laser]\nbeams = 1081.0\n") ==
-        "r.toml:2: laser.beams is 1081; expected a whole number from 1 to 2881");
+        "r.toml:2: laser.beams is 1081.0; expected a whole number from 1 to 2881");
+  CHECK(error_in("[laser]\nbeams = 100000\n") ==
+        "r.toml:2: laser.beams is 100000; expected a whole number from 1 to 2881");
+  CHECK(error_in("[laser]\nmax_range_m = 1e300\n").starts_with("r.toml:2: laser.max_range_m is 1e+300; expected"));
   CHECK(error_in("[laser]\nrange_sd_m = \"1 cm\"\n") ==
         "r.toml:2: laser.range_sd_m is '1 cm'; expected a number from 1e-05 to 1");
   CHECK(error_in("[tilt]\nfixed = 1\n") == "r.toml:2: tilt.fixed is 1; expected true or false");

@@ -14,7 +14,7 @@ namespace curbline::tools {
 namespace {
 
 std::string span(double from_m, double to_m) {
-  return decimals(from_m, 3) + " to " + decimals(to_m, 3);
+  return readable(from_m, 3) + " to " + readable(to_m, 3);
 }
 
 /// Throws BadInput unless a point lies in the window: an empty map would say that nothing is there.

@@ -38,7 +38,7 @@ CarmenLine parse_scan(Fields& fields) {
   scan.angular_resolution_rad = fields.number("angular_resolution");
   scan.maximum_range_m = fields.number("maximum_range");
   if (!(scan.maximum_range_m > 0.0 && scan.maximum_range_m <= farthest_m)) {
-    fields.fail("maximum_range", decimals(scan.maximum_range_m, 3), "metres above 0 and below a million");
+    fields.fail("maximum_range", readable(scan.maximum_range_m, 3), "metres above 0 and below a million");
   }
   scan.accuracy_m = fields.number("accuracy");
   fields.number("remission_mode");
@@ -83,13 +83,13 @@ void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const st
   const double first_rad = laser.first_bearing_rad;
   if (!(std::abs(scan.start_angle_rad - first_rad) <= tolerance_rad)) {
     throw BadInput(file, line,
-                   "start_angle is " + decimals(scan.start_angle_rad, 6) + "; expected " + decimals(first_rad, 6) +
+                   "start_angle is " + readable(scan.start_angle_rad, 6) + "; expected " + decimals(first_rad, 6) +
                        ", first_bearing_rad of the robot's laser");
   }
   const double step_rad = laser.bearing_step_rad;
   if (!(std::abs(scan.angular_resolution_rad - step_rad) * (beams - 1) <= tolerance_rad)) {
     throw BadInput(file, line,
-                   "angular_resolution is " + decimals(scan.angular_resolution_rad, 9) + "; expected " +
+                   "angular_resolution is " + readable(scan.angular_resolution_rad, 9) + "; expected " +
                        decimals(step_rad, 9) + ", bearing_step_rad of the robot's laser");
   }
 }

@@ -24,13 +24,13 @@ void expect_header(LineReader& source, std::string_view columns) {
 
 double read_place(Fields& fields, std::string_view name) {
   const double metres = fields.number(name);
-  if (std::abs(metres) > furthest_m) fields.fail(name, decimals(metres, 3), "metres in [-1e8, 1e8]");
+  if (std::abs(metres) > furthest_m) fields.fail(name, readable(metres, 3), "metres in [-1e8, 1e8]");
   return metres;
 }
 
 double read_probability(Fields& fields) {
   const double value = fields.number("probability");
-  if (!(value >= 0.0 && value <= 1.0)) fields.fail("probability", decimals(value, places), "0 to 1");
+  if (!(value >= 0.0 && value <= 1.0)) fields.fail("probability", readable(value, places), "0 to 1");
   return value;
 }
 

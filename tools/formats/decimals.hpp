@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -27,6 +28,11 @@ template <typename Number>
 std::string shortest(Number value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// For messages: in decimals, but what has too many digits as short as it can be.
+inline std::string readable(double value, int places) {
+  return std::abs(value) < 1e12 ? decimals(value, places) : shortest(value);
 }
 
 /// "0x181".

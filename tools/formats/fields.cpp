@@ -46,17 +46,21 @@ std::string_view Fields::word(std::string_view name) {
   return apart_ == Apart::commas ? trim(field) : field;
 }
 
-double Fields::number_or_nan(std::string_view name) {
-  const std::string_view field = word(name);
+double Fields::parse_number(std::string_view name, std::string_view field) const {
   double value = 0.0;
   const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (problem != std::errc{} || end != field.data() + field.size()) fail(name, field, "a number");
   return value;
 }
 
+double Fields::number_or_nan(std::string_view name) {
+  return parse_number(name, word(name));
+}
+
 double Fields::number(std::string_view name) {
-  const double value = number_or_nan(name);
-  if (!std::isfinite(value)) fail(name, std::isnan(value) ? "nan" : "inf", "a finite number");
+  const std::string_view field = word(name);
+  const double value = parse_number(name, field);
+  if (!std::isfinite(value)) fail(name, field, "a finite number");
   return value;
 }
 

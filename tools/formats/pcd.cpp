@@ -21,7 +21,6 @@ constexpr std::int64_t most_points = std::int64_t{1} << 32;
 struct Field {
   std::string name;
   std::int64_t size = 4;   ///< bytes
-  char type = 'F';         ///< I, U or F
   std::int64_t count = 1;  ///< numbers
 };
 
@@ -64,12 +63,19 @@ void read_field_words(const LineReader& source, Fields& words, const std::string
     return;
   }
   for (Field& field : header.fields) {
-    if (key == "SIZE") field.size = words.whole(key, 1, 8);
-    if (key == "COUNT") field.count = words.whole(key, 1, 1'000'000);
-    if (key != "TYPE") continue;
-    const std::string_view type = words.word(key);
-    if (type != "I" && type != "U" && type != "F") words.fail(key, type, "I, U or F");
-    field.type = type[0];
+    const bool axis = is_axis(field.name);
+    if (key == "SIZE") {
+      field.size = words.whole(key, 1, 8);
+      if (axis && field.size != 4 && field.size != 8)
+        words.fail("SIZE of " + field.name, std::to_string(field.size), "4 or 8, a float");
+    } else if (key == "COUNT") {
+      field.count = words.whole(key, 1, 1'000'000);
+      if (axis && field.count != 1) words.fail("COUNT of " + field.name, std::to_string(field.count), "1");
+    } else {
+      const std::string_view type = words.word(key);
+      if (type != "I" && type != "U" && type != "F") words.fail(key, type, "I, U or F");
+      if (axis && type != "F") words.fail("TYPE of " + field.name, type, "F");
+    }
   }
 }
 
@@ -122,9 +128,6 @@ Layout lay_out(const LineReader& source, const Header& header) {
   for (const Field& field : header.fields) {
     if (is_axis(field.name)) {
       const auto axis = static_cast<std::size_t>(field.name[0] - 'x');
-      if (field.type != 'F' || field.count != 1 || (field.size != 4 && field.size != 8)) {
-        source.fail("field " + field.name + " has another type; expected one F of 4 or 8 bytes");
-      }
       layout.axes[axis] = {layout.columns, layout.bytes, field.size == 8};
       seen[axis] = true;
     }

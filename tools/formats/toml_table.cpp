@@ -1,11 +1,10 @@
 #include "formats/toml_table.hpp"
 
-#include <array>
-#include <charconv>
 #include <fstream>
 #include <sstream>
 
 #include "formats/bad_input.hpp"
+#include "formats/decimals.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -16,9 +15,11 @@ long line_of(const toml::node& node) {
   return static_cast<long>(node.source().begin.line);
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+/// As TOML has it: 1081 and 1081.0 are different things.
+std::string shown_number(const toml::node& node) {
+  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+  const std::string text = shortest(node.value_or(0.0));
+  return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
 /// What a string of the file may hold, in one line.
@@ -42,7 +43,7 @@ std::string in_one_line(std::string_view text) {
 std::string shown(const toml::node& node) {
   std::ostringstream text;
   if (node.is_number()) {
-    text << shortest(node.value_or(0.0));
+    text << shown_number(node);
   } else if (const auto* string = node.as_string(); string != nullptr && string->get().size() <= 40) {
     text << *string;  // quoted
   } else {

@@ -12,7 +12,7 @@ namespace {
 double read_position(Fields& fields, std::string_view name) {
   const double metres = fields.number(name);
   if (std::abs(metres) > static_cast<double>(Pose::furthest_m))
-    fields.fail(name, decimals(metres, 3), "metres within 1000 km, better 1 km, of the map's origin");
+    fields.fail(name, readable(metres, 3), "metres within 1000 km, better 1 km, of the map's origin");
   return metres;
 }
 
@@ -28,7 +28,7 @@ TrajectoryPose parse_pose(Fields& fields) {
   pose.qw = fields.number("qw");
   fields.expect_end();
   const double norm = std::sqrt(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
-  if (!(std::abs(norm - 1.0) <= 0.01)) fields.fail("the quaternion's norm", decimals(norm, 3), "1 within 0.01");
+  if (!(std::abs(norm - 1.0) <= 0.01)) fields.fail("the quaternion's norm", readable(norm, 3), "1 within 0.01");
   for (double* part : {&pose.qx, &pose.qy, &pose.qz, &pose.qw}) *part /= norm;
   return pose;
 }
