@@ -198,9 +198,11 @@ TEST_CASE("program: a scene file is refused with its line and key") {
   };
   error("", ":");
   error("[ground]\nz = \"low\"\n", ":2: ground.z is 'low'");
-  error("[ground]\nz = 0\n[robot]\nat = [0, 0]\nspeed = 1\n", ":5: unknown key robot.speed");
+  error("[ground]\nz = 0\n[robot]\nat = [0, 0]\nspeed = 1\n",
+        ":5: robot.speed is without path; expected robot.path beside it");
   error("[robot]\npath = [[0, 0], [1, 0]]\nattitude = \"a\\nb\"\n", ":3: robot.attitude is \"a\\nb\"; expected level");
-  error("[robot]\nattitude = \"level\"\n", ":2: unknown key robot.attitude; expected one of at, path, yaw_deg");
+  error("[robot]\nattitude = \"level\"\n", ":2: robot.attitude is without path; expected robot.path");
+  error("[robot]\nturn_rate_deg_s = 9\n", ":2: robot.turn_rate_deg_s is without path; expected robot.path");
   error("[robot]\npath = [[0, 0], [1, 0]]\nat = [0, 0]\n", ":3: robot.at is beside path; expected one of the two");
   error("grond = 1\n", ":1: unknown key grond; expected one of about, box, cylinder, ground, region, robot, wall");
   error("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n", ": ");  // the robot stands on nothing

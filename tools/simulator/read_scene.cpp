@@ -207,6 +207,9 @@ RobotPath read_path(TomlTable table) {
       table.refuse("path", "takes " + std::to_string(std::llround(whole_s)) + " s; expected a day at most");
     }
   } else {
+    for (const char* driving : {"speed", "turn_rate_deg_s", "attitude"}) {
+      if (table.has(driving)) table.refuse(driving, "is without path; expected robot.path beside it");
+    }
     path.waypoints = {read_point(table, "at")};
     path.yaw_rad = read_angle_rad(table, "yaw_deg");
   }
