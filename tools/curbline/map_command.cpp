@@ -46,7 +46,9 @@ void add_map(CLI::App& app) {
   auto o = std::make_shared<Options>();
   command
       ->add_option("cloud", o->cloud,
-                   "point cloud, metres, in the frame of its laser or of a robot's base: .xyz .csv .pcd .bin")
+                   "point cloud, metres, in the frame of its laser or of a robot's base: .xyz .csv .pcd .bin; points "
+                   "that are not "
+                   "finite are passed over")
       ->check(file_name())
       ->required();
   add_map_options(*command, o->map);

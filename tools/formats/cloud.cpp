@@ -54,6 +54,10 @@ Columns read_header(const LineReader& source, Fields fields) {
   return columns;
 }
 
+bool is_finite(const Point3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
 Point3 read_point(Fields& fields, const Columns& columns) {
   static constexpr std::array<std::string_view, 3> names{"x", "y", "z"};
   std::array<double, 3> value{};
@@ -61,7 +65,7 @@ Point3 read_point(Fields& fields, const Columns& columns) {
     const auto axis = static_cast<std::size_t>(std::find(columns.of_axis.begin(), columns.of_axis.end(), column) -
                                                columns.of_axis.begin());
     if (axis < 3) {
-      value[axis] = fields.number(names[axis]);
+      value[axis] = fields.number_or_nan(names[axis]);
     } else {
       fields.word("a column");
     }
@@ -98,10 +102,6 @@ std::vector<Point3> read_kitti(const std::string& path) {
   std::vector<Point3> points;
   std::array<float, 4> record{};
   while (source.read_bytes(record.data(), sizeof record)) {
-    if (!std::isfinite(record[0]) || !std::isfinite(record[1]) || !std::isfinite(record[2])) {
-      throw BadInput(path + ": point " + std::to_string(points.size()) +
-                     " is not finite; expected float32 x y z intensity");
-    }
     points.push_back({record[0], record[1], record[2]});
   }
   return points;
@@ -121,6 +121,7 @@ std::vector<Point3> read_cloud(const std::string& path) {
   } else {
     throw BadInput(path + ": unknown kind of cloud; expected a name that ends in .xyz, .csv, .pcd or .bin");
   }
+  std::erase_if(points, [](const Point3& p) { return !is_finite(p); });
   if (points.empty()) throw BadInput(path + ": no points; expected at least one");
   return points;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -204,7 +203,7 @@ std::vector<Point3> read_pcd(const std::string& path) {
                      std::to_string(promised));
     }
     const auto [x, y, z] = *xyz;
-    if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) points.push_back({x, y, z});
+    points.push_back({x, y, z});
   }
   if (!header.binary && read_ascii_point(source, layout)) {
     source.fail("more points; expected " + std::to_string(promised) + " as the header has it");

@@ -8,8 +8,8 @@
 
 namespace curbline::tools {
 
-/// The points whose x, y and z are finite; the other fields are passed over. Throws BadInput, also for fewer points
-/// than the header promises and for binary_compressed data.
+/// All points, those that are not finite too; fields other than x, y and z are passed over. Throws BadInput, also for
+/// fewer points than the header promises and for binary_compressed data.
 std::vector<Point3> read_pcd(const std::string& path);
 
 }  // namespace curbline::tools
