@@ -141,14 +141,22 @@ std::optional<std::int64_t> parse_time(std::string_view seconds) {
   return whole * 1'000'000'000 + fraction_ns;
 }
 
+/// Without -L candump writes for the screen: "  can0  181   [6]  37 06", with -t behind a time.
+bool is_for_the_screen(std::string_view line) {
+  const std::size_t length = line.find('[');
+  return length != std::string_view::npos && line.find('#') == std::string_view::npos && line.size() > length + 1 &&
+         is_digit(line[length + 1]);
+}
+
 ParsedLine parse_line(std::string_view line) {
   ParsedLine parsed;
   const auto refuse = [](std::string_view error) { return ParsedLine{.error = error}; };
+  if (is_for_the_screen(line)) return refuse("what candump writes for the screen; expected a log of candump -L");
   const std::string_view time = take_word(line);
   if (time.size() < 3 || time.front() != '(' || time.back() != ')')
     return refuse("no time; expected (SECONDS.DECIMALS)");
   const auto time_ns = parse_time(time.substr(1, time.size() - 2));
-  if (!time_ns) return refuse("bad time; expected (SECONDS.DECIMALS)");
+  if (!time_ns || time.find('.') == std::string_view::npos) return refuse("bad time; expected (SECONDS.DECIMALS)");
   parsed.frame.time_ns = *time_ns;
   parsed.interface_name = take_word(line);
   if (parsed.interface_name.empty() || parsed.interface_name.size() > max_interface_name) {

@@ -29,8 +29,8 @@ struct ParsedLine {
   bool ok() const { return error.empty(); }
 };
 
-/// Takes one line without its line end. Whatever candump does not write is an error, but for a time with fewer decimals
-/// and blanks at the end.
+/// Takes one line without its line end. Whatever candump does not write is an error, but for a time with fewer
+/// decimals, one or more, and blanks at the end.
 ParsedLine parse_line(std::string_view line);
 
 /// Seconds in decimals, "1290682980.025", as nanoseconds, exactly; digits past the ninth are cut. Nothing if it is

@@ -73,6 +73,7 @@ TEST_CASE("candump: what candump does not write is refused with what was expecte
   CHECK(error_in("").starts_with("no time"));
   CHECK(error_in("can0 123#11").starts_with("no time"));
   CHECK(error_in("(x) can0 123#11").starts_with("bad time"));
+  CHECK(error_in("(1699999999) can0 123#11") == "bad time; expected (SECONDS.DECIMALS)");
   CHECK(error_in("(0.0)").starts_with("bad interface name"));
   CHECK(error_in("(0.0) an_interface_too_long 123#").starts_with("bad interface name"));
   CHECK(error_in("(0.0) can0").starts_with("no frame"));
@@ -89,6 +90,16 @@ TEST_CASE("candump: what candump does not write is refused with what was expecte
   CHECK(error_in("(0.0) can0 123##").starts_with("no CAN FD flags"));
   CHECK(error_in("(0.0) can0 123#R9").starts_with("bad remote length"));
   CHECK(error_in("(0.0) can0 123#11 R R").starts_with("text behind"));
+}
+
+TEST_CASE("candump: what candump writes for the screen is told as such") {
+  for (const char* text : {"  can0  181   [6]  37 06 D3 17 FD FF", "can0  181   [6]  37 06 D3 17 FD FF",
+                           " (1290682980.025000)  can0  181   [6]  37 06 D3 17 FD FF",
+                           "(000.025000)  can0  00001005   [8]  00 11 22 33 44 55 66 77   '..\"3DUfw'",
+                           "  can0  123  [12]  00 00 00 00 00 00 00 00 00 00 00 00"}) {
+    INFO(text);
+    CHECK(error_in(text) == "what candump writes for the screen; expected a log of candump -L");
+  }
 }
 
 TEST_CASE("candump: what is formatted is read back, and is what was read") {

@@ -19,6 +19,16 @@ std::vector<std::string> lines_of(const std::string& path, std::size_t max_line 
 
 }  // namespace
 
+TEST_CASE("line reader: a compressed file is told as such, not as text that is wrong") {
+  const TemporaryDirectory dir;
+  const auto error = [&](const std::string& bytes) {
+    return error_of([&] { LineReader(dir.write("a.log", bytes)).next(); });
+  };
+  CHECK(error("\x1F\x8B\x08") == "a.log: compressed by gzip; expected what it unpacks to");
+  CHECK(error(std::string("\xFD\x37zXZ\0", 6)) == "a.log: compressed by xz; expected what it unpacks to");
+  CHECK(error("\x28\xB5\x2F\xFD") == "a.log: compressed by zstd; expected what it unpacks to");
+}
+
 TEST_CASE("line reader: a byte order mark is no part of the first line") {
   const TemporaryDirectory dir;
   const std::string mark = "\xEF\xBB\xBF";

@@ -14,7 +14,25 @@ LineReader::LineReader(std::string path, std::size_t max_line)
   if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno) + "; expected a file to read");
 }
 
+/// What lies in many a log folder, and is no text that is wrong.
+void LineReader::check_plain() const {
+  struct Packed {
+    std::string_view start, by;
+  };
+  using namespace std::string_view_literals;
+  const std::string_view start(buffer_.data() + begin_, end_ - begin_);
+  for (const auto& [magic, by] :
+       {Packed{"\x1F\x8B"sv, "gzip"}, {"\xFD\x37zXZ\0"sv, "xz"}, {"\x28\xB5\x2F\xFD"sv, "zstd"}}) {
+    if (start.starts_with(magic))
+      throw BadInput(path_ + ": compressed by " + std::string(by) + "; expected what it unpacks to");
+  }
+}
+
 std::optional<std::string_view> LineReader::next() {
+  if (line_ == 0 && begin_ == end_ && !at_end_) {
+    fill();
+    check_plain();
+  }
   std::size_t searched = 0;  // bytes of the line without a line end
   for (;;) {
     const char* const start = buffer_.data() + begin_;

@@ -25,7 +25,8 @@ class LineReader {
   explicit LineReader(std::string path, std::size_t max_line = default_max_line);
 
   /// The next line without its end (LF or CR LF), the first without UTF-8's byte order mark; valid until the next call;
-  /// nothing at the end of the file. Throws BadInput if the line is too long, the file empty or reading fails.
+  /// nothing at the end of the file. Throws BadInput if the line is too long, the file empty or compressed, or reading
+  /// fails.
   std::optional<std::string_view> next();
 
   /// Reads bytes that follow the last line, for formats with a text header. False if the file ends before.
@@ -43,6 +44,7 @@ class LineReader {
   };
 
   void fill();
+  void check_plain() const;
   std::string_view take(std::size_t length, std::size_t end_bytes);
 
   std::string path_;
