@@ -56,7 +56,7 @@ TEST_CASE("program: a file that is not there is named") {
   const Recording logs = driving();
   for (const std::string log : {"scans", "can", "poses", "robot"}) {
     const std::string none = logs.path("none");
-    check_refused(replay_with(logs, log, none), none + ": ", "cannot be");
+    check_refused(replay_with(logs, log, none), none + ": cannot be ", ": No such file or directory; expected");
   }
   const TemporaryDirectory dir;
   check_refused(map_of(dir.path("none.xyz"), dir), dir.path("none.xyz") + ": ", "No such file");
@@ -203,7 +203,7 @@ TEST_CASE("program: a scene file is refused with its line and key") {
   error("[[region]]\nz = 0\nrectangle = [5, 5, 6, 6]\n", ": ");  // the robot stands on nothing
   check_refused(curbline({"simulate", "--scene", dir.path("none.toml"), "--robot", shipped_robot("utm30lx"), "--out",
                           dir.path("o")}),
-                dir.path("none.toml") + ": cannot be read", "");
+                dir.path("none.toml") + ": cannot be read: No such file or directory; expected a scene (TOML)\n", "");
 }
 
 TEST_CASE("program: scan lines of another laser are refused") {
@@ -230,7 +230,7 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
   }
   if (std::filesystem::exists("/dev/full")) {
     check_refused(curbline({"map", cloud, "--labels", before, "--curbs", "/dev/full"}),
-                  "/dev/full: ", "cannot be written");
+                  "/dev/full: ", "cannot be written: No space left on device; expected room for it\n");
   }
   const std::string bitmap = dir.path("map.bmp");
   check_refused(curbline({"map", cloud, "--labels", before, "--picture", bitmap}), bitmap + ": ",
@@ -280,8 +280,7 @@ TEST_CASE("program: a limit on the size of files is an error of writing") {
   CHECK(WEXITSTATUS(std::system(("ulimit -f 100; " + simulate + " 2> " + dir.path("err")).c_str())) == 1);
   CHECK(names_in(dir.path("run")) == Words{});
   CHECK(read_file(dir.path("err")) ==
-        dir.path("run/scans.carmen") +
-            ": cannot be written: File too large; expected a file name in a folder to write to\n");
+        dir.path("run/scans.carmen") + ": cannot be written: File too large; expected room for it\n");
 }
 
 TEST_CASE("program: standard output that cannot be written is an error") {
@@ -319,7 +318,28 @@ TEST_CASE("program: truth that is cut is refused") {
   const Recording logs = standing();
   const std::string truth = read_file(logs.path("truth.json"));
   logs.directory().write("truth.json", truth.substr(0, truth.size() / 2));
-  check_refused(curbline({"evaluate", logs.folder(), "--json"}), logs.path("truth.json"), "");
+  check_refused(curbline({"evaluate", logs.folder(), "--json"}), logs.path("truth.json"), "no JSON, or cut");
+}
+
+TEST_CASE("program: truth that is of another make is refused with the field") {
+  const Recording logs = standing();
+  const std::string truth = read_file(logs.path("truth.json"));
+  const auto error = [&](const std::string& text, const std::string& expected) {
+    logs.directory().write("truth.json", text);
+    check_refused(curbline({"evaluate", logs.folder()}), logs.path("truth.json") + ": " + expected,
+                  "what simulate wrote");
+  };
+  const auto with = [&](const std::string& from, const std::string& to) {
+    REQUIRE(truth.find(from) != std::string::npos);
+    return std::string(truth).replace(truth.find(from), from.size(), to);
+  };
+  error("[]", "start_time_s is missing;");
+  error("{\"start_time_s\": \"now\"}", "start_time_s is not a number;");
+  error(with("\"planes\": [", "\"planes\": 3, \"p\": ["), "planes is not a list;");
+  error(with("\"x0_m\"", "\"x9_m\""), "curbs[0].x0_m is missing;");
+  error(with("\"plane\": ", "\"plane\": 99"), "regions[0].plane is not the index of a plane;");
+  std::filesystem::remove(logs.path("truth.json"));
+  check_refused(curbline({"evaluate", logs.folder()}), logs.path("truth.json") + ": cannot be read: No such file", "");
 }
 
 }  // namespace

@@ -60,8 +60,9 @@ TEST_CASE("drive log: nothing is left of what a signal ends") {
 
 TEST_CASE("drive log: results that cannot be read or are none are refused") {
   const TemporaryDirectory dir;
-  check_refused(drive_log({"curbs", dir.path("none")}), dir.path("none") + ": ", "cannot be read");
-  check_refused(drive_log({"curbs", dir.path("")}), dir.path("") + ": ", "cannot be read");
+  check_refused(drive_log({"curbs", dir.path("none")}), dir.path("none") + ": ",
+                "cannot be read: No such file or directory");
+  check_refused(drive_log({"curbs", dir.path("")}), dir.path("") + ": ", "cannot be read: Is a directory");
   check_refused(drive_log({"curbs", dir.write("empty", "")}), dir.path("empty") + ": ", "empty");
   check_refused(drive_log({"curbs", dir.write("cut", "1234")}), dir.path("cut") + ": ", "cut");
 }

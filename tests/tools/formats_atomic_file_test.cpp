@@ -86,8 +86,7 @@ TEST_CASE("atomic file: a full disk is an error at commit") {
 TEST_CASE("atomic file: what was too large for its place is refused with the reason, however it was written") {
   if (!fs::exists("/dev/full")) return;
   const std::string text(1'000'000, 'x');
-  const std::string full =
-      "/dev/full: cannot be written: No space left on device; expected a file name in a folder to write to";
+  const std::string full = "/dev/full: cannot be written: No space left on device; expected room for it";
   const auto error_after = [](auto write) {
     AtomicFile file("/dev/full");
     write(file.stream());

@@ -1,10 +1,10 @@
-#include <array>
 #include <cstring>
-#include <fstream>
+#include <string_view>
 
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/whole_file.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -12,34 +12,22 @@ namespace {
 using Layout = drive_log::Result<0>;
 
 template <typename T>
-T value_at(const std::vector<char>& bytes, std::size_t at) {
+T value_at(std::string_view bytes, std::size_t at) {
   T value;
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
 
-MapCurb curb_at(const std::vector<char>& bytes, std::size_t at) {
+MapCurb curb_at(std::string_view bytes, std::size_t at) {
   const auto f = [&](std::size_t k) { return static_cast<double>(value_at<float>(bytes, at + k * sizeof(float))); };
   const auto kind = static_cast<CurbKind>(value_at<std::uint16_t>(bytes, at + 9 * sizeof(float)));
   return {f(0), f(1), f(2), f(3), f(4), f(5), f(6), to_string(kind)};
 }
 
-std::vector<char> bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> bytes;
-  std::array<char, 65536> part{};
-  do {
-    file.read(part.data(), part.size());
-    bytes.insert(bytes.end(), part.begin(), part.begin() + file.gcount());
-  } while (file);
-  if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected results of a drive");
-  return bytes;
-}
-
 }  // namespace
 
 std::vector<MapCurb> read_last_curbs(const std::string& path) {
-  const std::vector<char> bytes = bytes_of(path);
+  const std::string bytes = read_whole(path, 4096, "results of a drive");
   if (bytes.empty()) throw BadInput(path + ": empty; expected results of a drive");
   std::vector<MapCurb> curbs;
   for (std::size_t at = 0; at < bytes.size();) {

@@ -42,7 +42,9 @@ void remove_uncommitted(int signal) {
 }
 
 std::string reason(int error) {
-  return std::string(": cannot be written: ") + std::strerror(error) + "; expected a file name in a folder to write to";
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  return std::string(": cannot be written: ") + std::strerror(error) + "; expected " +
+         (full ? "room for it" : "a file name in a folder to write to");
 }
 
 }  // namespace
@@ -93,9 +95,7 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   std::error_code error;
   fs::rename(temporary_, target_, error);
-  if (error)
-    throw BadInput(path_ + ": cannot be written: " + error.message() +
-                   "; expected a file name in a folder to write to");
+  if (error) throw BadInput(path_ + reason(error.value()));
   replace(temporary_.c_str(), nullptr);
   temporary_.clear();
 }

@@ -1,14 +1,13 @@
 #include "formats/dbc.hpp"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <set>
 #include <string_view>
 
 #include "formats/bad_input.hpp"
 #include "formats/dbc_scanner.hpp"
 #include "formats/line_reader.hpp"
+#include "formats/whole_file.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -33,16 +32,7 @@ bool begins_a_statement(std::string_view word) {
 }
 
 std::string read_text(const std::string& path) {
-  constexpr std::size_t limit = std::size_t{16} << 20;
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  std::array<char, 65536> buffer{};
-  while (file && text.size() <= limit) {
-    file.read(buffer.data(), buffer.size());
-    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected a DBC file");
-  if (text.size() > limit) throw BadInput(path + ": longer than 16 MiB; expected a DBC file");
+  std::string text = read_whole(path, 16, "a DBC file");
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }

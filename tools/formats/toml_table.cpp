@@ -1,10 +1,10 @@
 #include "formats/toml_table.hpp"
 
-#include <fstream>
 #include <sstream>
 
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
+#include "formats/whole_file.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -55,14 +55,7 @@ std::string shown(const toml::node& node) {
 }  // namespace
 
 std::string read_toml_text(const std::string& path, const std::string& kind) {
-  constexpr std::size_t most = std::size_t{1} << 20;
-  std::ifstream file(path, std::ios::binary);
-  std::string text(most + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file.is_open() || file.bad()) throw BadInput(path + ": cannot be read; expected " + kind + " (TOML)");
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > most) throw BadInput(path + ": longer than 1 MiB; expected " + kind + " (TOML)");
-  return text;
+  return read_whole(path, 1, kind + " (TOML)");
 }
 
 toml::table parse_toml(const std::string& text, const std::string& path) {

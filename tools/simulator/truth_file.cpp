@@ -1,8 +1,8 @@
 // truth.json, out and in.
 #include "formats/bad_input.hpp"
+#include "formats/whole_file.hpp"
 #include "simulator/truth.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace curbline::tools {
@@ -11,9 +11,6 @@ using Json = nlohmann::ordered_json;
 
 static void to_json(Json& json, const Point2& p) {
   json = Json::array({p.x, p.y});
-}
-static void from_json(const Json& json, Point2& p) {
-  p = {json.at(0).get<double>(), json.at(1).get<double>()};
 }
 
 namespace {
@@ -59,30 +56,80 @@ Json obstacles_json(const Truth& truth) {
   return out;
 }
 
-void take(const Json& json, Truth& truth) {
-  const auto number = [](const Json& owner, const char* key) { return owner.at(key).get<double>(); };
-  const auto text = [](const Json& owner, const char* key) { return owner.at(key).get<std::string>(); };
-  const auto polygon = [](const Json& owner) { return owner.at("polygon_m").get<Polygon>(); };
-  truth.start_time_s = number(json, "start_time_s");
-  for (const Json& p : json.at("planes")) {
-    truth.planes.push_back({text(p, "name"), {number(p, "z0_m"), number(p, "sx"), number(p, "sy")}});
+/// A part of the file and the way to it, "curbs[3].x0_m", for errors.
+class Part {
+ public:
+  Part(const Json& json, std::string file, std::string name = {})
+      : json_(json), file_(std::move(file)), name_(std::move(name)) {}
+
+  Part at(const std::string& key) const {
+    const std::string name = name_.empty() ? key : name_ + "." + key;
+    if (!json_.is_object() || !json_.contains(key)) throw BadInput(file_ + ": " + name + " is missing; " + expected);
+    return {json_.at(key), file_, name};
   }
-  for (const Json& r : json.at("regions")) {
-    truth.regions.push_back({text(r, "name"), polygon(r), r.at("plane").get<int>()});
-    truth.planes.at(static_cast<std::size_t>(truth.regions.back().plane));  // throws if there is no such plane
+  std::vector<Part> parts() const {
+    check(json_.is_array(), "a list");
+    std::vector<Part> out;
+    for (const Json& part : json_) out.emplace_back(part, file_, name_ + "[" + std::to_string(out.size()) + "]");
+    return out;
   }
-  for (const Json& c : json.at("curbs")) {
-    truth.curbs.push_back({{number(c, "x0_m"), number(c, "y0_m")},
-                           {number(c, "x1_m"), number(c, "y1_m")},
-                           number(c, "step0_m"),
-                           number(c, "step1_m"),
-                           number(c, "left_z_m"),
-                           number(c, "right_z_m"),
-                           number(c, "height_m"),
-                           text(c, "kind")});
+  double number(const std::string& key) const { return at(key).number(); }
+  double number() const {
+    check(json_.is_number(), "a number");
+    return json_.get<double>();
   }
-  for (const Json& o : json.at("obstacles")) {
-    truth.obstacles.push_back({text(o, "name"), polygon(o)});
+  std::string text(const std::string& key) const {
+    const Part part = at(key);
+    part.check(part.json_.is_string(), "a string");
+    return part.json_.get<std::string>();
+  }
+  /// Below `count`.
+  int index(const std::string& key, std::size_t count) const {
+    const Part part = at(key);
+    part.check(part.json_.is_number_unsigned() && part.json_.get<std::size_t>() < count, "the index of a plane");
+    return part.json_.get<int>();
+  }
+  Polygon polygon(const std::string& key) const {
+    Polygon out;
+    for (const Part& corner : at(key).parts()) {
+      const std::vector<Part> xy = corner.parts();
+      corner.check(xy.size() == 2, "[x, y]");
+      out.push_back({xy[0].number(), xy[1].number()});
+    }
+    return out;
+  }
+
+  static constexpr const char* expected = "expected what simulate wrote";
+
+ private:
+  void check(bool good, const char* kind) const {
+    if (!good) throw BadInput(file_ + ": " + name_ + " is not " + kind + "; " + expected);
+  }
+
+  const Json& json_;
+  std::string file_, name_;
+};
+
+void take(const Part& file, Truth& truth) {
+  truth.start_time_s = file.number("start_time_s");
+  for (const Part& p : file.at("planes").parts()) {
+    truth.planes.push_back({p.text("name"), {p.number("z0_m"), p.number("sx"), p.number("sy")}});
+  }
+  for (const Part& r : file.at("regions").parts()) {
+    truth.regions.push_back({r.text("name"), r.polygon("polygon_m"), r.index("plane", truth.planes.size())});
+  }
+  for (const Part& c : file.at("curbs").parts()) {
+    truth.curbs.push_back({{c.number("x0_m"), c.number("y0_m")},
+                           {c.number("x1_m"), c.number("y1_m")},
+                           c.number("step0_m"),
+                           c.number("step1_m"),
+                           c.number("left_z_m"),
+                           c.number("right_z_m"),
+                           c.number("height_m"),
+                           c.text("kind")});
+  }
+  for (const Part& o : file.at("obstacles").parts()) {
+    truth.obstacles.push_back({o.text("name"), o.polygon("polygon_m")});
   }
 }
 
@@ -99,16 +146,10 @@ void write_truth(std::ostream& out, const Truth& truth) {
 
 Truth read_truth(const std::string& dir) {
   const std::string path = dir + "/truth.json";
-  std::ifstream in(path);
-  if (!in) {
-    throw BadInput(path + ": cannot be read; expected what simulate wrote");
-  }
+  const Json json = Json::parse(read_whole(path, 1024, "what simulate wrote"), nullptr, false);
+  if (json.is_discarded()) throw BadInput(path + ": no JSON, or cut; " + Part::expected);
   Truth truth;
-  try {
-    take(Json::parse(in), truth);
-  } catch (const std::exception& error) {
-    throw BadInput(path + ": " + error.what() + "; expected what simulate wrote");
-  }
+  take({json, path}, truth);
   return truth;
 }
 
