@@ -171,6 +171,13 @@ TEST_CASE("program: a laser at a fixed tilt maps as the robot drives, without a 
 }
 
 /// The curb that the drive of `city` passes in its first 20 s: the near rim of a bed, 8 cm high, at the window's side.
+TEST_CASE("program: a CAN log beside a laser at a fixed tilt is told as not read") {
+  const Recording drive("city", "fixed_tilt", {"--duration", "0.5"});
+  const Outcome outcome = curbline(drive.replay() + Words{"--can", drive.path("none.log")});
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err == drive.path("none.log") + ": not read; the tilt is fixed\n");
+}
+
 TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind the window") {
   const Recording logs("city", "utm30lx", {"--duration", "20"});
   replay(logs);

@@ -214,14 +214,15 @@ TEST_CASE("program: a window of more than 512 cells is refused") {
 
 TEST_CASE("program: a speed and a duration that make no sense are wrong usage") {
   const Recording logs("street", "utm30lx", {"--duration", "0.1"});
-  for (const std::string bad : {"fast", "0", "-1", "nan", "1x"}) {
-    check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}), "--speed");
+  for (const std::string bad : {"fast", "0", "-1", "nan", "1x", "inf"}) {
+    check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}),
+                      "--speed: " + bad + "; expected max or a finite number above 0\n");
   }
-  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300"}) {
+  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300", "5s", ""}) {
     const TemporaryDirectory out;
     check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
                                 out.path("o"), "--duration", bad}),
-                      "--duration");
+                      "--duration: " + bad + "; expected seconds above 0, at most a day\n");
     CHECK(names_in(out.path("")).empty());
   }
 }

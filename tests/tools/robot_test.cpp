@@ -191,6 +191,12 @@ TEST_CASE("robot: a wrong type is refused with what was expected") {
   CHECK(error_in("[[window]]\nrows = 40\n") == "r.toml:1: window is of type array; expected a table");
 }
 
+TEST_CASE("robot: an angle for a fixed tilt wants to be told whether the tilt is fixed") {
+  CHECK(error_in("[tilt]\nlatency_s = 0\nfixed_tilt_rad = 0.5\n") ==
+        "r.toml:3: tilt.fixed_tilt_rad is without fixed; expected fixed = true or false beside it");
+  CHECK_FALSE(parsed("[tilt]\nfixed = false\nfixed_tilt_rad = 0.5\n").tilt.fixed);
+}
+
 TEST_CASE("robot: values out of range are refused with the range") {
   CHECK(error_in("[laser]\nbeams = 0\n") == "r.toml:2: laser.beams is 0; expected a whole number from 1 to 2881");
   CHECK(error_in("[laser]\nbeams = 2882\n").starts_with("r.toml:2: laser.beams is 2882; expected"));

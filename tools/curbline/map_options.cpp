@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "curbline/checks.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "formats/atomic_file.hpp"
@@ -54,16 +55,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, Choice& ch
       throw CLI::ValidationError(option, word + "; expected one of " + words);
   };
   return command.add_option_function<std::string>(option, choose, help);
-}
-
-/// Numbers in [low, high].
-CLI::Validator within(double low, double high, const std::string& expected) {
-  const auto check = [=](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    return value >= low && value <= high && *end == '\0' ? "" : text + "; expected " + expected;
-  };
-  return CLI::Validator(check, "");
 }
 
 /// For an option of one value or two, which would take the values of two such options for its own; CLI11 puts an empty

@@ -218,6 +218,7 @@ std::string Replay::remarks() const {
                          shortest(robot_.laser.min_range_m) + " to " + shortest(robot_.laser.max_range_m));
   }
   const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
+  if (robot_.tilt.fixed && !logs_.can.empty()) say(logs_.can, "not read; the tilt is fixed");
   if (std::error_code none; logs_.poses.empty() && !is_scanner(logs_.scans) && std::filesystem::exists(poses, none))
     say(poses.string(), "not read, the robot was taken to stand; expected --poses");
   return text;

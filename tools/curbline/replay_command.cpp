@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "curbline/checks.hpp"
 #include "curbline/commands.hpp"
 #include "curbline/line_costs.hpp"
 #include "curbline/map_cloud.hpp"
@@ -43,21 +44,10 @@ class Pace {
 };
 
 /// Speed, 0 for max. A live bus sets the pace by its frames: it runs at 1, and scan lines are not held back.
-double parse_speed(const std::string& text, bool live) {
-  if (text.empty() || text == "max" || live) {
-    if (!live || text.empty() || text == "1") return 0;
-    throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
-  }
-  std::size_t used = 0;
-  double speed = 0;
-  try {
-    speed = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used != text.size() || !(speed > 0))
-    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
-  return speed;
+double speed_of(const std::string& text, bool live) {
+  if (text.empty() || (live && text == "1")) return 0;
+  if (!live) return parse_speed(text);
+  throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
 }
 
 bool same_curb(const MapCurb& a, const MapCurb& b) {
@@ -120,7 +110,7 @@ void check_files(const Options& o) {
 
 void run(const Options& o) {
   check_files(o);
-  Pace pace(parse_speed(o.speed, live_interface(o.logs.can).has_value()));
+  Pace pace(speed_of(o.speed, live_interface(o.logs.can).has_value()));
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
   apply_window(o.map, robot.window);

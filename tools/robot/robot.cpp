@@ -25,6 +25,8 @@ void read_tilt(TomlTable table, Robot& robot) {
   TiltSettings& tilt = robot.tilt;
   table.read("fixed", tilt.fixed);
   table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, {-3.14, 3.14});
+  if (table.has("fixed_tilt_rad") && !table.has("fixed"))
+    table.refuse("fixed_tilt_rad", "is without fixed; expected fixed = true or false beside it");
   table.read("latency_s", tilt.latency_s, {-1.0, 1.0});
   table.read("latency_sd_s", tilt.latency_sd_s, {0.0, 1.0});
   table.read("angle_sd_rad", tilt.angle_sd_rad, {0.0, 0.1});

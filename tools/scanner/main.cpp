@@ -1,12 +1,12 @@
 // curbline-scanner: a simulated laser scanner to connect to.
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <charconv>
 #include <csignal>
 #include <iostream>
 #include <memory>
 #include <optional>
 
+#include "curbline/checks.hpp"
 #include "curbline/run_program.hpp"
 #include "scanner/server.hpp"
 
@@ -32,18 +32,8 @@ std::uint16_t port_of(const Options& o) {
   return o.port.value_or(o.protocol == "scip2" ? 10940 : 2112);
 }
 
-double speed_of(const std::string& text) {
-  if (text == "max") return 0;
-  double speed = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), speed);
-  if (failed != std::errc{} || end != text.data() + text.size() || !(speed > 0)) {
-    throw CLI::ValidationError("--speed", text + "; expected max or a number above 0");
-  }
-  return speed;
-}
-
 void run(const Options& o) {
-  const double speed = speed_of(o.speed);
+  const double speed = parse_speed(o.speed);
   if (o.scene.empty() == o.scans.empty()) throw CLI::ValidationError("--scene", "expected it or --scans, and not both");
   if (o.scene.empty() != o.robot.empty())
     throw CLI::ValidationError("--robot", "expected it with --scene, and only there");
@@ -76,7 +66,8 @@ int main(int argc, char** argv) {
       "--scene", o->scene,
       "a scene that ships, by its name, or a scene file (TOML): its lines are those that `curbline simulate` writes");
   app.add_option("--robot", o->robot, "robot description (TOML), for --scene");
-  app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)");
+  app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)")
+      ->check(whole_number(0, 65535));
   app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
       ->capture_default_str();
   app.callback([o] { run(*o); });

@@ -1,0 +1,19 @@
+// What the values of options are checked with, of all programs: each says of a bad one what was expected.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+namespace curbline::tools {
+
+/// Numbers in [low, high]; `expected` says so for the user, with the unit.
+CLI::Validator within(double low, double high, const std::string& expected);
+
+/// Of 64 bits. CLI11 takes -1 for the greatest.
+CLI::Validator whole_number(std::uint64_t low = 0, std::uint64_t high = UINT64_MAX);
+
+/// Of --speed: times as fast as the log, 0 for max. Throws CLI::ValidationError.
+double parse_speed(const std::string& text);
+
+}  // namespace curbline::tools
