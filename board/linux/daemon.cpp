@@ -10,7 +10,7 @@
 
 #include "can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
-#include "formats/decimals.hpp"
+#include "formats/can_log.hpp"
 #include "heap_trap.hpp"
 
 namespace curbline::daemon {
@@ -99,7 +99,7 @@ void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
   if (status != socketcan::Status::ok) {
     throw BadInput(options.can + ": " + to_string(status) + "; expected a CAN interface, such as can0 or vcan0");
   }
-  wanted_tilt_ = "id " + tools::hexadecimal(robot.tilt_signal.id) + " on " + options.can +
+  wanted_tilt_ = tools::frame_of(robot.tilt_signal) + " on " + options.can +
                  (log_ ? ", with which the log of scan lines begins" : "");
 }
 

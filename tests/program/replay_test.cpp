@@ -93,6 +93,15 @@ TEST_CASE("program: positions without their SYNC are refused with what was expec
                 "expected id 0x80 before each");
 }
 
+TEST_CASE("program: a multiplexed tilt signal that no frame is, is told with the multiplexor's value") {
+  const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
+  std::string robot = read_file(shipped_robot("clausius"));
+  robot.replace(robot.find("node = 1\n"), 9, "node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n");
+  const std::string path = logs.directory().write("multiplexed.toml", robot);
+  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ",
+                "expected id 0x181 with multiplexor 9 as the robot's description has it");
+}
+
 TEST_CASE("program: a curb of 3 cm is found too") {
   const Recording logs("low_curb", "utm30lx");
   replay(logs);

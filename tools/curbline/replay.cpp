@@ -53,7 +53,7 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
            " have the tilt signal's id and none holds an angle; expected " +
            std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
   }
-  return "none of " + frames + " is the tilt signal; expected id " + hexadecimal(robot.tilt_signal.id) +
+  return "none of " + frames + " is the tilt signal; expected " + frame_of(robot.tilt_signal) +
          " as the robot's description has it";
 }
 

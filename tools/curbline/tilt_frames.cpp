@@ -6,7 +6,6 @@
 
 #include "curbline/recorded_times.hpp"
 #include "formats/bad_input.hpp"
-#include "formats/decimals.hpp"
 #include "socketcan/socketcan.hpp"
 
 namespace curbline::tools {
@@ -68,8 +67,8 @@ class LiveFrames final : public TiltFrames {
   void fail_silent() const override {
     const bool down = bus_.link() != socketcan::LinkState::up;
     throw BadInput(name_ + (down ? ": the interface is down or gone, and" : ":") + " no tilt frame for " +
-                   std::to_string((clock_.offset_ns() ? silence_ms : first_silence_ms) / 1000) + " s; expected id " +
-                   hexadecimal(signal_.id) + " as the robot's description has it");
+                   std::to_string((clock_.offset_ns() ? silence_ms : first_silence_ms) / 1000) + " s; expected " +
+                   frame_of(signal_) + " as the robot's description has it");
   }
 
   std::string remarks() const override {

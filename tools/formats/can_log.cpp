@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "candump/candump.hpp"
+#include "formats/decimals.hpp"
 
 namespace curbline::tools {
 
@@ -17,6 +18,11 @@ std::optional<can::Frame> CanLogReader::next() {
   }
   if (interface_name_.empty()) throw BadInput(path() + ": no CAN frame; expected at least one line of candump -L");
   return std::nullopt;
+}
+
+std::string frame_of(const can::Signal& signal) {
+  const std::string id = "id " + hexadecimal(signal.id);
+  return signal.multiplexor ? id + " with multiplexor " + std::to_string(signal.multiplexor->value) : id;
 }
 
 void write_can_frame(std::ostream& out, const can::Frame& frame, std::string_view interface_name) {

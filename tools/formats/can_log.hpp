@@ -7,6 +7,7 @@
 #include <string>
 
 #include "can/frame.hpp"
+#include "can/signal.hpp"
 #include "formats/line_reader.hpp"
 
 namespace curbline::tools {
@@ -27,6 +28,9 @@ class CanLogReader {
   LineReader source_;
   std::string interface_name_;
 };
+
+/// Which frame bears a signal, for the user: "id 0x181", "id 0x181 with multiplexor 9".
+std::string frame_of(const can::Signal& signal);
 
 /// Writes one line. The frame must be one that a bus carries; times are cut to the microsecond, as candump has them.
 void write_can_frame(std::ostream& out, const can::Frame& frame, std::string_view interface_name);
