@@ -109,6 +109,7 @@ void Daemon::run() {
   if (log_ && tilt_settings_.fixed) fixed_offset_ns_ = log_->front_ns() - now.host_ns;
   if (scanner_) scanner_->start();
   if (!clock_.guess().empty()) say(clock_.guess());
+  if (has_bus_ && tilt_settings_.fixed && !can_out_) say("the tilt is fixed: nothing is read from --can");
   say("ready, curbs at ", server_.address());
   service_.notify("READY=1");
   heap_calls_before_ = heap_calls();

@@ -171,6 +171,14 @@ TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is we
   }
 }
 
+TEST_CASE("daemon: a CAN interface that a robot at a fixed tilt has no use for is told", "[daemon]") {
+  const TemporaryDirectory directory;
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
+  Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", fixed});
+  CHECK(service.says("the tilt is fixed: nothing is read from --can\n"));
+  status_of(service.end());
+}
+
 TEST_CASE("daemon: a servo that falls silent is an error state, told once, on the socket and on CAN, until it reports",
           "[daemon]") {
   SocketCan receiver;
