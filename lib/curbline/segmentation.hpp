@@ -173,7 +173,8 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   };
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
-    if (a == b || a == no_node || b == no_node) return;
+    if (a == b) return;
+    if (a == no_node || b == no_node) return;  // asked apart, since most are one
     const Cell& from = dem.cell(static_cast<int>(link.from));
     const Cell& to = dem.cell(static_cast<int>(link.to));
     const Node end = join(a, b);

@@ -14,7 +14,7 @@ import drives  # noqa: E402
 import run_bus  # noqa: E402
 import run_drives  # noqa: E402
 
-CURB = struct.Struct("<8f4H")
+CURB = struct.Struct("<9f4H")
 COUNTERS = 18 * 4
 AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # of lib/can/curb_frames.hpp
 HALF_WIDTH = 0.5  # of template_robot/robot.hpp

@@ -73,12 +73,12 @@ class Scripts(unittest.TestCase):
         """Its error output."""
         words = {"streets": ["1"], "paper": ["--seeds", "1"], "long-drive": ["200"]}[script]
         running = subprocess.Popen([sys.executable, os.path.join(TOOLS, script), *words, "--out", folder], text=True, stdout=stdout,
-                                   env={**os.environ, "CURBLINE": program}, stderr=subprocess.PIPE)
+                                   env={**os.environ, "CURBLINE": program}, stderr=subprocess.PIPE, start_new_session=True)
         if interrupted_at is not None:
             give_up = time.monotonic() + 30
             while not os.path.exists(interrupted_at) and time.monotonic() < give_up:
                 time.sleep(0.01)
-            running.send_signal(signal.SIGINT)
+            os.killpg(running.pid, signal.SIGINT)  # to the script and what it runs, as a terminal does
         error = running.communicate(timeout=60)[1]
         self.assertEqual(running.returncode, status, error)
         self.assertEqual(error.count("\n"), 1, error)
