@@ -4,7 +4,7 @@
 #include <iostream>
 #include <memory>
 
-#include "curbline/outputs.hpp"
+#include "curbline/checks.hpp"
 #include "curbline/run_program.hpp"
 #include "daemon.hpp"
 #include "robot/robot.hpp"

@@ -45,7 +45,8 @@ class Dem {
 
   /// Takes a point into its cell; false if it lies outside the window, beyond Pose::furthest_m above or below, or has a
   /// value that is not finite. Its weight is the expected noise over its variance plus the ground's texture; none
-  /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones fade. O(1).
+  /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones
+  /// fade. O(1).
   bool add(const Point& point);
 
   /// What is known before any point; PlanePrior::common_share by what was found last.

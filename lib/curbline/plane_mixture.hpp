@@ -216,16 +216,15 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     PlaneMoments& moments = clean[l].inner;
     PlaneMoments& beside = clean[l].beside;
     if (!clean[l].wanted) continue;
-    const float points_a_cell = clean[l].points / clean[l].cells;
-    planes_[l].points_a_cell = points_a_cell;
+    planes_[l].points_a_cell = clean[l].points / clean[l].cells;
     if (moments.cells + beside.cells < settings_.min_cells) continue;
     if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
     moments.add(beside);
-    const float of_region_m2 = planes_[l].variance_m2;
-    planes_[l] =
+    Plane anew =
         clean[l].steep ? fit_plane(moments, dem.prior()) : fit_plane_to_means(moments, dem.prior(), dem.common_m2());
-    planes_[l].variance_m2 = of_region_m2;
-    planes_[l].points_a_cell = points_a_cell;
+    anew.variance_m2 = planes_[l].variance_m2;  // of the region
+    anew.points_a_cell = planes_[l].points_a_cell;
+    planes_[l] = anew;
   }
 }
 
@@ -337,9 +336,9 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
     if (!planes_[l].alive() || moments[l].cells < 3.0f) continue;
-    const float points_a_cell = planes_[l].points_a_cell;
-    planes_[l] = fit_plane(moments[l], dem.prior());
-    planes_[l].points_a_cell = points_a_cell;
+    Plane anew = fit_plane(moments[l], dem.prior());
+    anew.points_a_cell = planes_[l].points_a_cell;
+    planes_[l] = anew;
   }
 }
 

@@ -1,12 +1,11 @@
-// What a localisation that thinks better of itself has moved the poses by, against the map. Its poses step (PoseStepNews),
-// and where poses come seldom so do those of a robot that has met a kerb. The laser alone tells which of the two it
-// was: lines after the step look at ground that was mapped before it, and their heights lie off the map's by the step,
-// or not at all. Both likelihoods are multiplied up line by line until the one is twenty times the other; meanwhile a
-// Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if that is
-// likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less than
-// poses tremble, until both are one again.
-// Cost: 60 operations a point of the lines that are measured as poses begin to jump, and after a step until it is
-// decided: mostly one.
+// What a localisation that thinks better of itself has moved the poses by, against the map. Its poses step
+// (PoseStepNews), and where poses come seldom so do those of a robot that has met a kerb. The laser alone tells which
+// of the two it was: lines after the step look at ground that was mapped before it, and their heights lie off the map's
+// by the step, or not at all. Both likelihoods are multiplied up line by line until the one is twenty times the other;
+// meanwhile a Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if
+// that is likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less
+// than poses tremble, until both are one again. Cost: 60 operations a point of the lines that are measured as poses
+// begin to jump, and after a step until it is decided: mostly one.
 #pragma once
 
 #include <array>

@@ -43,9 +43,9 @@ struct PoseShift {
   }
 };
 
-/// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by going
-/// on from it as fast as they did. No robot does that, a localisation does; if poses come seldom a robot does, too.
-/// Until the next has come a pose that jumps may be either; one that jumps on withdraws the step.
+/// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by
+/// going on from it as fast as they did. No robot does that, a localisation does; if poses come seldom a robot does,
+/// too. Until the next has come a pose that jumps may be either; one that jumps on withdraws the step.
 struct PoseStepNews {
   enum class Kind { begun, confirmed, withdrawn } kind;
   PoseShift by{};  ///< of one that has begun

@@ -15,8 +15,8 @@ constexpr float sweep_share = 0.2f;
 /// Of lines on end that disagree with what is known, each by three standard deviations at least.
 constexpr int lines_of_a_step = 10;
 
-/// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have it
-/// known exactly, which is said of what is not estimated.
+/// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have
+/// it known exactly, which is said of what is not estimated.
 constexpr float least_share = 1e-7f;
 
 float within(float x, float bound) {

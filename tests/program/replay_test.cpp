@@ -57,12 +57,17 @@ TEST_CASE("program: curbs of 4 cm and more of the scenes are found, within half 
   }
 }
 
+/// The file of a shipped robot that has these lines of its tilt signal in place of its own.
+std::string robot_with_signal(const TemporaryDirectory& dir, const std::string& shipped, const std::string& lines) {
+  std::string text = read_file(shipped_robot(shipped));
+  text.replace(text.find("node = 1\n"), 9, lines);
+  return dir.write("signal.toml", text);
+}
+
 /// Labels of a recording by a robot whose description has these lines of its tilt signal.
 std::string labels_by_signal(const std::string& lines) {
   const TemporaryDirectory dir;
-  std::string text = read_file(shipped_robot("utm30lx"));
-  text.replace(text.find("node = 1\n"), 9, lines);
-  const std::string robot = dir.write("r.toml", text);
+  const std::string robot = robot_with_signal(dir, "utm30lx", lines);
   const Words simulate{"simulate", "--scene",       "straight_curb", "--robot", robot,
                        "--out",    dir.path("run"), "--duration",    "2"};
   REQUIRE(curbline(simulate).status == 0);
@@ -86,19 +91,16 @@ TEST_CASE("program: angles sampled on SYNC and sent later, or multiplexed, give 
 
 TEST_CASE("program: positions without their SYNC are refused with what was expected") {
   const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
-  std::string robot = read_file(shipped_robot("clausius"));
-  robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
-  const std::string path = logs.directory().write("sync.toml", robot);
-  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ",
+  const std::string robot = robot_with_signal(logs.directory(), "clausius", "node = 1\nsync_id = 0x80\n");
+  check_refused(curbline(logs.replay("robot", robot)), logs.path("can.log") + ": none of ",
                 "expected id 0x80 before each");
 }
 
 TEST_CASE("program: a multiplexed tilt signal that no frame is, is told with the multiplexor's value") {
   const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
-  std::string robot = read_file(shipped_robot("clausius"));
-  robot.replace(robot.find("node = 1\n"), 9, "node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n");
-  const std::string path = logs.directory().write("multiplexed.toml", robot);
-  check_refused(curbline(logs.replay("robot", path)), logs.path("can.log") + ": none of ",
+  const std::string robot =
+      robot_with_signal(logs.directory(), "clausius", "node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n");
+  check_refused(curbline(logs.replay("robot", robot)), logs.path("can.log") + ": none of ",
                 "expected id 0x181 with multiplexor 9 as the robot's description has it");
 }
 

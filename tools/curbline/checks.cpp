@@ -6,6 +6,14 @@
 
 namespace curbline::tools {
 
+CLI::Validator file_name() {
+  return not_empty("a file name");
+}
+
+CLI::Validator not_empty(const std::string& expected) {
+  return CLI::Validator([=](const std::string& name) { return name.empty() ? "empty; expected " + expected : ""; }, "");
+}
+
 CLI::Validator within(double low, double high, const std::string& expected) {
   const auto check = [=](const std::string& text) {
     char* end = nullptr;

@@ -7,6 +7,11 @@
 
 namespace curbline::tools {
 
+/// What an option that names a file or a directory is checked with: an empty name, as a shell's unset variable gives,
+/// would be taken for none.
+CLI::Validator file_name();
+CLI::Validator not_empty(const std::string& expected);  ///< the same, for other names
+
 /// Numbers in [low, high]; `expected` says so for the user, with the unit.
 CLI::Validator within(double low, double high, const std::string& expected);
 

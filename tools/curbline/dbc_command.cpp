@@ -1,8 +1,8 @@
 #include <iostream>
 #include <memory>
 
+#include "curbline/checks.hpp"
 #include "curbline/commands.hpp"
-#include "curbline/outputs.hpp"
 #include "formats/dbc.hpp"
 #include "robot/signal_dbc.hpp"
 

@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "curbline/checks.hpp"
 #include "curbline/commands.hpp"
 #include "curbline/evaluate.hpp"
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "curbline/checks.hpp"
 #include "curbline/commands.hpp"
 #include "curbline/host_pipeline.hpp"
 #include "curbline/map_cloud.hpp"
@@ -47,8 +48,7 @@ void add_map(CLI::App& app) {
   command
       ->add_option("cloud", o->cloud,
                    "point cloud, metres, in the frame of its laser or of a robot's base: .xyz .csv .pcd .bin; points "
-                   "that are not "
-                   "finite are passed over")
+                   "that are not finite are passed over")
       ->check(file_name())
       ->required();
   add_map_options(*command, o->map);

@@ -24,14 +24,6 @@ void check_apart(const NamedFile& output, const NamedFile& other) {
 
 }  // namespace
 
-CLI::Validator file_name() {
-  return not_empty("a file name");
-}
-
-CLI::Validator not_empty(const std::string& expected) {
-  return CLI::Validator([=](const std::string& name) { return name.empty() ? "empty; expected " + expected : ""; }, "");
-}
-
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
     if (output->path == "-")

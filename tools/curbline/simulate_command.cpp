@@ -6,7 +6,6 @@
 
 #include "curbline/checks.hpp"
 #include "curbline/commands.hpp"
-#include "curbline/outputs.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/simulate.hpp"
 

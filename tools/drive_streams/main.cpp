@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "curbline/checks.hpp"
 #include "curbline/outputs.hpp"
 #include "curbline/run_program.hpp"
 #include "drive_streams/drive_streams.hpp"
