@@ -12,8 +12,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "curbline/endpoint.hpp"
 #include "formats/bad_input.hpp"
+#include "program/endpoint.hpp"
 
 namespace curbline::daemon {
 namespace {

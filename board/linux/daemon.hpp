@@ -16,11 +16,11 @@
 
 #include "can/tilt_decoder.hpp"
 #include "curb_server.hpp"
-#include "curbline/host_pipeline.hpp"
-#include "curbline/recorded_times.hpp"
 #include "curbline/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
+#include "program/host_pipeline.hpp"
+#include "program/recorded_times.hpp"
 #include "reports.hpp"
 #include "robot/robot.hpp"
 #include "scan_log.hpp"

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <thread>
 
-#include "curbline/scanner_link.hpp"
 #include "line_inbox.hpp"
+#include "program/scanner_link.hpp"
 #include "scanner/live_scanner.hpp"
 
 namespace curbline::daemon {

@@ -1,5 +1,5 @@
 // Recorded times for frames that come over a bus again.
-#include "curbline/recorded_times.hpp"
+#include "program/recorded_times.hpp"
 
 #include "can/servo_presets.hpp"
 #include "formats_support.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "can/tilt_decoder.hpp"
-#include "curbline/host_pipeline.hpp"
+#include "program/host_pipeline.hpp"
 #include "reference/reference.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "curbline/checks.hpp"
-#include "curbline/run_program.hpp"
+#include "program/checks.hpp"
+#include "program/run_program.hpp"
 #include "scanner/server.hpp"
 
 namespace curbline::tools {

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "curbline/evaluate.hpp"
-#include "curbline/map_cloud.hpp"
-#include "curbline/replay.hpp"
 #include "evaluation/labels.hpp"
 #include "formats/cloud.hpp"
 #include "formats/regions.hpp"
 #include "formats/shipped.hpp"
+#include "program/evaluate.hpp"
+#include "program/map_cloud.hpp"
+#include "program/replay.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -1,9 +1,9 @@
 #include <iostream>
 #include <memory>
 
-#include "curbline/checks.hpp"
-#include "curbline/commands.hpp"
 #include "formats/dbc.hpp"
+#include "program/checks.hpp"
+#include "program/commands.hpp"
 #include "robot/signal_dbc.hpp"
 
 namespace curbline::tools {

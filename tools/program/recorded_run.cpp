@@ -1,10 +1,10 @@
-#include "curbline/recorded_run.hpp"
+#include "program/recorded_run.hpp"
 
 #include <cmath>
 #include <filesystem>
 
-#include "curbline/map_cloud.hpp"
-#include "curbline/replay.hpp"
+#include "program/map_cloud.hpp"
+#include "program/replay.hpp"
 
 namespace curbline::tools {
 namespace {

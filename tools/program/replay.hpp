@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "can/tilt_decoder.hpp"
-#include "curbline/host_pipeline.hpp"
-#include "curbline/scan_source.hpp"
-#include "curbline/tilt_frames.hpp"
 #include "formats/trajectory.hpp"
 #include "picture/picture.hpp"
+#include "program/host_pipeline.hpp"
+#include "program/scan_source.hpp"
+#include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {

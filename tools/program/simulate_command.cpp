@@ -4,8 +4,8 @@
 #include <limits>
 #include <memory>
 
-#include "curbline/checks.hpp"
-#include "curbline/commands.hpp"
+#include "program/checks.hpp"
+#include "program/commands.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/simulate.hpp"
 

@@ -1,4 +1,4 @@
-#include "curbline/checks.hpp"
+#include "program/checks.hpp"
 
 #include <charconv>
 #include <cmath>

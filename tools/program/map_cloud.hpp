@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "curbline/map_options.hpp"
 #include "curbline/point.hpp"
 #include "map/map.hpp"
+#include "program/map_options.hpp"
 
 namespace curbline::tools {
 

@@ -1,4 +1,4 @@
-#include "curbline/recorded_times.hpp"
+#include "program/recorded_times.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,9 +1,9 @@
-#include "curbline/scanner_link.hpp"
+#include "program/scanner_link.hpp"
 
 #include "cola/session.hpp"
-#include "curbline/endpoint.hpp"
 #include "formats/bad_input.hpp"
 #include "lms200/session.hpp"
+#include "program/endpoint.hpp"
 #include "scip2/session.hpp"
 
 namespace curbline::tools {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "curbline/outputs.hpp"
 #include "curbline/settings.hpp"
 #include "formats/bad_input.hpp"
 #include "map/map.hpp"
 #include "picture/picture.hpp"
+#include "program/outputs.hpp"
 #include "reference/reference.hpp"
 
 namespace curbline::tools {

@@ -1,4 +1,4 @@
-#include "curbline/line_costs.hpp"
+#include "program/line_costs.hpp"
 
 #include "formats/decimals.hpp"
 

@@ -1,4 +1,4 @@
-#include "curbline/scan_source.hpp"
+#include "program/scan_source.hpp"
 
 #include <signal.h>
 

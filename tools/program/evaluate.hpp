@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "curbline/map_options.hpp"
+#include "program/map_options.hpp"
 
 namespace curbline::tools {
 

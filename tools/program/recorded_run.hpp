@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "curbline/map_options.hpp"
 #include "evaluation/scores.hpp"
 #include "picture/picture.hpp"
+#include "program/map_options.hpp"
 #include "simulator/truth.hpp"
 
 namespace curbline::tools {

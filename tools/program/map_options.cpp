@@ -1,4 +1,4 @@
-#include "curbline/map_options.hpp"
+#include "program/map_options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,13 +9,13 @@
 #include <memory>
 #include <set>
 
-#include "curbline/checks.hpp"
 #include "curbline/dem.hpp"
-#include "curbline/host_pipeline.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/csv.hpp"
 #include "formats/decimals.hpp"
 #include "picture/picture.hpp"
+#include "program/checks.hpp"
+#include "program/host_pipeline.hpp"
 
 namespace curbline::tools {
 namespace {

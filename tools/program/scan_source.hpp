@@ -16,8 +16,8 @@
 #include <optional>
 #include <string>
 
-#include "curbline/scanner_link.hpp"
 #include "formats/carmen.hpp"
+#include "program/scanner_link.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::tools {

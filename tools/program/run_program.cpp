@@ -1,4 +1,4 @@
-#include "curbline/run_program.hpp"
+#include "program/run_program.hpp"
 
 #include <exception>
 #include <iostream>

@@ -1,11 +1,11 @@
-#include "curbline/tilt_frames.hpp"
+#include "program/tilt_frames.hpp"
 
 #include <array>
 #include <chrono>
 #include <span>
 
-#include "curbline/recorded_times.hpp"
 #include "formats/bad_input.hpp"
+#include "program/recorded_times.hpp"
 #include "socketcan/socketcan.hpp"
 
 namespace curbline::tools {

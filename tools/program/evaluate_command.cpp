@@ -1,9 +1,9 @@
 #include <iostream>
 #include <memory>
 
-#include "curbline/checks.hpp"
-#include "curbline/commands.hpp"
-#include "curbline/evaluate.hpp"
+#include "program/checks.hpp"
+#include "program/commands.hpp"
+#include "program/evaluate.hpp"
 
 namespace curbline::tools {
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include "curbline/evaluate.hpp"
-#include "curbline/recorded_run.hpp"
 #include "evaluation/curbs.hpp"
 #include "formats/csv.hpp"
+#include "program/evaluate.hpp"
+#include "program/recorded_run.hpp"
 
 namespace curbline::tools {
 namespace {

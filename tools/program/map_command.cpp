@@ -3,13 +3,13 @@
 #include <optional>
 #include <span>
 
-#include "curbline/checks.hpp"
-#include "curbline/commands.hpp"
-#include "curbline/host_pipeline.hpp"
-#include "curbline/map_cloud.hpp"
-#include "curbline/map_options.hpp"
 #include "formats/cloud.hpp"
 #include "formats/decimals.hpp"
+#include "program/checks.hpp"
+#include "program/commands.hpp"
+#include "program/host_pipeline.hpp"
+#include "program/map_cloud.hpp"
+#include "program/map_options.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -5,13 +5,13 @@
 #include <optional>
 #include <thread>
 
-#include "curbline/checks.hpp"
-#include "curbline/commands.hpp"
-#include "curbline/line_costs.hpp"
-#include "curbline/map_cloud.hpp"
-#include "curbline/map_options.hpp"
-#include "curbline/replay.hpp"
 #include "formats/csv.hpp"
+#include "program/checks.hpp"
+#include "program/commands.hpp"
+#include "program/line_costs.hpp"
+#include "program/map_cloud.hpp"
+#include "program/map_options.hpp"
+#include "program/replay.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "curbline/host_pipeline.hpp"
+#include "program/host_pipeline.hpp"
 
 #include <algorithm>
 #include <cmath>

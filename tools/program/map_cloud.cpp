@@ -1,4 +1,4 @@
-#include "curbline/map_cloud.hpp"
+#include "program/map_cloud.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "curbline/host_pipeline.hpp"
 #include "peers/peers.hpp"
+#include "program/host_pipeline.hpp"
 
 namespace curbline::tools {
 

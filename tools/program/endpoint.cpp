@@ -1,4 +1,4 @@
-#include "curbline/endpoint.hpp"
+#include "program/endpoint.hpp"
 
 #include <charconv>
 

@@ -1,4 +1,4 @@
-#include "curbline/outputs.hpp"
+#include "program/outputs.hpp"
 
 #include <filesystem>
 

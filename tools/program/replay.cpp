@@ -1,4 +1,4 @@
-#include "curbline/replay.hpp"
+#include "program/replay.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "curbline/counters.hpp"
-#include "curbline/replay.hpp"
 #include "formats/atomic_file.hpp"
+#include "program/replay.hpp"
 
 namespace curbline::tools {
 
