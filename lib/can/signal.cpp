@@ -107,7 +107,7 @@ bool valid(const Signal& s) {
     const Bits bits = bits_of(*s.multiplexor);
     if (!fits_a_frame(bits) || (bits.length < 64 && s.multiplexor->value >> bits.length != 0)) return false;
   }
-  if (s.max_bytes > 64 || bytes_needed(s) > s.max_bytes) return false;
+  if (s.max_bytes > 64 || s.min_bytes > s.max_bytes || bytes_needed(s) > s.max_bytes) return false;
   return std::isfinite(s.scale) && s.scale != 0.0 && std::isfinite(s.offset);
 }
 

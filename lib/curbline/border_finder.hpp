@@ -49,8 +49,7 @@ class BorderFinder {
   void find(Borders<limits>& borders, Counters& counters);
 
  private:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   using Border = typename Borders<limits>::Border;
 
   static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
@@ -61,7 +60,7 @@ class BorderFinder {
   };
   /// A cell of a line and its plane.
   struct Place {
-    LabelType label = none;
+    Label label = none;
     std::int16_t along = 0;
   };
   /// From a cell of one plane to one of another.
@@ -87,7 +86,7 @@ class BorderFinder {
   Border border_of(const Brink& brink) const;
   Border border_at(const Line& line, float along_m) const;
   Border border_at(const End& end, float along_m) const;
-  Beside beside(const Line& line, float border_m, int toward, LabelType label) const;
+  Beside beside(const Line& line, float border_m, int toward, Label label) const;
   float middle_m(const Gap& gap) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
@@ -126,7 +125,7 @@ class BorderFinder {
 /// Does a cell bear a plane that a curb may have for a side? A label may outlive its plane by a line.
 template <Limits limits>
 bool BorderFinder<limits>::bears_ground(int slot) const {
-  const LabelType label = field_.label(slot);
+  const Label label = field_.label(slot);
   return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.may_be_veil(label);
 }
 
@@ -135,7 +134,7 @@ bool BorderFinder<limits>::bears_ground(int slot) const {
 template <Limits limits>
 bool BorderFinder<limits>::is_veil(int slot) const {
   if (mixture_.region_label(slot) == none) return true;
-  const LabelType label = field_.label(slot);
+  const Label label = field_.label(slot);
   return mixture_.on_ground(slot) ? label != none && mixture_.may_be_veil(label) : !mixture_.covered(slot);
 }
 
@@ -167,7 +166,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   Place before_in_row;
   int row = -1;
   dem_.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = field_.label(s);
+    const Label label = field_.label(s);
     if (!bears_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) {
       if (is_veil(s)) end_before({0, j}, i), end_before({1, i}, j);
       return;
@@ -232,7 +231,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 /// Of two cells after the one that a border lies in, along the axis (toward 1) or against it (-1). One that holds more
 /// than the side's plane may lie before them.
 template <Limits limits>
-Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, LabelType label) const {
+Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
   const Plane& plane = mixture_.plane(label);
   const float slope_m2 = dem_.slope_m2(plane);
   const auto lies_alone = [&](int along) {
@@ -291,7 +290,7 @@ auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const
   const int before = dem_.next_valid(slot(line, first_of_veil), direction(line.axis, -toward), settings_.link_reach);
   const int edge = first_of_veil - toward * before;
   if (before == 0 || !bears_ground(slot(line, edge))) return {};
-  const auto on_plane = [&](int along, LabelType label) {
+  const auto on_plane = [&](int along, Label label) {
     return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
   };
   int last = first_of_veil;
@@ -302,7 +301,7 @@ auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const
     if (!is_veil(s)) break;
     last = next;
   }
-  const LabelType label = field_.label(slot(line, edge));
+  const Label label = field_.label(slot(line, edge));
   if (!on_plane(edge, label) || on_plane(last, label) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
   return {{line, {label, static_cast<std::int16_t>(edge)}, toward}, last};
 }

@@ -15,7 +15,6 @@ namespace curbline {
 template <Limits limits>
 class Borders {
  public:
-  using LabelType = Label<limits>;
   using Index = std::uint16_t;
 
   struct Border {
@@ -24,9 +23,9 @@ class Borders {
     float half_gap_m;                ///< between the cells of the one and the other
     float drop_m;                    ///< of a brink: to the lowest that is seen behind it; else 0
     Beside beside_low, beside_high;  ///< of the sides of `low` and `high`
-    LabelType low, high;  ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
-    std::int8_t axis;     ///< 0: found along x, 1: along y
-    std::int8_t sign;     ///< +1 if `high` lies in the positive direction of the axis
+    Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
+    std::int8_t axis;  ///< 0: found along x, 1: along y
+    std::int8_t sign;  ///< +1 if `high` lies in the positive direction of the axis
     bool chained;
     Index next_in_cell;  ///< another border in the same cell
   };

@@ -64,10 +64,9 @@ class CommonNoise {
   static constexpr int side = PatchResiduals::side;
   static constexpr std::size_t patches_in_row = (limits.cols + side - 1) / side;
   static constexpr std::size_t patch_rows = (limits.rows + side - 1) / side;
-  using LabelType = Label<limits>;
 
   struct Seen {
-    LabelType label = PlaneMixture<limits>::none;
+    Label label = PlaneMixture<limits>::none;
     int i = -2;
     float above_m = 0.0f;
   };
@@ -89,7 +88,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
   std::array<float, patches_in_row> growth_m2_s2{}, points{};
   std::array<Seen, limits.cols> last{};  // of each column
   const auto visit = [&](int i, int j, int s) {
-    const LabelType label = mixture.region_label(s);
+    const Label label = mixture.region_label(s);
     if (label == PlaneMixture<limits>::none) return;
     const Plane& plane = mixture.plane(label);
     const Cell& cell = dem.cell(s);

@@ -1,6 +1,6 @@
 // What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows, and begins anew at
 // 2^32, points of 1081 beams after a day: a reader takes the difference of two snapshots. A healthy robot sees nothing
-// but the first group and `no_returns` move.
+// but the first group, `no_returns` and `cells_deferred` move.
 #pragma once
 
 #include <cstdint>

@@ -35,13 +35,15 @@ template <Limits limits>
 IndexSet<Dem<limits>::capacity> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curbs) {
   IndexSet<Dem<limits>::capacity> crossed;
   const float cells_x = 1.0f / dem.cell_x_m(), cells_y = 1.0f / dem.cell_y_m();
+  const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // or the window has leapt away
   const auto insert = [&](int i, int j) {
     if (i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols()) crossed.insert(dem.slot(i, j));
   };
   for (const Curb& curb : curbs) {
-    if (!is_step(curb) || curb.far_label == no_label<limits>) continue;
+    if (!is_step(curb) || curb.far_label == no_label) continue;
     const float i0 = (curb.x0_m - dem.origin_x_m()) * cells_x, j0 = (curb.y0_m - dem.origin_y_m()) * cells_y;
     const float i1 = (curb.x1_m - dem.origin_x_m()) * cells_x, j1 = (curb.y1_m - dem.origin_y_m()) * cells_y;
+    if (!near(i0) || !near(j0) || !near(i1) || !near(j1)) continue;
     if (square(i1 - i0) >= square(j1 - j0)) {
       for_each_crossed(i0, j0, i1, j1, dem.rows(), insert);
     } else {

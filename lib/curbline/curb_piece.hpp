@@ -27,7 +27,7 @@ struct CurbStages {
   /// The other plane of a border. Where no ground is seen beyond the near one stands for it: no step but the drop, no
   /// known slope.
   const Plane& beyond(const typename Borders<limits>::Border& border) const {
-    return mixture.plane(border.high == no_label<limits> ? border.low : border.high);
+    return mixture.plane(border.high == no_label ? border.low : border.high);
   }
 };
 
@@ -52,7 +52,7 @@ struct CurbPiece {
   Beside beside_low{}, beside_high{};  ///< sums
   float borders = 0.0f;                ///< how many
   float place_variance_m2 = 0.0f;      ///< of a border, across the line
-  float middle_variance_m2 = 0.0f;     ///< of the line's middle, across it
+  float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
   float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
   bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
   bool low_is_right = false;           ///< of the line, from its first end to its second
@@ -68,17 +68,23 @@ struct CurbPiece {
   /// middle of the widest gap that a chain bridges, nor than a quarter of its length, where the variance of where it
   /// lies has doubled.
   void go_on(const Stages& stages, const Border& border, int link_reach, bool at_start);
+  /// Mean square of how far a step's height, if it is wrong, shifts the line: each cell of the gap tells by its own
+  /// height where in it the edge lies, and is then off by half of that share of the step; at most by half a gap.
+  float shifted_m2(float step_m, float height_variance_m2) const {
+    const float share = height_variance_m2 / square(step_m);
+    return square(0.5f * gap_m) * (share < 1.0f ? share : 1.0f);
+  }
   /// Does it look from the right of the line?
   bool has_right(const Viewpoint& view) const {
     return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
   }
   /// From where the lower side of a piece was seen last: the mean of its cells next to the borders.
   static Viewpoint seen_from(const Stages& stages, const Borders<limits>& borders, int first, int last, int link_reach,
-                             Label<limits> lower);
+                             Label lower);
 
  private:
   enum class Side : std::uint8_t { unseen, own, other };
-  static Side side(const Stages& stages, float x_m, float y_m, Label<limits> own);
+  static Side side(const Stages& stages, float x_m, float y_m, Label own);
 };
 
 template <Limits limits>
@@ -108,7 +114,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
   // Each lies anywhere in its gap, on its own; those without a far plane as little known as one of them.
-  piece.middle_variance_m2 = (1.0f / 3) * (a.high == no_label<limits> ? n : 1.0f) / fit.weight();
+  piece.borders_variance_m2 = (1.0f / 3) * (a.high == no_label ? n : 1.0f) / fit.weight();
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
@@ -116,7 +122,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
                              : fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
   const float dx_m = piece.line.x1_m - piece.line.x0_m, dy_m = piece.line.y1_m - piece.line.y0_m;
   piece.low_is_right = dx_m * toward_y - dy_m * toward_x >= 0.0f;
-  piece.low_is_near = a.high == no_label<limits> || piece.low_is_right == piece.has_right(stages.view);
+  piece.low_is_near = a.high == no_label || piece.low_is_right == piece.has_right(stages.view);
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
@@ -137,12 +143,12 @@ bool CurbPiece<limits>::even(const Stages& stages, const Border& border, float d
 
 /// What is seen of one side of a line, which should be of the plane `own`.
 template <Limits limits>
-auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label<limits> own) -> Side {
+auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label own) -> Side {
   const Dem<limits>& dem = stages.dem;
   const int slot = dem.slot_at(dem.origin_x_m() + x_m, dem.origin_y_m() + y_m);
   if (slot < 0 || !dem.cell(slot).valid() || !stages.mixture.on_ground(slot)) return Side::unseen;
-  const Label<limits> label = stages.field.label(slot);
-  return label == own ? Side::own : label == no_label<limits> ? Side::unseen : Side::other;
+  const Label label = stages.field.label(slot);
+  return label == own ? Side::own : label == no_label ? Side::unseen : Side::other;
 }
 
 template <Limits limits>
@@ -173,7 +179,7 @@ void CurbPiece<limits>::go_on(const Stages& stages, const Border& border, int li
 
 template <Limits limits>
 Viewpoint CurbPiece<limits>::seen_from(const Stages& stages, const Borders<limits>& borders, int first, int last,
-                                       int link_reach, Label<limits> lower) {
+                                       int link_reach, Label lower) {
   const Dem<limits>& dem = stages.dem;
   if (!dem.seen_from_several()) return stages.view;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;

@@ -254,7 +254,7 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
 /// they lie.
 template <Limits limits>
 float CurbTracer<limits>::more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece) {
-  const float reach_m2 = stages.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2(), plane.points_a_cell);
+  const float reach_m2 = stages.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
   const float more_m2 = stages.dem.common_m2(reach_m2) - plane.fit_variance_m2;
   return more_m2 > 0.0f ? more_m2 / plane.fit_variance_m2 * plane.height_variance_m2(piece.x_m, piece.y_m) : 0.0f;
 }
@@ -267,7 +267,7 @@ float CurbTracer<limits>::leave_shadow(const Stages& stages, const Borders<limit
   const bool down = curb.height_m < 0.0f;
   const std::uint16_t upper = down ? curb.near_label : curb.far_label, lower = down ? curb.far_label : curb.near_label;
   const Viewpoint view =
-      Piece::seen_from(stages, borders, first, last, settings_.link_reach, static_cast<Label<limits>>(lower));
+      Piece::seen_from(stages, borders, first, last, settings_.link_reach, static_cast<Label>(lower));
   const bool upper_is_right = (upper == borders.at(first).low) == piece.low_is_right;
   if (piece.has_right(view) != upper_is_right) return 0.0f;
   const float above_m = view.z_m - stages.mixture.plane(upper).height_m(piece.x_m, piece.y_m);
@@ -281,7 +281,7 @@ const Plane& CurbTracer<limits>::nearest_ground(const Stages& stages) {
   int nearest = 0;
   float least_m2 = -1.0f;
   stages.dem.for_each_valid([&](int i, int j, int s) {
-    if (stages.field.label(s) == no_label<limits> || !stages.mixture.on_ground(s)) return;
+    if (stages.field.label(s) == no_label || !stages.mixture.on_ground(s)) return;
     const float away_m2 = square((static_cast<float>(i) + 0.5f) * stages.dem.cell_x_m() - stages.view.x_m) +
                           square((static_cast<float>(j) + 0.5f) * stages.dem.cell_y_m() - stages.view.y_m);
     if (least_m2 >= 0.0f && away_m2 >= least_m2) return;
@@ -313,7 +313,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
   if (first == 0) piece.go_on(stages, border, settings_.link_reach, true);
   if (last == length - 1) piece.go_on(stages, border, settings_.link_reach, false);
   Curb curb = curb_of(stages, border, piece);
-  const bool one_sided = border.high == no_label<limits>;
+  const bool one_sided = border.high == no_label;
   if (one_sided && is_step(curb) && first == last) return;  // a row's or column's alone is no line
   float variance_m2 = height_variance_m2(stages, border, piece, one_sided ? curb.height_m : 0.0f);
   const float shadow_m =
@@ -327,7 +327,8 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
     }
   }
   if (obstacle(stages, curb, piece, work)) return;
-  curb.position_sd_m = square_root(piece.middle_variance_m2);
+  const float by_height_m2 = is_step(curb) && !one_sided ? piece.shifted_m2(curb.height_m, variance_m2) : 0.0f;
+  curb.position_sd_m = square_root(piece.borders_variance_m2 + by_height_m2);
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

@@ -47,5 +47,5 @@
 #include "curbline/passability.hpp"      // where a robot may drive
 #include "curbline/workspace.hpp"        // memory that stages share
 #include "curbline/math.hpp"             // exp, log, sine: the same bits everywhere
-#include "curbline/pipeline.hpp"         // all of it, on one screen
+#include "curbline/pipeline.hpp"         // all of it, in order
 // clang-format on

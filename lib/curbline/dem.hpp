@@ -19,15 +19,6 @@
 
 namespace curbline {
 
-/// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone is
-/// forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is seen.
-inline constexpr float memory = 0.25f;
-
-/// A cell's points count as no more than that, in favour of the newest. More tell nothing, since they share a part of
-/// their errors: of 512 that share a half all is known but 1 in 500. What has changed is known after as many, however
-/// long a robot has stood before it.
-inline constexpr float most_points = 512.0f;
-
 template <Limits limits>
 class Dem {
  public:
@@ -211,6 +202,14 @@ class Dem {
   }
 
  private:
+  /// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone
+  /// is forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is
+  /// seen.
+  static constexpr float memory = 0.25f;
+  /// A cell's points count as no more than that, in favour of the newest. More tell nothing, since they share a part of
+  /// their errors: of 512 that share a half all is known but 1 in 500. What has changed is known after as many, however
+  /// long a robot has stood before it.
+  static constexpr float most_points = 512.0f;
   static constexpr int growth_scale = 1024;
   /// Of a point: with others float loses what it tells, or what they do.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
@@ -288,10 +287,13 @@ void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
   const std::int32_t row = nearest_block(x_m / (settings_.cell_x_m * block_side), first_row_);
   const std::int32_t col = nearest_block(y_m / (settings_.cell_y_m * block_side), first_col_);
   if (row == first_row_ && col == first_col_) return;
+  const auto before = [](int place, std::int32_t first, std::int32_t now) {  // below 0: a great number
+    return static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) - static_cast<std::uint32_t>(now);
+  };
   for (int i = 0; i < settings_.rows; ++i) {
+    const bool row_stays = before(i, first_row_, row) < static_cast<std::uint32_t>(settings_.rows);
     for (int j = 0; j < settings_.cols; ++j) {
-      const std::int32_t r = first_row_ + i - row, c = first_col_ + j - col;
-      if (r >= 0 && c >= 0 && r < settings_.rows && c < settings_.cols) continue;
+      if (row_stays && before(j, first_col_, col) < static_cast<std::uint32_t>(settings_.cols)) continue;
       const int s = slot(i, j);
       if (!cell(s).valid()) continue;
       left(s);

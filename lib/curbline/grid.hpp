@@ -14,11 +14,9 @@ namespace curbline {
 template <Limits limits>
 using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
 
-/// Number of a plane. `no_label<limits>` says none.
-template <Limits limits>
-using Label = std::conditional_t<(limits.planes < 255), std::uint8_t, std::uint16_t>;
-template <Limits limits>
-inline constexpr Label<limits> no_label = static_cast<Label<limits>>(-1);
+/// Number of a plane, 0 to 254 at most; `no_label` says none.
+using Label = std::uint8_t;
+inline constexpr Label no_label = 255;
 
 /// Side of a block: the window moves by whole blocks, and leaves never cross their borders.
 inline constexpr int block_side = 4;

@@ -39,7 +39,7 @@ class Ground {
  public:
   void clear() { kind_.fill(Kind::ground); }
 
-  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, no_label<limits> if it has none;
+  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, no_label if it has none;
   /// changed(label) is called for each that is to be borne otherwise than before.
   template <typename LabelOf, typename Changed>
   void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of,
@@ -52,8 +52,7 @@ class Ground {
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   using PlaneFlags = std::array<bool, limits.planes>;
   enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
   static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
@@ -146,7 +145,7 @@ class Ground {
   };
   /// Cells of one plane that follow each other on a row or column.
   struct Run {
-    LabelType label;
+    Label label;
     int first, last;
     float first_height_m, last_height_m, lowest_m, highest_m;
     float scatter_m2, weight;
@@ -224,7 +223,7 @@ class Ground {
 };
 
 /// Calls end_run(before, run, next, line) for each run of cells along x (axis 0) or along y (axis 1); the label of a
-/// run that is not there is no_label<limits>.
+/// run that is not there is no_label.
 template <Limits limits>
 template <typename LabelOf, typename EndRun>
 void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run) {
@@ -236,7 +235,7 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& la
     for (int k = 0; k < length; ++k) {
       const int s = along_x ? dem.slot(k, line) : dem.slot(line, k);
       const Cell& cell = dem.cell(s);
-      const LabelType label = cell.valid() ? label_of(s) : none;
+      const Label label = cell.valid() ? label_of(s) : none;
       if (label == none) continue;
       const float h = cell.height_m;
       if (label != run.label) {
@@ -322,7 +321,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
     const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
     const Kind before = kind_[l];
     kind_[l] = kind;
-    if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<LabelType>(l));
+    if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<Label>(l));
   }
 }
 

@@ -17,20 +17,20 @@ namespace curbline {
 /// must part the plane of the readings from another that is seen, and lives: a curb may be older by a line. Else the
 /// cell's label.
 template <Limits limits>
-Label<limits> ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-                           std::span<const Curb> curbs, int i, int j) {
-  const Label<limits> of_readings = field.label(dem.slot(i, j));
-  if (of_readings == no_label<limits>) return of_readings;
+Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
+                   std::span<const Curb> curbs, int i, int j) {
+  const Label of_readings = field.label(dem.slot(i, j));
+  if (of_readings == no_label) return of_readings;
   const float x_m = dem.origin_x_m() + (static_cast<float>(i) + 0.5f) * dem.cell_x_m();
   const float y_m = dem.origin_y_m() + (static_cast<float>(j) + 0.5f) * dem.cell_y_m();
   float nearest_m = dem.cell_x_m() + dem.cell_y_m();
-  Label<limits> found = of_readings;
+  Label found = of_readings;
   for (const Curb& curb : curbs) {
-    if (!is_step(curb) || curb.far_label == no_label<limits>) continue;
+    if (!is_step(curb) || curb.far_label == no_label) continue;
     if (of_readings != curb.near_label && of_readings != curb.far_label) continue;
     const float to_far_m = to_far_side_m(curb, x_m, y_m);
     const float away_m = to_far_m < 0.0f ? -to_far_m : to_far_m;
-    const auto there = static_cast<Label<limits>>(to_far_m > 0.0f ? curb.far_label : curb.near_label);
+    const auto there = static_cast<Label>(to_far_m > 0.0f ? curb.far_label : curb.near_label);
     if (!(away_m < nearest_m) || !mixture.plane(there).alive()) continue;
     nearest_m = away_m;
     found = there;

@@ -31,21 +31,20 @@ enum class FieldScope : std::uint8_t {
 template <Limits limits>
 class LabelField {
  public:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   static constexpr int capacity = Dem<limits>::capacity;
 
   /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
-  struct Place {
+  struct Visit {
     Slot<limits> slot;
     std::array<Slot<limits>, directions> neighbour;
     std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
     std::uint8_t same_labels;                       ///< a bit a direction: the neighbour has the same candidates
-    typename LabelSite<limits>::Heard heard;
+    LabelSite::Heard heard;
   };
   /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
   struct Visits {
-    std::array<Place, Dem<limits>::capacity> place;
+    std::array<Visit, Dem<limits>::capacity> visit;
     std::array<Slot<limits>, Dem<limits>::capacity> index;
     int size;
   };
@@ -53,7 +52,7 @@ class LabelField {
   void init(const LabelSettings& settings);
 
   /// Forgets a cell that leaves the window.
-  void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = Site{}; }
+  void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = LabelSite{}; }
 
   /// The cells that were touched are to be looked at by the next update().
   void note_touched(const Dem<limits>& dem);
@@ -65,14 +64,13 @@ class LabelField {
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
-  LabelType label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
+  Label label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
   /// Posterior of a valid cell. O(label_candidates^2).
-  Belief<limits> belief(const Dem<limits>& dem, int i, int j) const;
+  Belief belief(const Dem<limits>& dem, int i, int j) const;
 
  private:
   static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
 
-  using Site = LabelSite<limits>;
   /// Bits; renew: its candidates too.
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
   using Planes = IndexSet<limits.planes>;
@@ -86,31 +84,31 @@ class LabelField {
   bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
   void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
-  Place place(const Dem<limits>& dem, int i, int j, int slot) const;
-  void hear_neighbours(Place& place) const;
-  void send(const Place& from, std::size_t direction, Visits& visits);
+  Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
+  void hear_neighbours(Visit& visit) const;
+  void send(const Visit& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
-  int follow_belief(const Place& place);
+  int follow_belief(const Visit& visit);
 
   LabelSettings settings_{};
   std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
   float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
   int band_ = 0;                                                        ///< first row to refresh in the next update()
   int first_row_ = 0;                                                   ///< whose cells may send first in it
-  std::array<typename Site::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
-  std::array<Site, Dem<limits>::capacity> sites_{};
+  std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};      ///< by distance
+  std::array<LabelSite, Dem<limits>::capacity> sites_{};
   std::array<std::uint8_t, Dem<limits>::capacity> flag_{};
 };
 
 template <Limits limits>
 void LabelField<limits>::init(const LabelSettings& settings) {
   settings_ = settings;
-  sites_.fill(Site{});
+  sites_.fill(LabelSite{});
   flag_.fill(quiet);
   near_by_.fill({});
   band_ = first_row_ = 0;
   for (std::size_t g = 1; g < coupling_.size(); ++g)
-    coupling_[g] = Site::coupling(settings.coupling / static_cast<float>(g));
+    coupling_[g] = LabelSite::coupling(settings.coupling / static_cast<float>(g));
 }
 
 template <Limits limits>
@@ -118,13 +116,12 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
                                Visits& visits, Counters& counters) {
   find_planes_near_by(dem, mixture);
   choose_visits(dem, mixture, scope, visits, counters);
-  const std::span<Place> places(visits.place.data(), static_cast<std::size_t>(visits.size));
-  for (Place& place : places) hear_neighbours(place);
+  const std::span<Visit> all(visits.visit.data(), static_cast<std::size_t>(visits.size));
+  for (Visit& visit : all) hear_neighbours(visit);
   // Each direction's messages follow its own order, so that one pass carries them across the window.
   for (std::size_t direction = 0; direction < directions; ++direction) {
     const bool forward = direction % 2 == 0;
-    for (std::size_t n = 0; n < places.size(); ++n)
-      send(places[forward ? n : places.size() - 1 - n], direction, visits);
+    for (std::size_t n = 0; n < all.size(); ++n) send(all[forward ? n : all.size() - 1 - n], direction, visits);
   }
   counters.messages += static_cast<std::uint32_t>(directions * visits.size);
   return follow_beliefs(dem, visits);
@@ -180,17 +177,17 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
     if ((flag & renew) != 0) choose_candidates(dem, mixture, i, j, s);
     flag = visited;
     visits.index[static_cast<std::size_t>(s)] = static_cast<Slot<limits>>(visits.size);
-    visits.place[static_cast<std::size_t>(visits.size++)] = place(dem, i, j, s);
+    visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
   });
 }
 
 template <Limits limits>
 bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
   if (mixture.relabelled(slot)) return true;
-  const Site& site = sites_[static_cast<std::size_t>(slot)];
+  const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
   if (mixture.any_fresh()) {
     if (mixture.region_label(slot) != none && mixture.fresh(mixture.region_label(slot))) return true;
-    for (const LabelType label : site.label) {
+    for (const Label label : site.label) {
       if (label != none && mixture.fresh(label)) return true;
     }
   }
@@ -209,7 +206,7 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
       Planes here;
       for (int k = 0; k < block_side * block_side; ++k) {
         const int s = dem.slot(i + k / block_side, j + k % block_side);
-        const LabelType label = mixture.region_label(s);
+        const Label label = mixture.region_label(s);
         if (dem.cell(s).valid() && label != none) here.insert(label);
       }
       for (int a = i - block_side; a <= i + block_side; a += block_side) {
@@ -231,7 +228,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const float cell_variance = dem.height_variance_m2(cell);
   // exp(-2 log potential): a logarithm each of those that are kept is enough.
   std::array<float, label_candidates> doubt{};
-  typename Site::Labels label{none, none, none};
+  LabelSite::Labels label{none, none, none};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
     if (!plane.alive() || !mixture.ground(k)) return;
@@ -248,64 +245,64 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
       label[c] = label[c - 1];
       doubt[c] = doubt[c - 1];
     }
-    label[rank] = static_cast<LabelType>(k);
+    label[rank] = static_cast<Label>(k);
     doubt[rank] = doubted;
   };
   near_by_[block_of(dem, i, j)].for_each(consider);
   if (label[0] == none) {
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
-  Site& site = sites_[static_cast<std::size_t>(slot)];
+  LabelSite& site = sites_[static_cast<std::size_t>(slot)];
   site.set_labels(label);
   site.node.fill(0);
   if (mixture.covered(slot)) return;
   for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
     const float below = -0.5f * log(doubt[c] / doubt[0]);
     site.node[c] =
-        static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{Site::node_scale}));
+        static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{LabelSite::node_scale}));
   }
 }
 
 template <Limits limits>
-auto LabelField<limits>::place(const Dem<limits>& dem, int i, int j, int slot) const -> Place {
-  Place place;
-  place.slot = static_cast<Slot<limits>>(slot);
+auto LabelField<limits>::visit_to(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
+  Visit visit;
+  visit.slot = static_cast<Slot<limits>>(slot);
   for (std::size_t d = 0; d < directions; ++d) {
     const int g = dem.next_valid(slot, static_cast<int>(d), settings_.link_reach);
-    place.distance[d] = static_cast<std::uint8_t>(g);
-    place.neighbour[d] = static_cast<Slot<limits>>(g == 0 ? slot : dem.slot(i + g * step_i[d], j + g * step_j[d]));
+    visit.distance[d] = static_cast<std::uint8_t>(g);
+    visit.neighbour[d] = static_cast<Slot<limits>>(g == 0 ? slot : dem.slot(i + g * step_i[d], j + g * step_j[d]));
   }
-  return place;
+  return visit;
 }
 
 /// When all candidates are chosen.
 template <Limits limits>
-void LabelField<limits>::hear_neighbours(Place& place) const {
-  const Site& site = sites_[place.slot];
-  place.same_labels = 0;
-  place.heard.fill(0);
+void LabelField<limits>::hear_neighbours(Visit& visit) const {
+  const LabelSite& site = sites_[visit.slot];
+  visit.same_labels = 0;
+  visit.heard.fill(0);
   for (std::size_t d = 0; d < directions; ++d) {
-    if (place.distance[d] == 0) continue;
-    const Site& other = sites_[place.neighbour[d]];
+    if (visit.distance[d] == 0) continue;
+    const LabelSite& other = sites_[visit.neighbour[d]];
     const bool same = site.label == other.label;
-    place.same_labels |= static_cast<std::uint8_t>(same << d);
-    site.hear(other.label, other.sent[d ^ 1u], same, 1, place.heard);
+    visit.same_labels |= static_cast<std::uint8_t>(same << d);
+    site.hear(other.label, other.sent[d ^ 1u], same, 1, visit.heard);
   }
 }
 
 /// To the next cell there, and to what it has heard, if it is news.
 template <Limits limits>
-void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& visits) {
+void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& visits) {
   const std::size_t distance = from.distance[direction];
   if (distance == 0) return;
-  Site& site = sites_[from.slot];
-  const Site& other = sites_[from.neighbour[direction]];
+  LabelSite& site = sites_[from.slot];
+  const LabelSite& other = sites_[from.neighbour[direction]];
   const bool same = (from.same_labels >> direction & 1) != 0;
-  typename Site::Message message{coupling_[distance].loudest, 0, 0};
+  LabelSite::Message message{coupling_[distance].loudest, 0, 0};
   if (!site.decided()) {
     auto by_others = from.heard;
     site.hear(other.label, other.sent[direction ^ 1u], same, -1, by_others);
-    message = Site::message(site.probabilities(by_others), coupling_[distance]);
+    message = LabelSite::message(site.probabilities(by_others), coupling_[distance]);
   }
   auto& sent = site.sent[direction];
   bool news = false;
@@ -316,7 +313,7 @@ void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& 
   if (!news) return;
   auto& flag = flag_[from.neighbour[direction]];
   if ((flag & visited) != 0) {
-    auto& sum = visits.place[visits.index[from.neighbour[direction]]].heard;
+    auto& sum = visits.visit[visits.index[from.neighbour[direction]]].heard;
     other.hear(site.label, sent, same, -1, sum);
     other.hear(site.label, message, same, 1, sum);
   }
@@ -328,10 +325,10 @@ void LabelField<limits>::send(const Place& from, std::size_t direction, Visits& 
 template <Limits limits>
 int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
   int changed = 0;
-  for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.place[static_cast<std::size_t>(n)]);
+  for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
   dem.for_each_valid([&](int i, int j, int s) {
     if ((flag_[static_cast<std::size_t>(s)] & (visited | heard)) != heard) return;
-    Place heard_only = place(dem, i, j, s);
+    Visit heard_only = visit_to(dem, i, j, s);
     hear_neighbours(heard_only);
     changed += follow_belief(heard_only);
   });
@@ -340,20 +337,20 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
 
 /// 1 if it changed.
 template <Limits limits>
-int LabelField<limits>::follow_belief(const Place& place) {
-  Site& site = sites_[place.slot];
-  const LabelType best = site.most_likely(place.heard);
+int LabelField<limits>::follow_belief(const Visit& visit) {
+  LabelSite& site = sites_[visit.slot];
+  const Label best = site.most_likely(visit.heard);
   if (site.best == best) return 0;
   site.best = best;
   return 1;
 }
 
 template <Limits limits>
-auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief<limits> {
+auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
   const int slot = dem.slot(i, j);
-  const Site& site = sites_[static_cast<std::size_t>(slot)];
+  const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
   if (site.decided()) return {site.label, {site.label[0] == none ? 0.0f : 1.0f, 0.0f, 0.0f}};
-  Place here = place(dem, i, j, slot);
+  Visit here = visit_to(dem, i, j, slot);
   hear_neighbours(here);
   return {site.label, site.probabilities(here.heard)};
 }

@@ -7,10 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "curbline/dem.hpp"
-#include "curbline/limits.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/math.hpp"
-#include "curbline/plane_mixture.hpp"
 
 namespace curbline {
 
@@ -18,13 +16,12 @@ namespace curbline {
 inline constexpr int label_candidates = 3;
 
 /// Posterior of a cell's label.
-template <Limits limits>
 struct Belief {
-  std::array<Label<limits>, label_candidates> label;  ///< no_label<limits> where there are fewer
-  std::array<float, label_candidates> probability;    ///< sums to 1
+  std::array<Label, label_candidates> label;        ///< no_label where there are fewer
+  std::array<float, label_candidates> probability;  ///< sums to 1
 
   /// Probability of one label, 0 if it is no candidate.
-  float of(Label<limits> wanted) const {
+  float of(Label wanted) const {
     float found = 0.0f;
     for (std::size_t c = 0; c < label.size(); ++c) {
       if (label[c] == wanted) found = probability[c];
@@ -33,15 +30,13 @@ struct Belief {
   }
 };
 
-template <Limits limits>
 struct LabelSite {
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
   // nothing.
   static constexpr int message_scale = 32, node_scale = 256;
 
-  using Labels = std::array<LabelType, label_candidates>;
+  using Labels = std::array<Label, label_candidates>;
   using Message = std::array<std::uint8_t, label_candidates>;  ///< of each candidate of the sender
   using Heard = std::array<std::int16_t, label_candidates>;    ///< a sum of messages, of each candidate of the hearer
   using Probabilities = std::array<float, label_candidates>;
@@ -52,7 +47,7 @@ struct LabelSite {
   };
 
   Labels label{none, none, none};
-  LabelType best = none;
+  Label best = none;
   std::array<std::int16_t, label_candidates> node{};  ///< log potential of each candidate
   std::array<Message, directions> sent{};             ///< to the neighbour there, last
 
@@ -72,15 +67,14 @@ struct LabelSite {
   /// rules out: m(l) = 1 + (exp(J / g) - 1) p(l).
   static Message message(const Probabilities& p, const Coupling& coupling);
   /// The most likely candidate.
-  LabelType most_likely(const Heard& heard) const;
+  Label most_likely(const Heard& heard) const;
 
  private:
   using Nats = std::array<std::int32_t, label_candidates>;  ///< in 1 / node_scale nat
   Nats log_belief(const Heard& heard) const;
 };
 
-template <Limits limits>
-void LabelSite<limits>::set_labels(const Labels& labels) {
+inline void LabelSite::set_labels(const Labels& labels) {
   if (labels == label) return;
   for (Message& message : sent) {
     const Message before = message;
@@ -94,8 +88,7 @@ void LabelSite<limits>::set_labels(const Labels& labels) {
   label = labels;
 }
 
-template <Limits limits>
-void LabelSite<limits>::hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const {
+inline void LabelSite::hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const {
   if (same_labels) {
     for (std::size_t c = 0; c < label.size(); ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[c]);
     return;
@@ -107,15 +100,13 @@ void LabelSite<limits>::hear(const Labels& others, const Message& said, bool sam
   }
 }
 
-template <Limits limits>
-auto LabelSite<limits>::log_belief(const Heard& heard) const -> Nats {
+inline auto LabelSite::log_belief(const Heard& heard) const -> Nats {
   Nats logs;
   for (std::size_t c = 0; c < label.size(); ++c) logs[c] = node[c] + heard[c] * (node_scale / message_scale);
   return logs;
 }
 
-template <Limits limits>
-auto LabelSite<limits>::probabilities(const Heard& heard) const -> Probabilities {
+inline auto LabelSite::probabilities(const Heard& heard) const -> Probabilities {
   constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
   const Nats logs = log_belief(heard);
   std::int32_t top = logs[0];
@@ -135,8 +126,7 @@ auto LabelSite<limits>::probabilities(const Heard& heard) const -> Probabilities
   return p;
 }
 
-template <Limits limits>
-auto LabelSite<limits>::message(const Probabilities& p, const Coupling& coupling) -> Message {
+inline auto LabelSite::message(const Probabilities& p, const Coupling& coupling) -> Message {
   Message logs;
   for (std::size_t c = 0; c < logs.size(); ++c) {
     logs[c] = p[c] == 0.0f ? std::uint8_t{0}
@@ -147,8 +137,7 @@ auto LabelSite<limits>::message(const Probabilities& p, const Coupling& coupling
   return logs;
 }
 
-template <Limits limits>
-auto LabelSite<limits>::most_likely(const Heard& heard) const -> LabelType {
+inline auto LabelSite::most_likely(const Heard& heard) const -> Label {
   if (decided()) return label[0];
   const Nats logs = log_belief(heard);
   std::size_t best_one = 0;

@@ -109,8 +109,8 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
 template <Limits limits>
 bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const {
   const int slot = dem_.slot(of.i, of.j);
-  const Label<limits> label = field_.label(slot);
-  if (label == no_label<limits>) return false;
+  const Label label = field_.label(slot);
+  if (label == no_label) return false;
   const Cell& cell = dem_.cell(slot);
   if (dem_.several_surfaces(cell)) return false;
   const Plane& plane = mixture_.plane(label);

@@ -53,7 +53,7 @@ struct SinCos {
   float cos;
 };
 
-/// Error below 2e-7 for |x| <= 2 pi.
+/// Error below 2e-7 for |x| <= 4 pi.
 SinCos sin_cos(float x);
 
 /// The same for angles that follow each other closely: within 2 mrad of the last full one by its Taylor series to the

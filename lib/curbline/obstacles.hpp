@@ -24,7 +24,7 @@ inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
 template <Limits limits>
 class Obstacles {
  public:
-  /// label_of(slot) is the plane of a valid cell's region, no_label<limits> if it has none.
+  /// label_of(slot) is the plane of a valid cell's region, no_label if it has none.
   template <typename LabelOf>
   Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of);
 
@@ -39,8 +39,7 @@ class Obstacles {
   const Plane* ground() const { return ground_; }
 
  private:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   using PlaneFlags = std::array<bool, limits.planes>;
   using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
   static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
@@ -78,7 +77,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
                              LabelOf&& label_of) {
   std::array<float, limits.planes> spread{}, weight{};
   dem.for_each_valid([&](int, int, int s) {
-    const LabelType label = label_of(s);
+    const Label label = label_of(s);
     if (label == none) return;
     cells_[label] += 1.0f;
     spread[label] += dem.spread_m2(dem.cell(s));
@@ -144,7 +143,7 @@ auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view
                                    const PlaneFlags& asked) -> Extents {
   Extents found{};
   dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = label_of(s);
+    const Label label = label_of(s);
     if (label == none || !asked[label]) return;
     Extent& extent = found[label];
     if (i == 0 || j == 0 || i == dem.rows() - 1 || j == dem.cols() - 1) extent.reaches_end = true;
@@ -184,12 +183,12 @@ template <typename LabelOf>
 auto Obstacles<limits>::neighbours(const Dem<limits>& dem, LabelOf&& label_of, const PlaneFlags& asked) -> Neighbours {
   Neighbours found{};
   dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = label_of(s);
+    const Label label = label_of(s);
     if (label == none || !asked[label]) return;
     const auto meet = [&](int p, int q) {
       if (p >= dem.rows() || q >= dem.cols()) return;
       const int slot = dem.slot(p, q);
-      const LabelType other = dem.cell(slot).valid() ? label_of(slot) : none;
+      const Label other = dem.cell(slot).valid() ? label_of(slot) : none;
       if (other == none || other == label || !asked[other]) return;
       found[label].insert(other);
       found[other].insert(label);

@@ -28,8 +28,8 @@ template <Limits limits>
 bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
               int j, const Mobility& mobility) {
   const int slot = dem.slot(i, j);
-  const Label<limits> label = field.label(slot);
-  if (!dem.cell(slot).valid() || label == no_label<limits> || !passable(mixture.plane(label), mobility)) return false;
+  const Label label = field.label(slot);
+  if (!dem.cell(slot).valid() || label == no_label || !passable(mixture.plane(label), mobility)) return false;
   const Plane& plane = mixture.plane(label);
   const float square_m2 = mobility.max_step_m * mobility.max_step_m;
   const auto level = [&](int a, int b, const Cell& cell) {

@@ -98,21 +98,21 @@ class Pipeline {
     return ready_ && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
   bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
-    const auto side = [this](int label) { return label == no_label<limits> ? Plane{} : plane(label); };
+    const auto side = [this](int label) { return label == no_label ? Plane{} : plane(label); };
     return ready_ && curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
   /// Plane that the readings in a valid cell are of (i along x, j along y, from the window's lowest corner, 0 <= i <
-  /// dem().rows(), 0 <= j < dem().cols()); no_label<limits> for the others. It may outlive its plane by a line.
-  Label<limits> label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label<limits>; }
+  /// dem().rows(), 0 <= j < dem().cols()); no_label for the others. It may outlive its plane by a line.
+  Label label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label; }
   /// Probability of that label; 0 before init().
   float label_probability(int i, int j) const;
   /// Plane of the ground under the cell's middle: beside a step not always that of the readings. ground_label.hpp
-  Label<limits> ground_label(int i, int j) const {
-    return ready_ ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label<limits>;
+  Label ground_label(int i, int j) const {
+    return ready_ ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label;
   }
   /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes: not
-  /// no_label<limits>.
+  /// no_label.
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
@@ -399,7 +399,7 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
       const auto belief = label_field_.belief(dem_, i, j);
       for (std::size_t c = 0; c < belief.label.size(); ++c) {
-        if (belief.label[c] != no_label<limits>) visit(belief.label[c], belief.probability[c]);
+        if (belief.label[c] != no_label) visit(belief.label[c], belief.probability[c]);
       }
     });
   }

@@ -50,15 +50,16 @@ inline void PlaneMoments::add_cell(const PlaneMoments& cell) {
 /// What is known of a plane before any point: normal-inverse-gamma, z = level + slope . (p - centroid) + noise.
 struct PlanePrior {
   /// Expected noise of a point of weight 1: repeatability of the range-finder. The pipeline takes no less than half of
-  /// LaserSettings::range_sd_m squared.
+  /// LaserSettings::range_sd_m squared. [1e-10, 100]
   float noise_m2 = 0.01f * 0.01f;
   float texture_m2 =
-      0.005f * 0.005f;   ///< part of it that is the ground's: unevenness within a cell, whatever the sensor
-  float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean
+      0.005f * 0.005f;   ///< part of it that is the ground's: unevenness within a cell, whatever the sensor; [0, 100]
+  float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean; [1, 1e6]
   /// Of that variance, common to all points of a cell: tilt timing, mount, texture; [least_common_share, 1]. The most
   /// that is thought of: the pipeline finds what it is.
   float common_share = 0.5f;
-  float curvature_1_m = 0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre
+  float curvature_1_m =
+      0.1f;  ///< standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre; [0, 10]
 
   static constexpr float least_common_share = 0.01f;
   /// Variance that the points of a cell have in common: averaging over them does not help against it.
@@ -136,6 +137,7 @@ struct Plane {
   float fit_variance_m2 = 0.0f;              ///< of what a cell that it is fitted to counts for: a point, or their mean
   float cells = 0.0f;                        ///< how many these are; 0: no such plane
   float points_a_cell = 1.0f;                ///< of its region, on the mean
+  float scatter_m2 = 0.0f;                   ///< mean square of how far the cells lie from the centroid
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
   bool alive() const { return cells > 0.0f; }
@@ -143,8 +145,6 @@ struct Plane {
 
   /// How far its centroid lies above another plane.
   float above_m(const Plane& other) const { return z_m - other.height_m(x_m, y_m); }
-  /// Mean square of how far its cells lie from the centroid, along x and y together.
-  float scatter_m2() const { return (pxx + pyy) / (cells * (pxx * pyy - square(pxy))); }
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
   /// By three standard deviations of the slopes of ground: a face.
   bool steeper_than_ground() const { return square(slope_x) + square(slope_y) > gate * square(steepest_ramp); }

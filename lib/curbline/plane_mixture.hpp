@@ -22,8 +22,7 @@ namespace curbline {
 template <Limits limits>
 class PlaneMixture {
  public:
-  using LabelType = Label<limits>;
-  static constexpr LabelType none = no_label<limits>;
+  static constexpr Label none = no_label;
   static constexpr int capacity = limits.planes;
   using Cells = IndexSet<Dem<limits>::capacity>;
 
@@ -66,7 +65,7 @@ class PlaneMixture {
   /// True if the label was born, died, or became ground or none since forget_changes().
   bool fresh(int label) const { return fresh_[static_cast<std::size_t>(label)]; }
   /// The plane of a cell's region; none if the region is too small for one.
-  LabelType region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
+  Label region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
   /// True if that changed since forget_changes().
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
   /// Is the plane ground, which cells may bear? ground.hpp
@@ -91,13 +90,21 @@ class PlaneMixture {
   };
   /// Regions by size, and the labels that they take. Of one update().
   struct Ranking {
-    std::size_t regions = 0;                        ///< how many are planes
-    std::array<LabelType, limits.regions> of_node;  ///< rank of a region's node, `none` if it is too small
-    std::array<Candidate, limits.planes> region;    ///< by rank
+    std::size_t regions = 0;                      ///< how many are planes
+    std::array<Label, limits.regions> of_node;    ///< rank of a region's node, `none` if it is too small
+    std::array<Candidate, limits.planes> region;  ///< by rank
     std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap{};  ///< [rank][label], cells
-    std::array<LabelType, limits.planes> label;                                    ///< by rank
+    std::array<Label, limits.planes> label;                                        ///< by rank
   };
   using Fitted = std::array<bool, limits.planes>;  ///< by label
+  /// What a plane is fitted anew to, and its region.
+  struct Clean {
+    bool wanted = false, wide = false, steep = false;
+    float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
+    float cells = 0.0f, points = 0.0f;  ///< of the region
+    PlaneMoments inner, beside;
+    float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
+  };
   /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
   static constexpr float wide_cells = 200.0f;
 
@@ -107,6 +114,7 @@ class PlaneMixture {
   template <typename LabelOf>
   void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const Cells& crossed,
               LabelOf&& label_of);
+  void fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const;
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
   float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
 
@@ -115,7 +123,7 @@ class PlaneMixture {
   std::array<bool, limits.planes> fresh_{};
   bool any_fresh_ = false, any_relabelled_ = false;
   Ground<limits> ground_{};
-  std::array<LabelType, Dem<limits>::capacity> region_label_{};
+  std::array<Label, Dem<limits>::capacity> region_label_{};
   IndexSet<Dem<limits>::capacity> relabelled_{};
 };
 
@@ -131,19 +139,19 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     return node == RegionGraph<limits>::none ? none : ranking.of_node[work.graph.root(node)];
   };
   dem.for_each_valid([&](int, int, int s) {
-    const LabelType rank = rank_of(s);
+    const Label rank = rank_of(s);
     if (rank == none) return;
     // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
-    const LabelType before = region_label_[static_cast<std::size_t>(s)];
-    const LabelType old = before != none ? before : label_of(s);
+    const Label before = region_label_[static_cast<std::size_t>(s)];
+    const Label old = before != none ? before : label_of(s);
     if (old != none) ++ranking.overlap[rank][old];
   });
 
   match(ranking);
   dem.for_each_valid([&](int, int, int s) {
-    const LabelType rank = rank_of(s);
-    const LabelType label = rank == none ? none : ranking.label[rank];
-    LabelType& now = region_label_[static_cast<std::size_t>(s)];
+    const Label rank = rank_of(s);
+    const Label label = rank == none ? none : ranking.label[rank];
+    Label& now = region_label_[static_cast<std::size_t>(s)];
     if (now == label) return;
     now = label;
     relabelled_.insert(s);
@@ -153,7 +161,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   const Fitted fitted = fit(dem, ranking);
   ground_.update(
       dem, planes_, view, [this](int s) { return region_label(s); },
-      [this](LabelType label) { fresh_[label] = any_fresh_ = true; });
+      [this](Label label) { fresh_[label] = any_fresh_ = true; });
   refine(dem, view, fitted, crossed, label_of);
 }
 
@@ -162,7 +170,7 @@ template <Limits limits>
 auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -> Fitted {
   Fitted fitted{};
   for (std::size_t r = 0; r < ranking.regions; ++r) {
-    const LabelType label = ranking.label[r];
+    const Label label = ranking.label[r];
     Plane& plane = planes_[label];
     if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label]) continue;
     plane = fit_plane(*ranking.region[r].moments, dem.prior());
@@ -180,13 +188,6 @@ template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
                                   const Cells& crossed, LabelOf&& label_of) {
-  struct Clean {
-    bool wanted = false, wide = false, steep = false;
-    float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
-    float cells = 0.0f, points = 0.0f;  ///< of the region
-    PlaneMoments inner, beside;
-    float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
-  };
   std::array<Clean, limits.planes> clean{};
   for (std::size_t l = 0; l < clean.size(); ++l) {
     clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
@@ -195,7 +196,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     clean[l].slope_m2 = dem.slope_m2(planes_[l]);
   }
   dem.for_each_valid([&](int i, int j, int s) {
-    const LabelType label = region_label(s);
+    const Label label = region_label(s);
     if (label == none || !clean[label].wanted) return;
     Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
@@ -203,7 +204,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     of_plane.points += cell.points;
     if (dem.mixed(cell, of_plane.slope_m2)) return;
     if (of_plane.wide && crossed.contains(s)) return;
-    const LabelType borne = label_of(s);
+    const Label borne = label_of(s);
     if (borne != label && borne != none && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);
     if (!of_plane.steep) moments.zz = 0.0f;
@@ -213,19 +214,23 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
   });
   for (std::size_t l = 0; l < clean.size(); ++l) {
-    PlaneMoments& moments = clean[l].inner;
-    PlaneMoments& beside = clean[l].beside;
-    if (!clean[l].wanted) continue;
-    planes_[l].points_a_cell = clean[l].points / clean[l].cells;
-    if (moments.cells + beside.cells < settings_.min_cells) continue;
-    if (clean[l].bias_m2 > dem.prior().noise_m2) beside.scale(dem.prior().noise_m2 / clean[l].bias_m2);
-    moments.add(beside);
-    Plane anew =
-        clean[l].steep ? fit_plane(moments, dem.prior()) : fit_plane_to_means(moments, dem.prior(), dem.common_m2());
-    anew.variance_m2 = planes_[l].variance_m2;  // of the region
-    anew.points_a_cell = planes_[l].points_a_cell;
-    planes_[l] = anew;
+    if (clean[l].wanted) fit_anew(dem, clean[l], planes_[l]);
   }
+}
+
+/// What is the region's stays.
+template <Limits limits>
+void PlaneMixture<limits>::fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const {
+  plane.points_a_cell = clean.points / clean.cells;
+  PlaneMoments& moments = clean.inner;
+  if (moments.cells + clean.beside.cells < settings_.min_cells) return;
+  const PlanePrior& prior = dem.prior();
+  if (clean.bias_m2 > prior.noise_m2) clean.beside.scale(prior.noise_m2 / clean.bias_m2);
+  moments.add(clean.beside);
+  Plane anew = clean.steep ? fit_plane(moments, prior) : fit_plane_to_means(moments, prior, dem.common_m2());
+  anew.variance_m2 = plane.variance_m2;
+  anew.points_a_cell = plane.points_a_cell;
+  plane = anew;
 }
 
 /// Does a cell lie nearer to one plane than to another?
@@ -281,7 +286,7 @@ void PlaneMixture<limits>::rank_regions(const typename Segmentation<limits>::Wor
     for (; place > 0 && region[place - 1].moments->cells < moments.cells; --place) region[place] = region[place - 1];
     region[place] = {node, &moments};
   });
-  for (std::size_t r = 0; r < kept; ++r) ranking.of_node[region[r].node] = static_cast<LabelType>(r);
+  for (std::size_t r = 0; r < kept; ++r) ranking.of_node[region[r].node] = static_cast<Label>(r);
 }
 
 /// Greatest overlap first; regions without one take free labels; labels without one die.
@@ -303,7 +308,7 @@ void PlaneMixture<limits>::match(Ranking& ranking) {
       }
     }
     if (best == 0) break;
-    ranking.label[best_rank] = static_cast<LabelType>(best_label);
+    ranking.label[best_rank] = static_cast<Label>(best_label);
     taken[best_label] = true;
   }
   std::size_t free = 0;
@@ -312,7 +317,7 @@ void PlaneMixture<limits>::match(Ranking& ranking) {
     while (taken[free]) ++free;
     taken[free] = true;
     fresh_[free] = any_fresh_ = true;
-    ranking.label[r] = static_cast<LabelType>(free);
+    ranking.label[r] = static_cast<Label>(free);
   }
   for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
     if (taken[l] || !planes_[l].alive()) continue;

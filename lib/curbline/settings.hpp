@@ -12,9 +12,10 @@
 
 namespace curbline {
 
-/// The rolling window. Cells are dx by dy; the window is rows x cols of them, along the map's axes. Unless it is fixed
-/// its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells: its corner and
-/// max_height_m are of the base frame of a robot that heads along the map's x axis, else of the map frame.
+/// The rolling window. Cells are cell_x_m by cell_y_m; the window is rows x cols of them, along the map's axes. Unless
+/// it is fixed its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells:
+/// its corner and max_height_m are of the base frame of a robot that heads along the map's x axis, else of the map
+/// frame.
 struct WindowSettings {
   int rows = 40;              ///< cells along x, a multiple of 4, at most Limits::rows
   int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
@@ -23,7 +24,7 @@ struct WindowSettings {
   float origin_x_m = 0.0f;    ///< lowest corner, [-1e5, 1e5]
   float origin_y_m = -2.0f;   ///< the same along y
   bool fixed = false;         ///< true: the window never moves
-  float max_height_m = 1e9f;  ///< points above it are ignored
+  float max_height_m = 1e9f;  ///< points above it are ignored; finite
 };
 
 /// The range-finder, from its data sheet.
@@ -68,7 +69,8 @@ struct TiltSettings {
   float pitch_sd_rad = 0.0f;          ///< the same about y
 };
 
-/// The robot's pose, T_map_base. A robot that stands gives none.
+/// The robot's pose, T_map_base. A robot that stands gives none. One that drives states both deviations: with 0 every
+/// rounding of a pose is a jump, and no step of its localisation is told from a kerb that it climbs.
 struct PoseSettings {
   bool still = true;                 ///< true: no poses will come, base and map frame are one
   float height_sd_m = 0.0f;          ///< of z between two poses, [0, 10]; if it stands, by how much it sways
@@ -106,9 +108,9 @@ struct LabelSettings {
 
 struct CurbSettings {
   int link_reach = 5;       ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
-  float max_step_m = 0.3f;  ///< a step up that is higher is an obstacle, no curb: kerbs and steps of stairs stay below
-                            ///< 0.2 m, and half as much again for the unusual. A step down is told however deep it is,
-                            ///< but from what is as much higher than the ground nearest to the laser
+  float max_step_m = 0.3f;  ///< > 0; a step up that is higher is an obstacle, no curb: kerbs and steps of stairs stay
+                            ///< below 0.2 m, and half as much again for the unusual. A step down is told however deep
+                            ///< it is, but from what is as much higher than the ground nearest to the laser
 };
 
 /// Everything, as Pipeline::init() takes it.

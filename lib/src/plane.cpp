@@ -38,6 +38,7 @@ Plane fitted(const PlaneMoments& m, const PlanePrior& prior, float weight, float
   const float mean_square = slopes.residual_m2 / weight;
   plane.variance_m2 = plane.fit_variance_m2 = mean_square > least_m2 ? mean_square : least_m2;
   plane.cells = m.cells;
+  plane.scatter_m2 = (m.xx + m.yy) / m.weight;
   plane.pxx = (m.yy + ridge) * per_cell;
   plane.pxy = -m.xy * per_cell;
   plane.pyy = (m.xx + ridge) * per_cell;

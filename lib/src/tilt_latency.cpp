@@ -154,7 +154,7 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   std::array<float, states> cross{};  // covariance of each state and the observation
   for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  if (square(seen.missing_s) > gate * variance_s2) return false;
+  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // nor what is no number
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = within(constant_s_ + cross[constant] * weight, largest_offset_s_);
   offset_s_ = within(offset_s_ + cross[now] * weight, largest_offset_s_);

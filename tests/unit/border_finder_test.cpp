@@ -223,7 +223,7 @@ struct Street {
     const auto stages = traced();
     std::vector<Across> found;
     for (const Curb& curb : stages->tracer.curbs()) {
-      constexpr auto unseen = no_label<small_limits>;
+      constexpr auto unseen = no_label;
       if (curb.far_label != unseen && curb.near_label != unseen) continue;
       CHECK(curb.face_width_m == 0.0f);
       CHECK(curb.probability > 0.9f);
@@ -315,7 +315,7 @@ TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, 
   const std::vector<Curb> brinks = curbs(9.0);
   REQUIRE(brinks.size() == 1);
   CHECK(brinks[0].kind == CurbKind::step_down);
-  CHECK(brinks[0].far_label == no_label<small_limits>);
+  CHECK(brinks[0].far_label == no_label);
   CHECK(brinks[0].x0_m == Approx(1.4).margin(0.03));
   CHECK(brinks[0].height_m == Approx(-0.2).margin(0.03));  // to the far side of a cell whose middle is seen
   CHECK(curbs(1.4).empty());

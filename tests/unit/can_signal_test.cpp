@@ -220,6 +220,10 @@ TEST_CASE("can signal: a frame longer than the signal's is another one, a shorte
   Frame written;
   encode(signal, 1.0, written);
   CHECK(written.length == 6);
+  signal.max_bytes = 64;
+  signal.min_bytes = 65;  // no frame is as long
+  CHECK_FALSE(valid(signal));
+  signal.min_bytes = 6;
   signal.max_bytes = 5;
   CHECK_FALSE(valid(signal));
 }

@@ -63,7 +63,7 @@ TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: none of a crease, nor of a br
   Curb crease = step(0.5, 0.5, 1.5, 0.5), brink = crease;
   CHECK(crossed_by(crease).size() == 11);
   crease.kind = CurbKind::crease;
-  brink.far_label = no_label<small_limits>;
+  brink.far_label = no_label;
   CHECK(crossed_by(crease).empty());
   CHECK(crossed_by(brink).empty());
 }

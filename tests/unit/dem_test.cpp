@@ -130,6 +130,20 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
   CHECK(dem.origin_y_m() == Approx(0.1 * (col0 + 4 * blocks_y)).margin(1e-5));
 }
 
+TEST_CASE("dem: a window of the smallest cells that leaps across the world has left all that it knew") {
+  WindowSettings window;
+  window.cell_x_m = window.cell_y_m = 0.001f;
+  window.origin_x_m = -1e5f;
+  const auto dem = std::make_unique<Dem<Limits{}>>();
+  dem->init(window, PlanePrior{});
+  const auto nothing = [](int) { FAIL("no cell was valid"); };
+  dem->follow(-1e6f, 0.0f, nothing);
+  REQUIRE(dem->add({dem->origin_x_m(), dem->origin_y_m(), 0.0f, 1e-4f}));
+  int left = 0;
+  dem->follow(1.2e6f, 0.0f, [&](int) { ++left; });
+  CHECK(left == 1);
+}
+
 TEST_CASE("dem: the ring survives a walk all around") {
   Map dem = make_map(moving());
   fill_names(dem);

@@ -37,14 +37,14 @@ class GroundLabelTest {
     curb.far_label = far_;
     return curb;
   }
-  Label<small_limits> at(int i, int j, std::span<const Curb> curbs) const {
+  Label at(int i, int j, std::span<const Curb> curbs) const {
     return ground_label(stages_.dem, stages_.mixture, stages_.field, curbs, i, j);
   }
-  Label<small_limits> at(int i, int j, const Curb& curb) const { return at(i, j, std::span(&curb, 1)); }
+  Label at(int i, int j, const Curb& curb) const { return at(i, j, std::span(&curb, 1)); }
 
  protected:
   Stages<small_limits> stages_;
-  Label<small_limits> near_, far_;
+  Label near_, far_;
 };
 
 TEST_CASE_METHOD(GroundLabelTest,
@@ -64,7 +64,7 @@ TEST_CASE_METHOD(GroundLabelTest, "ground label: where no step is near, readings
   crease.kind = CurbKind::crease;
   CHECK(at(13, 10, crease) == near_);
   Curb brink = step_at(1.32f);
-  brink.far_label = no_label<small_limits>;
+  brink.far_label = no_label;
   CHECK(at(13, 10, brink) == near_);
 }
 
@@ -83,7 +83,7 @@ TEST_CASE_METHOD(GroundLabelTest,
 
 TEST_CASE_METHOD(GroundLabelTest, "ground label: of a cell that is not seen there is none") {
   Stages<small_limits> unseen(test::small_settings());
-  CHECK(ground_label(unseen.dem, unseen.mixture, unseen.field, {}, 3, 3) == no_label<small_limits>);
+  CHECK(ground_label(unseen.dem, unseen.mixture, unseen.field, {}, 3, 3) == no_label);
 }
 
 }  // namespace

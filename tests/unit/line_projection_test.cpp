@@ -299,12 +299,11 @@ TEST_CASE("line projection: the variance of a height is that of simulated errors
         Approx(simulated_variance(s, beam, 2.5, 0.45 + 0.8 * beam_s, 0.8)).epsilon(0.1).margin(1e-9));
 }
 
-TEST_CASE("line projection: the mount's errors turn about the robot's base, its attitude's too, in a slanting pose") {
+TEST_CASE("line projection: where the robot is and which way it heads changes no height's variance") {
   Settings s = with_errors(6);
   s.tilt.fixed = true;
   s.tilt.fixed_tilt_rad = 0.5f;
   const auto bench = std::make_unique<Bench>(s);
-  // A yaw changes nothing; heights do not depend on where the robot is.
   const Pose pose{t0, 12.0f, -5.0f, 0.3f, 0.0f, 0.0f, 0.6f, 0.8f};
   const auto still = bench->project(std::vector<float>(361, 3.0f));
   bench->motion = {make_transform(pose), make_transform(pose), false};

@@ -85,8 +85,7 @@ TEST_CASE("pipeline: while the robot drives the window follows and the curb stay
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
       const bool valid = d.pipeline->dem().cell(d.pipeline->dem().slot(i, j)).valid();
-      CHECK((d.pipeline->label(i, j) != no_label<Limits{}>) ==
-            valid);  // nothing is left of cells that were here before
+      CHECK((d.pipeline->label(i, j) != no_label) == valid);  // nothing is left of cells that were here before
     }
   }
 }

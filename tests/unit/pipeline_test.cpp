@@ -36,10 +36,12 @@ void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, in
   }
 }
 
+/// All that curbs are but their numbers, which tell how often they were traced.
 std::vector<char> bytes(std::span<const Curb> curbs) {
   std::vector<char> out;
   for (const Curb& c : curbs) {
-    for (const float v : {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.height_m, c.height_sd_m, c.probability}) {
+    for (const float v :
+         {c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.position_sd_m, c.height_m, c.height_sd_m, c.probability, c.face_width_m}) {
       const char* p = reinterpret_cast<const char*>(&v);
       out.insert(out.end(), p, p + sizeof v);
     }
@@ -47,6 +49,12 @@ std::vector<char> bytes(std::span<const Curb> curbs) {
     out.push_back(static_cast<char>(c.near_label));
     out.push_back(static_cast<char>(c.far_label));
   }
+  return out;
+}
+
+std::vector<std::uint16_t> ids(std::span<const Curb> curbs) {
+  std::vector<std::uint16_t> out;
+  for (const Curb& c : curbs) out.push_back(c.id);
   return out;
 }
 
@@ -81,7 +89,7 @@ TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatev
   pipeline->settle();
   int ends = 0;
   for (const Curb& curb : pipeline->curbs()) {
-    const bool end = curb.far_label == no_label<Limits{}>;
+    const bool end = curb.far_label == no_label;
     ends += end;
     CHECK(pipeline->passable(curb, 1.0f, 1.0f) == !end);
   }
@@ -194,7 +202,7 @@ TEST_CASE("pipeline: after a refused init nothing is left of what it told before
   settings.laser.beams = 0;
   REQUIRE(pipeline->init(settings) == Status::bad_laser);
   CHECK(pipeline->curbs().empty());
-  CHECK(pipeline->label(10, 20) == no_label<Limits{}>);
+  CHECK(pipeline->label(10, 20) == no_label);
   CHECK_FALSE(pipeline->passable(10, 20, 0.03f, 0.2f));
   CHECK_FALSE(pipeline->passable(curb, 1.0f, 1.0f));
   CHECK_FALSE(pipeline->add_pose({NoddingLaser::epoch_ns}));
@@ -286,6 +294,7 @@ TEST_CASE("pipeline: bad data leave no trace: the curbs are the same to the bit"
   CHECK(plagued->counters().poses_dropped == 1);
   CHECK(plagued->counters().lines_dropped == 4);
   CHECK(bytes(plagued->curbs()) == bytes(clean->curbs()));
+  CHECK(ids(plagued->curbs()) == ids(clean->curbs()));
   CHECK_FALSE(clean->curbs().empty());
 }
 
@@ -338,6 +347,7 @@ TEST_CASE("pipeline: the same input gives the same bytes twice, also after a sec
   NoddingLaser laser;
   stand(*first, laser, {}, 0, 200);
   const auto expected = bytes(first->curbs());
+  const auto expected_ids = ids(first->curbs());
   REQUIRE_FALSE(expected.empty());
   NoddingLaser again, once_more;
   const auto second = started();
@@ -348,6 +358,7 @@ TEST_CASE("pipeline: the same input gives the same bytes twice, also after a sec
   CHECK(first->counters().lines == 0);
   stand(*first, once_more, {}, 0, 200);
   CHECK(bytes(first->curbs()) == expected);
+  CHECK(ids(first->curbs()) == expected_ids);
 }
 
 TEST_CASE("pipeline: a line costs half an inference, and the curbs are those of whole ones") {
@@ -452,6 +463,7 @@ TEST_CASE("pipeline: a finished map settles, and then nothing changes any more")
   CHECK(passes < 50);
   const auto settled = bytes(pipeline->curbs());
   CHECK(pipeline->settle(50) == 1);
+  CHECK(bytes(pipeline->curbs()) == settled);
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
   CHECK_FALSE(settled.empty());
 }
@@ -491,8 +503,8 @@ TEST_CASE("pipeline: cells tell their plane and how sure it is") {
   NoddingLaser laser;
   stand(*pipeline, laser, {}, 0, 200);
   const auto near = pipeline->label(15, 20), far = pipeline->label(30, 20);
-  REQUIRE(near != no_label<Limits{}>);
-  REQUIRE(far != no_label<Limits{}>);
+  REQUIRE(near != no_label);
+  REQUIRE(far != no_label);
   CHECK(near != far);
   CHECK(pipeline->label_probability(15, 20) > 0.95f);
   CHECK(pipeline->plane(near).height_m(1.55f, 2.05f) == Approx(0.0).margin(0.005));

@@ -143,10 +143,9 @@ TEST_CASE("plane mixture: a region takes the label that most of its cells bore")
   for (int i = 5; i < 12; ++i) {
     for (int j = 0; j < 24; ++j) old[static_cast<std::size_t>(stages->dem.slot(i, j))] = 3;
   }
-  using LabelType = decltype(stages->mixture)::LabelType;
   stages->mixture.update(
       stages->dem, *stages->segmented, stages->view, {},
-      [&](int slot) { return static_cast<LabelType>(old[static_cast<std::size_t>(slot)]); }, stages->counters);
+      [&](int slot) { return static_cast<Label>(old[static_cast<std::size_t>(slot)]); }, stages->counters);
   CHECK(stages->mixture.region_label(stages->dem.slot(0, 0)) == 3);
   CHECK(stages->mixture.region_label(stages->dem.slot(23, 0)) == 0);
 }

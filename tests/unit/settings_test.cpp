@@ -30,9 +30,58 @@ void refuses(Status expected, const std::string& name, Reach&& reach, std::initi
   }
 }
 
+const char* named(const Settings& settings) {
+  const char* bad = bad_setting(settings, limits);
+  return bad == nullptr ? "none" : bad;
+}
+
 TEST_CASE("settings: the defaults are good") {
   CHECK(check(Settings{}, limits) == Status::ok);
   CHECK(bad_setting(Settings{}, limits) == nullptr);
+}
+
+TEST_CASE("settings: the bounds themselves are good") {
+  Settings low;
+  low.window = {4, 4, 0.001f, 0.001f, -1e5f, -1e5f};
+  low.laser.beams = 1;
+  low.laser.first_bearing_rad = -2.0f * pi;
+  low.laser.bearing_step_rad = -1.0f;
+  low.laser.beam_interval_s = low.laser.min_range_m = low.laser.range_sd_m = low.laser.bearing_sd_rad = 0.0f;
+  low.tilt.T_base_tilt = low.tilt.T_tilt_laser = {-100.0f, -100.0f, -100.0f, -2.0f * pi, -2.0f * pi, -2.0f * pi};
+  low.tilt.fixed_tilt_rad = -pi;
+  low.tilt.latency_s = -10.0f;
+  low.tilt.latency_sd_s = low.tilt.angle_sd_rad = low.tilt.time_sd_s = low.tilt.max_extrapolation_s = 0.0f;
+  low.tilt.roll_sd_rad = low.tilt.pitch_sd_rad = 0.0f;
+  low.pose.height_sd_m = low.pose.attitude_sd_rad = low.pose.max_extrapolation_s = 0.0f;
+  low.segmentation.cell = {1e-3f, 1e-10f};
+  low.segmentation.link_reach = low.labels.link_reach = low.curbs.link_reach = 1;
+  low.planes.prior = {1e-10f, 0.0f, 1.0f, PlanePrior::least_common_share, 0.0f};
+  low.planes.min_cells = 3.0f;
+  low.labels.coupling = 0.01f;
+  low.labels.refresh_rows = 0;
+  low.labels.max_messages = 4;
+  CHECK(std::string(named(low)) == "none");
+
+  Settings high;
+  high.window = {40, 40, 10.0f, 10.0f, 1e5f, 1e5f};
+  high.laser.beams = 1;
+  high.laser.first_bearing_rad = 2.0f * pi;
+  high.laser.bearing_step_rad = high.laser.beam_interval_s = high.laser.bearing_sd_rad = 1.0f;
+  high.laser.max_range_m = 1e6f;
+  high.laser.range_sd_m = 10.0f;
+  high.tilt.T_base_tilt = high.tilt.T_tilt_laser = {100.0f, 100.0f, 100.0f, 2.0f * pi, 2.0f * pi, 2.0f * pi};
+  high.tilt.fixed_tilt_rad = pi;
+  high.tilt.latency_s = high.tilt.max_extrapolation_s = high.tilt.max_gap_s = 10.0f;
+  high.tilt.latency_sd_s = high.tilt.angle_sd_rad = high.tilt.time_sd_s = 1.0f;
+  high.tilt.roll_sd_rad = high.tilt.pitch_sd_rad = 1.0f;
+  high.pose.height_sd_m = high.pose.max_extrapolation_s = 10.0f;
+  high.pose.attitude_sd_rad = 1.0f;
+  high.segmentation.cell = {1e6f, 100.0f};
+  high.segmentation.link_reach = high.labels.link_reach = high.curbs.link_reach = 15;
+  high.planes.prior = {100.0f, 100.0f, 1e6f, 1.0f, 10.0f};
+  high.planes.min_cells = 1e6f;
+  high.labels.coupling = 7.9f;
+  CHECK(std::string(named(high)) == "none");
 }
 
 TEST_CASE("settings: a bad window is named") {
@@ -43,9 +92,10 @@ TEST_CASE("settings: a bad window is named") {
           {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
   refuses(bad, "window.cell_y_m", [](Settings& s) -> float& { return s.window.cell_y_m; },
           {0.0f, 9e-4f, -0.1f, 10.1f, nan, infinity});
-  refuses(bad, "window.origin_x_m", [](Settings& s) -> float& { return s.window.origin_x_m; }, {1.1e6f, nan, infinity});
+  refuses(bad, "window.origin_x_m", [](Settings& s) -> float& { return s.window.origin_x_m; },
+          {1.01e5f, -1.01e5f, nan, infinity});
   refuses(bad, "window.origin_y_m", [](Settings& s) -> float& { return s.window.origin_y_m; },
-          {-1.1e6f, nan, -infinity});
+          {1.01e5f, -1.01e5f, nan, -infinity});
   refuses(bad, "window.max_height_m", [](Settings& s) -> float& { return s.window.max_height_m; }, {nan, infinity});
 }
 
@@ -84,6 +134,7 @@ TEST_CASE("settings: a bad tilt is named") {
   }
   refuses(bad, "tilt.fixed_tilt_rad", [](Settings& s) -> float& { return s.tilt.fixed_tilt_rad; }, {4.0f, nan});
   refuses(bad, "tilt.latency_s", [](Settings& s) -> float& { return s.tilt.latency_s; }, {10.1f, -10.1f, nan});
+  refuses(bad, "tilt.latency_sd_s", [](Settings& s) -> float& { return s.tilt.latency_sd_s; }, {-1e-3f, 1.01f, nan});
   refuses(bad, "tilt.max_extrapolation_s", [](Settings& s) -> float& { return s.tilt.max_extrapolation_s; },
           {-0.1f, 10.1f, nan});
   refuses(bad, "tilt.max_gap_s", [](Settings& s) -> float& { return s.tilt.max_gap_s; }, {0.0f, 10.1f, nan});

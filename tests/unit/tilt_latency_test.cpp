@@ -209,6 +209,14 @@ TEST_CASE("tilt latency: it stays within five standard deviations, whatever is s
   CHECK(latency.latest_offset_s() == Approx(0.05f));
 }
 
+TEST_CASE("tilt latency: a line whose growths cancel each other tells nothing") {
+  TiltLatency latency = started();
+  for (const float growth : {1.0f, -1.0f}) latency.compare({0.01f * growth, 1e-4f, 0.0f, growth, 0.0f});
+  latency.end_line(rate_rad_s);
+  CHECK(latency.offset_s() == 0.0f);
+  CHECK(latency.sd_s() == Approx(0.01f));
+}
+
 TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
   TiltLatency latency = started();
   test::Noise noise(8);

@@ -64,7 +64,7 @@ class PipelineOf final : public HostPipeline {
  private:
   /// By the slopes of both planes.
   double rise_m(const Curb& curb) const {
-    if (!is_step(curb) || curb.near_label == no_label<limits> || curb.far_label == no_label<limits>) return 0;
+    if (!is_step(curb) || curb.near_label == no_label || curb.far_label == no_label) return 0;
     const Plane &near = pipeline_.plane(curb.near_label), &far = pipeline_.plane(curb.far_label);
     if (!near.alive() || !far.alive()) return 0;
     return (far.slope_x - near.slope_x) * (curb.x1_m - curb.x0_m) +
@@ -75,7 +75,7 @@ class PipelineOf final : public HostPipeline {
     const Dem<limits>& dem = pipeline_.dem();
     const Cell& from = dem.cell(dem.slot(i, j));
     if (!from.valid()) return {};
-    const auto number = [](Label<limits> label) { return label == no_label<limits> ? -1 : int{label}; };
+    const auto number = [](Label label) { return label == no_label ? -1 : int{label}; };
     MapCell to;
     to.x_m = dem.origin_x_m() + dem.centroid_x_m(i, from);
     to.y_m = dem.origin_y_m() + dem.centroid_y_m(j, from);

@@ -6,19 +6,19 @@ namespace curbline::tools {
 namespace {
 
 void read_segmentation(TomlTable table, SegmentationSettings& segmentation) {
-  table.read("cell_degrees", segmentation.cell.degrees, {0.1, 1000.0});
-  table.read("cell_variance_m2", segmentation.cell.variance_m2, {1e-8, 1.0});
+  table.read("cell_degrees", segmentation.cell.degrees, {1e-3, 1e6});
+  table.read("cell_variance_m2", segmentation.cell.variance_m2, {1e-10, 100.0});
   table.read("leaf_scale", segmentation.leaf_scale, {1e-3, 1e6});
   table.read_whole("link_reach", segmentation.link_reach, 1, max_link_reach);
   table.done();
 }
 
 void read_planes(TomlTable table, PlaneSettings& planes) {
-  table.read("noise_m2", planes.prior.noise_m2, {1e-8, 1.0});
-  table.read("texture_m2", planes.prior.texture_m2, {0.0, 1.0});
+  table.read("noise_m2", planes.prior.noise_m2, {1e-10, 100.0});
+  table.read("texture_m2", planes.prior.texture_m2, {0.0, 100.0});
   table.read("common_share", planes.prior.common_share, {0.01, 1.0});
   table.read("curvature_1_m", planes.prior.curvature_1_m, {0.0, 10.0});
-  table.read("degrees", planes.prior.degrees, {1.001, 1000.0});
+  table.read("degrees", planes.prior.degrees, {1.0, 1e6});
   table.read("min_cells", planes.min_cells, {3.0, 1e6});
   std::string update = planes.update == PlaneUpdate::regions ? "regions" : "responsibilities";
   table.read("update", update);

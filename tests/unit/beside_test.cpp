@@ -1,0 +1,57 @@
+// What the cells beside a border say of a side of a step: that its ground lies elsewhere, or how wrong its plane may
+// be.
+#include "curbline/beside.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace curbline {
+namespace {
+
+TEST_CASE("beside: the ground beside a border is carried on to it, and found by three deviations") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  Beside beside = Beside::of(-0.010f, -0.004f, 1.0f);  // falls by 6 mm a cell
+  float common_m2 = 0.0f;
+  const auto away = [&](float further_cells) { return deviation(beside, plane, -1.0f, further_cells, common_m2); };
+  CHECK(away(0.0f).found());
+  CHECK(away(0.0f).away_m == Approx(0.016));
+  CHECK(away(0.0f).height_variance_m2() == Approx(5e-6));  // (2, -1) of two cells
+  CHECK(away(0.5f).away_m == Approx(0.019));
+  beside.add(beside);
+  CHECK(away(0.0f).away_m == Approx(0.016));
+  CHECK(away(0.0f).height_variance_m2() == Approx(2.5e-6));
+  common_m2 = 5e-5f;  // 0.016^2 is 5.1 times as much
+  CHECK(away(0.0f).found());
+  common_m2 = 5.3e-5f;
+  CHECK_FALSE(away(0.0f).found());
+  common_m2 = 0.0f;
+  plane.fit_variance_m2 = 1.2e-5f;  // 0.016^2 is 8.5 times the variance
+  CHECK_FALSE(away(0.0f).found());
+  CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
+}
+
+TEST_CASE(
+    "beside: a plane may be wrong beside a border by up to half of what its cells lie off it beyond their "
+    "errors") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
+  CHECK(lying(0.004f).height_variance_m2() == Approx((1.6e-5 - 5e-6) / 12));
+  CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side lies below
+  CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 5e-6) / 12));
+  CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
+  CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // by chance
+  CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
+  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
+}
+
+TEST_CASE("beside: what the cells beside one border say is no doubt about all the others") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  const Deviation one = deviation(Beside::of(-0.058f, -0.058f, 1.0f), plane, 1.0f, 0.0f, 0.0f);
+  CHECK(one.too_far_m2(10.0f) == Approx(0.1 * (0.058 * 0.058 - 5e-6)));
+  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).too_far_m2(10.0f) == 0.0f);
+}
+
+}  // namespace
+}  // namespace curbline

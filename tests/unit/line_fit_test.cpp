@@ -1,0 +1,50 @@
+// The line through a chain of border points.
+#include "curbline/line_fit.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace curbline {
+namespace {
+
+TEST_CASE("line fit: a line through points lies within them, whatever its direction") {
+  const double turn = GENERATE(0.0, 0.5, 1.5707963, 2.0, 3.0);
+  LineFit fit;
+  const double ux = std::cos(turn), uy = std::sin(turn);
+  for (int k = -5; k <= 5; ++k) {
+    const double off = k % 2 == 0 ? 0.01 : -0.01;
+    fit.add(static_cast<float>(3.0 + 0.1 * k * ux - off * uy), static_cast<float>(-1.0 + 0.1 * k * uy + off * ux));
+  }
+  const auto s = fit.segment(static_cast<float>(3.0 - 0.5 * ux), static_cast<float>(-1.0 - 0.5 * uy),
+                             static_cast<float>(3.0 + 0.5 * ux), static_cast<float>(-1.0 + 0.5 * uy), 0.05f);
+  CHECK(s.x0_m == Approx(3.0 - 0.55 * ux).margin(0.005));
+  CHECK(s.y0_m == Approx(-1.0 - 0.55 * uy).margin(0.005));
+  CHECK(s.x1_m == Approx(3.0 + 0.55 * ux).margin(0.005));
+  CHECK(s.y1_m == Approx(-1.0 + 0.55 * uy).margin(0.005));
+  CHECK(std::abs(s.normal_x * ux + s.normal_y * uy) < 0.01);
+}
+
+TEST_CASE("line fit: points count by their weight, and no more once they are removed") {
+  LineFit fit, weighed;
+  for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) fit.add(x, x < 1.5f ? 0.01f : -0.01f);
+  const float before = fit.squares();
+  fit.add(4.0f, 0.3f, 2.0f);
+  CHECK(fit.squares() > 2 * before);
+  for (int k = 0; k < 2; ++k) weighed.add(4.0f, 0.3f);
+  for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) weighed.add(x, x < 1.5f ? 0.01f : -0.01f);
+  CHECK(fit.squares() == Approx(weighed.squares()).epsilon(1e-4));
+  fit.remove(4.0f, 0.3f, 2.0f);
+  CHECK(fit.squares() == Approx(before).epsilon(0.01));
+  CHECK(before == Approx(4 * 0.01 * 0.01 * 0.2).epsilon(0.01));  // (1, 1, -1, -1) about its slope: a fifth is left
+}
+
+TEST_CASE("line fit: points in one place have no direction and stay that place") {
+  LineFit fit;
+  for (int k = 0; k < 3; ++k) fit.add(1.0f, 2.0f);
+  const auto s = fit.segment(1.0f, 2.0f, 1.0f, 2.0f, 0.05f);
+  CHECK(s.x0_m == 1.0f);
+  CHECK(s.y1_m == 2.0f);
+}
+
+}  // namespace
+}  // namespace curbline
