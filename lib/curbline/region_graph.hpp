@@ -262,11 +262,14 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
       end = end_[end].next;
     } while (end != first);
   }
-  while (node_[b].first != none) {
-    const Index end = node_[b].first;
+  const Index first = node_[b].first;
+  if (first == none) return;
+  Index next = first;
+  do {
+    const Index end = next;
+    next = end_[end].next;
     const auto other = static_cast<Index>(end ^ 1u);
     const Index target = end_[end].target, twin = seen_[target];
-    remove(b, end);
     const bool has_twin = twin != none && end_[twin].target == target && end_[twin ^ 1u].target == a;
     if (target == a || has_twin) {
       if (has_twin) {
@@ -281,7 +284,7 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
       insert(a, end);
       link_[end / 2].stale = true;
     }
-  }
+  } while (next != first);
 }
 
 template <Limits limits>
