@@ -151,6 +151,7 @@ bool is_for_the_screen(std::string_view line) {
 ParsedLine parse_line(std::string_view line) {
   ParsedLine parsed;
   const auto refuse = [](std::string_view error) { return ParsedLine{.error = error}; };
+  line = line.substr(0, line.find_last_not_of(' ') + 1);
   if (is_for_the_screen(line)) return refuse("what candump writes for the screen; expected a log of candump -L");
   const std::string_view time = take_word(line);
   if (time.size() < 3 || time.front() != '(' || time.back() != ')')

@@ -58,6 +58,20 @@ TEST_CASE("candump: the direction that newer versions append is passed over") {
   CHECK_FALSE(candump::parse_line("(0.0) can0 123#11 X").ok());
 }
 
+TEST_CASE("candump: blanks at the end are passed over, however many") {
+  for (const std::string frame : {"123#11", "123#11 R", "123#R", "123#", "123##3"}) {
+    for (const std::size_t blanks : {1, 2, 7}) {
+      const std::string text = "(0.0) can0 " + frame;
+      const auto line = candump::parse_line(text + std::string(blanks, ' '));
+      INFO(text << " and " << blanks);
+      CHECK(line.ok());
+      CHECK(formatted(line.frame, line.interface_name) == formatted(candump::parse_line(text).frame, "can0"));
+    }
+  }
+  CHECK(error_in("   ").starts_with("no time"));
+  CHECK(error_in("(0.0) can0  123#11").starts_with("no frame"));
+}
+
 TEST_CASE("candump: times are exact to the nanosecond") {
   CHECK(candump::parse_time("1290682980.123456789") == 1290682980123456789);
   CHECK(candump::parse_time("1290682980.1234567899") == 1290682980123456789);
