@@ -36,7 +36,7 @@ class CommandLine {
 /// One file to read and one to write.
 class FilePair {
  public:
-  /// False if either cannot be opened. RESULTS is emptied.
+  /// False if either cannot be opened. `out` is emptied.
   bool open(const char* in, const char* out);
   /// Fills the span and returns its length; less at the end of the file.
   std::size_t read(std::span<std::byte> bytes);

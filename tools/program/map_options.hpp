@@ -42,7 +42,7 @@ void add_map_options(CLI::App& command, MapOptions& options);
 std::vector<NamedFile> outputs_of(const MapOptions& options);
 
 /// Puts the window of the flags in place of the robot's: rows and columns are rounded up to whole blocks. Throws
-/// BadInput if it makes no sense.
+/// CLI::ValidationError if it makes no sense.
 void apply_window(const MapOptions& options, WindowSettings& window);
 
 /// The grid that was asked for: the window of the flags exactly, without the rounding.
