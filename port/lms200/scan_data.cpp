@@ -1,9 +1,6 @@
 #include "lms200/scan_data.hpp"
 
-#include <algorithm>
 #include <limits>
-
-#include "lms200/telegram.hpp"
 
 namespace curbline::lms200 {
 namespace {
@@ -16,19 +13,6 @@ std::uint16_t u16(std::span<const std::uint8_t> bytes, std::size_t at) {
 }
 
 }  // namespace
-
-std::size_t frame(std::uint8_t address, std::span<const std::uint8_t> content, std::span<std::uint8_t> telegram) {
-  const std::size_t size = 4 + content.size();
-  telegram[0] = stx;
-  telegram[1] = address;
-  telegram[2] = static_cast<std::uint8_t>(content.size());
-  telegram[3] = static_cast<std::uint8_t>(content.size() >> 8);
-  std::copy(content.begin(), content.end(), telegram.begin() + 4);
-  const std::uint16_t crc = crc_of(telegram.first(size));
-  telegram[size] = static_cast<std::uint8_t>(crc);
-  telegram[size + 1] = static_cast<std::uint8_t>(crc >> 8);
-  return size + 2;
-}
 
 ScanResult parse_scan_data(std::span<const std::uint8_t> content, int range_bits, std::span<float, most_beams> ranges_m,
                            std::size_t& count) {

@@ -161,7 +161,7 @@ bool Session::take_scan(std::span<const std::uint8_t> content, const scanner::No
   const Variant v = variant_of(count);
   constexpr double degree = std::numbers::pi / 180.0;
   ++counters_.lines;
-  take_time(v, content.size() + 6, now);
+  take_time(v, content.size() + frame_bytes, now);
   line_.first_bearing_rad = static_cast<float>(-0.5 * v.field_deg * degree);
   line_.bearing_step_rad = static_cast<float>(v.step_centideg / 100.0 * degree);
   line_.ranges_m = std::span(ranges_m_).first(count);

@@ -14,6 +14,9 @@ namespace curbline::lms200 {
 /// The longest telegram, as chapter 3 has it.
 inline constexpr std::size_t most_bytes = 812;
 
+/// What surrounds the content.
+inline constexpr std::size_t header_bytes = 4, crc_bytes = 2, frame_bytes = header_bytes + crc_bytes;
+
 inline constexpr std::uint8_t stx = 0x02, acknowledged = 0x06, not_acknowledged = 0x15, from_scanner = 0x80;
 
 /// Sum of a telegram without its last two bytes. SICK's own: the register is shifted by one bit a byte (polynomial
@@ -32,18 +35,18 @@ constexpr std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
 /// Telegrams whose address has the bits of `address`.
 template <std::uint8_t address>
 struct Format {
-  static constexpr std::size_t header = 4;
+  static constexpr std::size_t header = header_bytes;
   static constexpr std::size_t length_of(std::span<const std::uint8_t> bytes) {
     return static_cast<std::size_t>(bytes[2] | bytes[3] << 8);
   }
   static std::size_t size_of(std::span<const std::uint8_t> bytes) {
-    return bytes[0] == stx && (bytes[1] & from_scanner) == address ? header + length_of(bytes) + 2 : 0;
+    return bytes[0] == stx && (bytes[1] & from_scanner) == address ? length_of(bytes) + frame_bytes : 0;
   }
   static bool plausible(std::span<const std::uint8_t> bytes) {
-    return length_of(bytes) >= 1 && length_of(bytes) <= most_bytes - header - 2;
+    return length_of(bytes) >= 1 && length_of(bytes) <= most_bytes - frame_bytes;
   }
   static bool check(std::span<const std::uint8_t> telegram) {
-    const std::size_t size = telegram.size() - 2;
+    const std::size_t size = telegram.size() - crc_bytes;
     return crc_of(telegram.first(size)) == static_cast<std::uint16_t>(telegram[size] | telegram[size + 1] << 8);
   }
   static bool filler(std::uint8_t byte) { return byte == acknowledged || byte == not_acknowledged; }
@@ -55,10 +58,10 @@ using ScannerBuffer = scanner::TelegramBuffer<Format<0>, most_bytes>;
 
 /// Command, data and status of a telegram that passed check().
 inline std::span<const std::uint8_t> content_of(std::span<const std::uint8_t> telegram) {
-  return telegram.subspan(4, telegram.size() - 6);
+  return telegram.subspan(header_bytes, telegram.size() - frame_bytes);
 }
 
-/// Frames `content` into `telegram`, which has room for six bytes more. Returns its size.
+/// Frames `content` into `telegram`, which has room for frame_bytes more. Returns its size.
 std::size_t frame(std::uint8_t address, std::span<const std::uint8_t> content, std::span<std::uint8_t> telegram);
 
 }  // namespace curbline::lms200

@@ -18,7 +18,7 @@ constexpr std::uint16_t millimetres = 1 << 14;
 
 Bytes framed(Bytes content) {
   content.push_back(status_well);
-  Bytes telegram(content.size() + 6);
+  Bytes telegram(content.size() + lms200::frame_bytes);
   lms200::frame(address, content, telegram);
   return telegram;
 }
