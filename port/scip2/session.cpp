@@ -90,18 +90,8 @@ bool Session::take(std::span<const std::uint8_t>& bytes, const scanner::Now& now
 }
 
 void Session::take_reply(const Reply& reply, const scanner::Now& now) {
+  if (step_ == Step::measuring) return end_of_stream(reply);
   const bool good = reply.status == "00";
-  if (step_ == Step::measuring) {  // the stream ends with a status other than 99: a fault of the scanner
-    if (reply.echo != command()) {
-      ++counters_.malformed;
-      return;
-    }
-    if (good) return;
-    ++counters_.device_errors;
-    problem_ = "the scanner stopped measuring for a fault of its own; expected status 99";
-    go_to(Step::stop);
-    return;
-  }
   if (due_ || reply.echo != command()) return;  // of an older command
   switch (step_) {
     case Step::stop:
@@ -123,25 +113,34 @@ void Session::take_reply(const Reply& reply, const scanner::Now& now) {
       go_to(parameters_.steps_a_turn > 0 ? Step::laser_on : Step::scip2);
       break;
     case Step::laser_on:
-      if (good || reply.status == "02") {
-        go_to(Step::measure);
-      } else {
-        ++counters_.refused;
-        problem_ = "the scanner refuses to switch its laser on (command BM)";
-      }
+      if (!good && reply.status != "02") return refuse("the scanner refuses to switch its laser on (command BM)");
+      go_to(Step::measure);
       break;
     case Step::measure:
-      if (good) {
-        problem_ = {};
-        go_to(Step::measuring);
-      } else {
-        ++counters_.refused;
-        problem_ = "the scanner refuses to measure (command MD)";
-      }
+      if (!good) return refuse("the scanner refuses to measure (command MD)");
+      problem_ = {};
+      go_to(Step::measuring);
       break;
     case Step::measuring:
       break;
   }
+}
+
+/// It ends with a status other than 99: a fault of the scanner.
+void Session::end_of_stream(const Reply& reply) {
+  if (reply.echo != command()) {
+    ++counters_.malformed;
+    return;
+  }
+  if (reply.status == "00") return;
+  ++counters_.device_errors;
+  problem_ = "the scanner stopped measuring for a fault of its own; expected status 99";
+  go_to(Step::stop);
+}
+
+void Session::refuse(std::string_view problem) {
+  ++counters_.refused;
+  problem_ = problem;
 }
 
 void Session::take_parameters(const Reply& reply) {

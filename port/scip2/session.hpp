@@ -60,6 +60,8 @@ class Session final : public scanner::Session {
 
   void go_to(Step step);
   void take_reply(const Reply& reply, const scanner::Now& now);
+  void end_of_stream(const Reply& reply);
+  void refuse(std::string_view problem);
   void take_parameters(const Reply& reply);
   void take_time(const Reply& reply, const scanner::Now& now);
   bool take_scan(const Scan& scan, const scanner::Now& now);
