@@ -45,8 +45,7 @@ class Numbers {
 void read_header(Numbers& in, ScanData& data) {
   in.take(8);  // version, device, serial number
   data.device_status = in.u16();
-  in.u16();  // telegram count
-  data.scan_count = in.u16();
+  in.take(4);  // telegram count, scan count
   data.start_us = in.u32();
   data.transmission_us = in.u32();
   in.take(6);  // inputs, outputs, reserved

@@ -14,8 +14,7 @@
 namespace curbline::cola {
 
 struct ScanData {
-  std::uint16_t device_status = 0;  ///< bit 0: fault, bit 1: front screen dirty, bit 2: too dirty to measure
-  std::uint16_t scan_count = 0;
+  std::uint16_t device_status = 0;    ///< bit 0: fault, bit 1: front screen dirty, bit 2: too dirty to measure
   std::uint32_t start_us = 0;         ///< since power-on: when the scan began
   std::uint32_t transmission_us = 0;  ///< the same clock: when the telegram was handed over
   double start_angle_deg = 0.0;       ///< of the scanner: 90 is ahead, counterclockwise

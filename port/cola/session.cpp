@@ -120,7 +120,6 @@ bool Session::take_time(const ScanData& data, const scanner::Now& now) {
       static_cast<std::int64_t>(data.transmission_us - data.start_us) * 1000;  // modulo 2^32
   clock_.anchor(*device_ns + duration_ns, now.steady_ns);
   line_.device_ns = *device_ns;
-  line_.has_stamp = true;
   line_.host_ns = now.to_host(clock_.to_steady(*device_ns));
   return true;
 }

@@ -50,7 +50,7 @@ int LiveScanner::open() {
   left_ = {};
   more_ = false;
   baud_ = 0;
-  const int failed = stream_.connect(options_.connect_patience);
+  const int failed = stream_.connect(connect_patience);
   const Now now = host_now();
   next_attempt_ns_ = now.steady_ns + nanoseconds(options_.retry_after);
   if (failed != 0) return last_error_ = failed;

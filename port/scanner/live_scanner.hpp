@@ -15,11 +15,13 @@
 
 namespace curbline::scanner {
 
+/// For one attempt to connect.
+inline constexpr port::Milliseconds connect_patience{2'000};
+
 struct LiveOptions {
-  bool reconnect = true;                       ///< false: a connection that ends is the end
-  port::Milliseconds connect_patience{2'000};  ///< for one attempt
-  port::Milliseconds retry_after{500};         ///< from one attempt to the next, at the least
-  port::Milliseconds silence{3'000};           ///< without a line: the scanner is taken as lost, and connected anew
+  bool reconnect = true;                ///< false: a connection that ends is the end
+  port::Milliseconds retry_after{500};  ///< from one attempt to connect to the next, at the least
+  port::Milliseconds silence{3'000};    ///< without a line: the scanner is taken as lost, and connected anew
 };
 
 class LiveScanner {

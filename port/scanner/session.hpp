@@ -28,8 +28,7 @@ struct Now {
 /// A whole scan line.
 struct Line {
   std::int64_t host_ns = 0;        ///< of beam 0, on the host's clock
-  std::int64_t device_ns = 0;      ///< of beam 0, on the scanner's; counts on where the scanner's counter wraps
-  bool has_stamp = false;          ///< false: the scanner gives no times, device_ns means nothing
+  std::int64_t device_ns = 0;      ///< the same on the scanner's, counting on where its counter wraps; 0: it gives none
   float first_bearing_rad = 0.0f;  ///< counterclockwise, 0 ahead: as LaserSettings has it
   float bearing_step_rad = 0.0f;
   std::span<const float> ranges_m;  ///< NaN: no return. Valid until the session takes more bytes

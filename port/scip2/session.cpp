@@ -188,11 +188,8 @@ bool Session::take_scan(const Scan& scan, const scanner::Now& now) {
   const double step_rad = 2.0 * std::numbers::pi / p.steps_a_turn;
   const std::int64_t first_step_ns = *device_ns + p.since_step_0_ns();
   ++counters_.lines;
-  line_ = {now.to_host(clock_.to_steady(first_step_ns)),
-           first_step_ns,
-           true,
-           static_cast<float>((p.first_step - p.front_step) * step_rad),
-           static_cast<float>(step_rad),
+  line_ = {now.to_host(clock_.to_steady(first_step_ns)), first_step_ns,
+           static_cast<float>((p.first_step - p.front_step) * step_rad), static_cast<float>(step_rad),
            std::span(ranges_m_).first(scan.ranges_mm.size())};
   return true;
 }

@@ -36,10 +36,10 @@ TEST_CASE("scanner: every range and the geometry come back as the simulated scan
 
 TEST_CASE("scanner: the stamp and a time of the log give the line's time in the log") {
   for (Scanner& s : whole_scanners()) {
+    if (s.name == "lms200") continue;  // its telegrams bear no time
     INFO(s.name);
     start(s);
     lines_read(s, joined(telegrams_of(s, 6)));
-    if (!s.session->line().has_stamp) continue;
     const std::int64_t time_ns = line_of(s.first, 5).time_ns;
     for (const std::int64_t away_s : {0, 1, -1, 600, -600})
       CHECK(s.session->log_time_ns(time_ns + away_s * 1'000'000'000) == time_ns);

@@ -370,17 +370,15 @@ TEST_CASE("simulate: the files are read back as they were meant, with the truth 
   const Scene scene = find_scene("city");
   const SimulationSummary summary = simulate(scene, robots + "utm30lx.toml", out.path.string(), {1, 0.5});
   CHECK(summary.lines == 20);
-  CHECK(summary.beams == 20 * 1081);
 
   CarmenReader scans((out.path / "scans.carmen").string());
-  std::int64_t lines = 0, returns = 0;
+  std::int64_t lines = 0;
   while (const auto scan = scans.next()) {
     ++lines;
     CHECK(scan->time_ns == simulated_start_ns + (lines - 1) * 25'000'000);
-    for (const float range : scan->ranges_m) returns += std::isfinite(range);
+    CHECK(scan->ranges_m.size() == 1081);
   }
   CHECK(lines == summary.lines);
-  CHECK(returns == summary.returns);
 
   CanLogReader can((out.path / "can.log").string());
   std::int64_t frames = 0;

@@ -167,7 +167,6 @@ void ScannerServer::play_line() {
     wire_free_ns_ =
         measured_ns + std::int64_t{10'000'000'000} * static_cast<std::int64_t>(telegram.size()) / device_->baud();
   if (options_.damage) options_.damage(telegram, index);
-  ++lines_sent_;
   send(telegram);
 }
 

@@ -47,8 +47,6 @@ class ScannerServer {
   /// Until the feed ends, or `stop`. Lines that fall due without a reader are lost, but not before the first has asked.
   void run(const std::atomic<bool>& stop);
 
-  long lines_sent() const { return lines_sent_; }
-
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -75,7 +73,7 @@ class ScannerServer {
   int listener_ = -1, reader_ = -1, pty_ = -1;  ///< reader_: the connection, or the pty's own side
   std::uint16_t port_ = 0;
   std::string path_;
-  long next_line_ = 0, lines_sent_ = 0;
+  long next_line_ = 0;
   std::int64_t wire_free_ns_ = INT64_MIN;  ///< of the feed's time: when a serial line has carried what was sent
 };
 

@@ -9,8 +9,6 @@
 #include "simulator/simulation.hpp"
 #include "simulator/truth.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -61,9 +59,6 @@ class Recording {
     scan_.ranges_m.assign(line.ranges_m.begin(), line.ranges_m.end());
     write_carmen(*scans_, scan_);
     ++summary.lines;
-    summary.beams += static_cast<std::int64_t>(line.ranges_m.size());
-    summary.returns +=
-        std::count_if(line.ranges_m.begin(), line.ranges_m.end(), [](float r) { return std::isfinite(r); });
   }
 
   void take(const Truth& truth) {

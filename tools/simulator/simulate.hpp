@@ -27,7 +27,7 @@ struct SimulationOptions {
 
 struct SimulationSummary {
   double duration_s = 0;
-  std::int64_t lines = 0, beams = 0, returns = 0, tilt_frames = 0, poses = 0;
+  std::int64_t lines = 0, tilt_frames = 0, poses = 0;
 };
 
 /// Makes the directory if it is not there. Throws BadInput if the robot's description is bad, the robot stands on
