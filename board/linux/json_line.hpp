@@ -50,8 +50,8 @@ class JsonLine {
     put(value ? "true" : "false");
     return *this;
   }
-  /// Rounded to a millionth, as curb files have it.
-  JsonLine& metres(double value) {
+  /// Metres, seconds, probabilities: rounded to a millionth, as curb files have them.
+  JsonLine& real(double value) {
     if (std::isfinite(value)) return number(std::round(value * 1e6) / 1e6);
     separate();
     put("null");

@@ -28,14 +28,14 @@ void put(JsonLine& json, std::string_view key, std::uint64_t count) {
 void put_tilt(JsonLine& json, const Report& s) {
   json.key("tilt").open('{').key("state").text(word_of(s.tilt->state()));
   put(json, "times_lost", s.tilt->times_lost());
-  json.key("longest_silence_s").metres(1e-9 * static_cast<double>(s.tilt->longest_silence_ns()));
+  json.key("longest_silence_s").real(1e-9 * static_cast<double>(s.tilt->longest_silence_ns()));
   put(json, "frames", s.tilt_frames->frames);
   put(json, "readings", s.tilt_frames->readings);
   put(json, "others", s.tilt_frames->others);
   put(json, "malformed", s.tilt_frames->malformed);
   put(json, "without_sync", s.tilt_frames->without_sync);
   put(json, "dropped", s.pipeline.tilt_dropped);
-  json.key("latency_offset_s").metres(s.tilt_latency->offset_s()).key("latency_sd_s").metres(s.tilt_latency->sd_s());
+  json.key("latency_offset_s").real(s.tilt_latency->offset_s()).key("latency_sd_s").real(s.tilt_latency->sd_s());
   put(json, "latency_steps", s.tilt_latency->steps());
   json.close('}');
 }
@@ -114,11 +114,11 @@ void put_histogram(JsonLine& json, std::string_view key, const LatencyHistogram&
 }
 
 void put_curb(JsonLine& json, const Curb& c) {
-  json.open('{').key("x0_m").metres(c.x0_m).key("y0_m").metres(c.y0_m).key("x1_m").metres(c.x1_m);
-  json.key("y1_m").metres(c.y1_m).key("position_sd_m").metres(c.position_sd_m);
-  json.key("height_m").metres(c.height_m).key("height_sd_m").metres(c.height_sd_m);
-  json.key("probability").metres(c.probability).key("kind").text(to_string(c.kind));
-  json.key("face_width_m").metres(c.face_width_m).key("id").whole(c.id).close('}');
+  json.open('{').key("x0_m").real(c.x0_m).key("y0_m").real(c.y0_m).key("x1_m").real(c.x1_m);
+  json.key("y1_m").real(c.y1_m).key("position_sd_m").real(c.position_sd_m);
+  json.key("height_m").real(c.height_m).key("height_sd_m").real(c.height_sd_m);
+  json.key("probability").real(c.probability).key("kind").text(to_string(c.kind));
+  json.key("face_width_m").real(c.face_width_m).key("id").whole(c.id).close('}');
 }
 
 }  // namespace
@@ -136,7 +136,7 @@ std::string_view state_of(const Report& s) {
 std::string_view status_line(const Report& s, std::span<char> buffer) {
   JsonLine json(buffer);
   json.open('{').key("status").open('{').key("state").text(state_of(s)).key("time_s").seconds(s.time_ns);
-  json.key("uptime_s").metres(s.uptime_s);
+  json.key("uptime_s").real(s.uptime_s);
   if (s.tilt != nullptr) put_tilt(json, s);
   if (s.bus != nullptr) put_bus(json, *s.bus);
   put_lines(json, s);

@@ -1,6 +1,8 @@
 #include "troubles.hpp"
 
 #include <cstring>
+#include <iterator>
+#include <tuple>
 
 namespace curbline::daemon {
 namespace {
@@ -59,7 +61,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
     std::uint64_t count;
     std::string_view what;
   };
-  const std::array<Counted, 18> all{{
+  const Counted all[] = {
       {can.times_bus_off, "the CAN controller has left the bus (bus-off)"},
       {can.restarts, "the CAN controller is back on the bus"},
       {can.bus_errors, "errors on the CAN bus"},
@@ -78,8 +80,9 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {scanner.damaged, "damaged telegrams of the scanner"},
       {s.server.too_slow, "a client was too slow, and dropped"},
       {s.server.refused, "more clients than there is room for"},
-  }};
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  };
+  static_assert(std::size(all) == std::tuple_size_v<decltype(counted_)>, "what was told of each lies in counted_");
+  for (std::size_t i = 0; i < counted_.size(); ++i) {
     if (counted_[i].is_news(all[i].count, now_ns)) say(all[i].what, " (", all[i].count, " so far)");
   }
 }

@@ -58,8 +58,8 @@ TEST_CASE("reports: curbs that do not fit are left out and counted, and the line
 TEST_CASE("reports: numbers that JSON does not have are null") {
   std::array<char, 256> buffer{};
   JsonLine json(buffer);
-  json.open('[').metres(std::numeric_limits<double>::quiet_NaN()).metres(std::numeric_limits<double>::infinity());
-  const auto line = nlohmann::json::parse(json.metres(1e300).metres(-0.0000004).close(']').end());
+  json.open('[').real(std::numeric_limits<double>::quiet_NaN()).real(std::numeric_limits<double>::infinity());
+  const auto line = nlohmann::json::parse(json.real(1e300).real(-0.0000004).close(']').end());
   CHECK(line.at(0).is_null());
   CHECK(line.at(1).is_null());
   CHECK(line.at(2).is_null());
