@@ -9,9 +9,9 @@ namespace curbline::tools {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double spacing_m = 0.05;
 constexpr double band_tolerance_m = 0.1, match_tolerance_m = 0.15;
 constexpr std::array<double, 4> tolerances_m{0.05, 0.1, 0.15, 0.3};
+constexpr double reach_m = tolerances_m.back() + spacing_m;
 constexpr double least_m = 0.01;  // of a true step: where it has run out there is none to be found
 constexpr double low_m = 0.02, high_m = 0.04;
 
@@ -32,7 +32,7 @@ class Nearest {
     FoundSample out{height_m};
     for (const TruthSample& s : samples_) {
       const double dx = p.x - s.at.x, dy = p.y - s.at.y;
-      if (std::abs(dx) > 0.35 || std::abs(dy) > 0.35) continue;
+      if (std::abs(dx) > reach_m || std::abs(dy) > reach_m) continue;
       const double across = dx * s.to_left.x + dy * s.to_left.y, along = dx * s.to_left.y - dy * s.to_left.x;
       const double on_sample = std::clamp(along, -spacing_m / 2, spacing_m / 2);
       const double distance = std::hypot(across, along - on_sample);
@@ -49,10 +49,6 @@ class Nearest {
   const std::vector<TruthSample>& samples_;
   const std::optional<Point2>& robot_;
 };
-
-Segment line_of(const MapCurb& c) {
-  return {c.x0_m, c.y0_m, c.x1_m, c.y1_m};
-}
 
 std::vector<FoundSample> found_samples(const Found& found, const Nearest& nearest, const Seen& seen) {
   std::vector<FoundSample> out;

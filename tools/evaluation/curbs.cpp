@@ -6,8 +6,6 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double sample_step_m = 0.05;
-
 struct Sample {
   double x_m, y_m;
   double share;  ///< 0 at the segment's start, 1 at its end
@@ -15,7 +13,7 @@ struct Sample {
 
 std::vector<Sample> samples(const Segment& s) {
   const double length = std::hypot(s.x1_m - s.x0_m, s.y1_m - s.y0_m);
-  const int n = std::max(1, static_cast<int>(std::ceil(length / sample_step_m)));
+  const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
   std::vector<Sample> out;
   for (int k = 0; k < n; ++k) {
     const double t = (k + 0.5) / n;
@@ -24,11 +22,11 @@ std::vector<Sample> samples(const Segment& s) {
   return out;
 }
 
-Segment line_of(const MapCurb& c) {
-  return {c.x0_m, c.y0_m, c.x1_m, c.y1_m};
-}
-
 }  // namespace
+
+Segment line_of(const MapCurb& curb) {
+  return {curb.x0_m, curb.y0_m, curb.x1_m, curb.y1_m};
+}
 
 double distance_m(double x_m, double y_m, const Segment& s) {
   const double dx = s.x1_m - s.x0_m, dy = s.y1_m - s.y0_m, length2 = dx * dx + dy * dy;

@@ -9,9 +9,14 @@
 
 namespace curbline::tools {
 
+/// From sample to sample, at the most.
+inline constexpr double spacing_m = 0.05;
+
 struct Segment {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
 };
+
+Segment line_of(const MapCurb& curb);
 
 double distance_m(double x_m, double y_m, const Segment& segment);
 

@@ -6,7 +6,6 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double spacing_m = 0.05;
 constexpr double aside_m = 0.2;
 
 }  // namespace
@@ -50,7 +49,7 @@ void Detections::observe(double time_s, Point2 robot, const Bounds& window, cons
     }
     if (!detection.seen_s && visible(s, seen)) detection.seen_s = time_s;
     const bool found = std::any_of(curbs.begin(), curbs.end(), [&](const MapCurb& c) {
-      return is_step(c) && distance_m(s.at.x, s.at.y, {c.x0_m, c.y0_m, c.x1_m, c.y1_m}) <= tolerance_m;
+      return is_step(c) && distance_m(s.at.x, s.at.y, line_of(c)) <= tolerance_m;
     });
     if (!found) continue;
     if (!detection.seen_s) detection.seen_s = time_s;
