@@ -73,13 +73,11 @@ class DriveWriter {
   }
 
   void put_poses(std::int64_t until_ns) {
-    const auto f = [](double value) { return static_cast<float>(value); };
     while (poses_ && poses_until_ns_ < until_ns) {
       const auto pose = poses_->next();
       poses_until_ns_ = pose ? pose->time_ns : log_ended;
       if (!pose) return;
-      put(RecordKind::pose, Pose{pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy),
-                                 f(pose->qz), f(pose->qw)});
+      put(RecordKind::pose, to_pose(*pose));
     }
   }
 

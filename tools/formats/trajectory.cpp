@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "curbline/pose_track.hpp"
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
 
@@ -34,6 +33,11 @@ TrajectoryPose parse_pose(Fields& fields) {
 }
 
 }  // namespace
+
+Pose to_pose(const TrajectoryPose& pose) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  return {pose.time_ns, f(pose.x_m), f(pose.y_m), f(pose.z_m), f(pose.qx), f(pose.qy), f(pose.qz), f(pose.qw)};
+}
 
 std::optional<TrajectoryPose> TrajectoryReader::next() {
   while (const auto text = source_.next()) {

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "curbline/pose_track.hpp"
 #include "formats/line_reader.hpp"
 
 namespace curbline::tools {
@@ -17,6 +18,9 @@ struct TrajectoryPose {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;  ///< of norm 1
 };
+
+/// As the pipeline has it.
+Pose to_pose(const TrajectoryPose& pose);
 
 class TrajectoryReader {
  public:

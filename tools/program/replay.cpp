@@ -163,10 +163,8 @@ void Replay::feed_poses(std::int64_t until_ns) {
       poses_until_ns_ = log_ended;
       return;
     }
-    const auto f = [](double value) { return static_cast<float>(value); };
     ++poses_fed_;
-    pipeline_->add_pose(
-        {pose->time_ns, f(pose->x_m), f(pose->y_m), f(pose->z_m), f(pose->qx), f(pose->qy), f(pose->qz), f(pose->qw)});
+    pipeline_->add_pose(to_pose(*pose));
     poses_until_ns_ = pose->time_ns;
     robot_marker_ = {pose->x_m, pose->y_m,
                      std::atan2(2 * (pose->qw * pose->qz + pose->qx * pose->qy),
