@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "peers/peers.hpp"
+#include "reference/border.hpp"
 
 namespace curbline::tools::peers {
 namespace {
@@ -29,13 +30,12 @@ std::vector<MapCurb> gradient_curbs(const reference::Dem& dem) {
         int end = first + 1;
         for (; end < length && at(end) * here > 0; ++end) sum += at(end);
         if (here != 0) {
-          const double across = axis == 0 ? g.x0_m + (line + 1) * g.dx_m : g.y0_m + (line + 1) * g.dy_m;
-          const double from = axis == 0 ? g.y0_m + first * g.dy_m : g.x0_m + first * g.dx_m;
-          const double to = axis == 0 ? g.y0_m + end * g.dy_m : g.x0_m + end * g.dx_m;
-          const double height = (across >= 0 ? sum : -sum) / (end - first);  // the side nearer to the origin is near
-          const char* const kind = height > 0 ? "step_up" : "step_down";
-          out.push_back(axis == 0 ? MapCurb{across, from, across, to, height, 0, 1, kind}
-                                  : MapCurb{from, across, to, across, height, 0, 1, kind});
+          MapCurb curb = reference::border_run(g, axis, line, first, end);
+          const double across = axis == 0 ? curb.x0_m : curb.y0_m;
+          curb.height_m = (across >= 0 ? sum : -sum) / (end - first);  // the side nearer to the origin is near
+          curb.probability = 1;
+          curb.kind = curb.height_m > 0 ? "step_up" : "step_down";
+          out.push_back(curb);
         }
         first = end;
       }

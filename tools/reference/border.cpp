@@ -23,12 +23,13 @@ Sides sides(const Map& map, int i, int j, int axis) {
   return a.points > 0 && b.points > 0 ? Sides{a.label, b.label} : Sides{};
 }
 
-MapCurb make_curb(const Map& map, const Sides& sides, int axis, double x0, double y0, double x1, double y1) {
-  MapCurb curb{x0, y0, x1, y1, 0, 1, 1, "crease"};
+MapCurb make_curb(const Map& map, const Sides& sides, int axis, MapCurb curb) {
+  curb.height_sd_m = curb.probability = 1;
+  curb.kind = "crease";
   const MapPlane* low = plane_of(map, sides.low);
   const MapPlane* high = plane_of(map, sides.high);
   if (low == nullptr || high == nullptr) return curb;
-  const double x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
+  const double x = 0.5 * (curb.x0_m + curb.x1_m), y = 0.5 * (curb.y0_m + curb.y1_m);
   const double step_m = step(*low, *high, x, y);
   curb.height_m = (axis == 0 ? x : y) >= 0 ? step_m : -step_m;  // the side nearer to the origin is near
   curb.height_sd_m = std::hypot(low->sd_m, high->sd_m);
@@ -40,6 +41,15 @@ MapCurb make_curb(const Map& map, const Sides& sides, int axis, double x0, doubl
 }
 
 }  // namespace
+
+MapCurb border_run(const Grid& g, int axis, int line, int first, int end) {
+  if (axis == 0) {
+    const double x = g.x0_m + (line + 1) * g.dx_m;
+    return {x, g.y0_m + first * g.dy_m, x, g.y0_m + end * g.dy_m};
+  }
+  const double y = g.y0_m + (line + 1) * g.dy_m;
+  return {g.x0_m + first * g.dx_m, y, g.x0_m + end * g.dx_m, y};
+}
 
 std::vector<MapCurb> borders(const Map& map) {
   const Grid& g = map.grid;
@@ -54,13 +64,7 @@ std::vector<MapCurb> borders(const Map& map) {
         const Sides here = at(first);
         int end = first + 1;
         while (end < length && at(end) == here) ++end;
-        if (here.border()) {
-          const double across = axis == 0 ? g.x0_m + (line + 1) * g.dx_m : g.y0_m + (line + 1) * g.dy_m;
-          const double from = axis == 0 ? g.y0_m + first * g.dy_m : g.x0_m + first * g.dx_m;
-          const double to = axis == 0 ? g.y0_m + end * g.dy_m : g.x0_m + end * g.dx_m;
-          out.push_back(axis == 0 ? make_curb(map, here, 0, across, from, across, to)
-                                  : make_curb(map, here, 1, from, across, to, across));
-        }
+        if (here.border()) out.push_back(make_curb(map, here, axis, border_run(g, axis, line, first, end)));
         first = end;
       }
     }
