@@ -96,10 +96,6 @@ const char* to_string(Status status) {
   return "?";
 }
 
-Filter filter_of(const can::Signal& signal) {
-  return {signal.id, signal.id_mask, signal.extended};
-}
-
 Status SocketCan::open(const char* interface_name, std::span<const Filter> filters) {
   close();
   if (filters.size() > max_filters) return Status::too_many_filters;

@@ -26,8 +26,8 @@
 #include <cstdint>
 #include <span>
 
+#include "can/filter.hpp"
 #include "can/frame.hpp"
-#include "can/signal.hpp"
 
 namespace curbline::socketcan {
 
@@ -46,14 +46,7 @@ enum class Status : std::uint8_t {
 };
 const char* to_string(Status status);
 
-/// Data frames whose id agrees with `id` in the bits of `mask`, of 11 bits or of 29, not both. Remote requests never
-/// pass.
-struct Filter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = CAN_EFF_MASK;
-  bool extended = false;
-};
-Filter filter_of(const can::Signal& signal);
+using can::Filter, can::filter_of;
 
 enum class LinkState : std::uint8_t { closed, up, down, gone };
 /// What the controller last said of itself (CAN's fault confinement). A bus that never complained is active.

@@ -29,8 +29,8 @@
 #include <optional>
 #include <span>
 
+#include "can/filter.hpp"
 #include "can/frame.hpp"
-#include "can/signal.hpp"
 #include "xilinx_can/bit_timing.hpp"
 #include "xilinx_can/registers.hpp"
 
@@ -54,15 +54,7 @@ struct Settings {
   std::int64_t restart_after_ns = 100'000'000;  ///< bus-off lasts so long; at 0 a broken bus would never be left alone
 };
 
-/// Data frames whose id agrees with `id` in the bits of `mask`. Remote requests never pass.
-struct Filter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = 0x1FFFFFFFu;
-  bool extended = false;
-};
-inline Filter filter_of(const can::Signal& signal) {
-  return {signal.id, signal.id_mask, signal.extended};
-}
+using can::Filter, can::filter_of;
 
 enum class BusState : std::uint8_t { closed, active, warning, passive, off };
 
