@@ -8,41 +8,17 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <utility>
+
+#include "byte_stream/descriptor.hpp"
 
 namespace curbline::port {
 namespace {
 
-speed_t speed_of(int baud) {
-  switch (baud) {
-    case 9'600:
-      return B9600;
-    case 19'200:
-      return B19200;
-    case 38'400:
-      return B38400;
-    case 57'600:
-      return B57600;
-    case 115'200:
-      return B115200;
-    case 500'000:
-      return B500000;
-    default:
-      return B0;
-  }
-}
-
 /// Below 0 when it is over.
 Milliseconds left_until(std::chrono::steady_clock::time_point give_up) {
   return std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
-}
-
-/// True when the descriptor is ready in time. False: not, or a signal came.
-bool wait_for(int fd, short events, Milliseconds patience) {
-  pollfd poll_fd{fd, events, 0};
-  return ::poll(&poll_fd, 1, static_cast<int>(std::max<std::int64_t>(patience.count(), 0))) == 1;
 }
 
 }  // namespace

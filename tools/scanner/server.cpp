@@ -16,14 +16,18 @@
 #include <cstring>
 #include <thread>
 
+#include "byte_stream/descriptor.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
 namespace {
 
-constexpr int tick_ms = 20;
+using namespace std::chrono_literals;
+using port::wait_for;
+
+constexpr auto tick = 20ms, send_patience = 1'000ms;
 constexpr std::int64_t lead_ns = 300'000'000;  // the scanner is on for so long before its first line
-constexpr auto last_words = std::chrono::seconds(5);
+constexpr auto last_words = 5s;
 
 std::unique_ptr<Device> make_device(Protocol protocol, const ScanFeed& feed, const std::string& source, int baud) {
   if (feed.front() == nullptr) throw BadInput(source + ": no scan line; expected at least one");
@@ -36,15 +40,6 @@ std::unique_ptr<Device> make_device(Protocol protocol, const ScanFeed& feed, con
       break;
   }
   return make_lms200_device(*feed.front(), source, baud);
-}
-
-bool wait_for(int fd, short events, int milliseconds) {
-  pollfd poll_fd{fd, events, 0};
-  return ::poll(&poll_fd, 1, milliseconds) == 1;
-}
-
-speed_t speed_of(int baud) {
-  return baud == 9'600 ? B9600 : baud == 19'200 ? B19200 : baud == 38'400 ? B38400 : B500000;
 }
 
 }  // namespace
@@ -116,13 +111,13 @@ void ScannerServer::run(const std::atomic<bool>& stop) {
 }
 
 void ScannerServer::accept_reader() {
-  if (!wait_for(listener_, POLLIN, tick_ms)) return;
+  if (!wait_for(listener_, POLLIN, tick)) return;
   reader_ = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
 }
 
 /// Waits for commands for a tick at most, not at all when a line is due, and answers them.
 void ScannerServer::serve() {
-  if (!wait_for(reader_, POLLIN, line_is_due() ? 0 : clock_runs_ ? 1 : tick_ms)) return;
+  if (!wait_for(reader_, POLLIN, line_is_due() ? 0ms : clock_runs_ ? 1ms : tick)) return;
   std::array<std::uint8_t, 512> bytes{};
   const ssize_t got = ::read(reader_, bytes.data(), bytes.size());
   if (got <= 0) {
@@ -140,7 +135,7 @@ void ScannerServer::serve() {
 bool ScannerServer::same_speed() const {
   if (pty_ < 0) return true;
   termios line{};
-  return ::tcgetattr(pty_, &line) == 0 && ::cfgetospeed(&line) == speed_of(device_->baud());
+  return ::tcgetattr(pty_, &line) == 0 && ::cfgetospeed(&line) == port::speed_of(device_->baud());
 }
 
 std::int64_t ScannerServer::clock_ns() const {
@@ -184,7 +179,7 @@ void ScannerServer::send(const Bytes& bytes) {
     if (put > 0) {
       sent += static_cast<std::size_t>(put);
     } else if (put < 0 && (errno == EAGAIN || errno == EINTR)) {
-      if (!wait_for(reader_, POLLOUT, 1000)) return;  // nobody reads: the rest is lost
+      if (!wait_for(reader_, POLLOUT, send_patience)) return;  // nobody reads: the rest is lost
     } else {
       drop_reader();
     }
@@ -210,7 +205,7 @@ void ScannerServer::finish() {
     ::shutdown(reader_, SHUT_WR);
     std::array<std::uint8_t, 64> bytes{};
     while (Clock::now() < give_up &&
-           (!wait_for(reader_, POLLIN, tick_ms) || ::read(reader_, bytes.data(), bytes.size()) > 0)) {
+           (!wait_for(reader_, POLLIN, tick) || ::read(reader_, bytes.data(), bytes.size()) > 0)) {
     }
   }
   drop_reader();
