@@ -1,6 +1,6 @@
 #include "scanner_thread.hpp"
 
-#include <cmath>
+#include "formats/carmen.hpp"
 
 namespace curbline::daemon {
 
@@ -46,21 +46,14 @@ void ScannerThread::run() {
 
 void ScannerThread::take_line() {
   const scanner::Line& line = link_.session->line();
-  if (has_beams_of_laser(line)) {
+  const tools::Misfit misfit = tools::misfit_of(line.ranges_m.size(), static_cast<double>(line.first_bearing_rad),
+                                                static_cast<double>(line.bearing_step_rad), laser_);
+  if (misfit == tools::Misfit::none) {
     inbox_.push({line.host_ns, line.ranges_m}, scanner::steady_now_ns());
     return;
   }
   const std::lock_guard lock(mutex_);
   ++state_.other_beams;
-}
-
-/// As check_geometry() has it for logs: the first and the last beam within half a step.
-bool ScannerThread::has_beams_of_laser(const scanner::Line& line) const {
-  const float tolerance_rad = 0.5f * std::abs(laser_.bearing_step_rad);
-  const auto steps = static_cast<float>(laser_.beams - 1);
-  return line.ranges_m.size() == static_cast<std::size_t>(laser_.beams) &&
-         std::abs(line.first_bearing_rad - laser_.first_bearing_rad) <= tolerance_rad &&
-         std::abs(line.bearing_step_rad - laser_.bearing_step_rad) * steps <= tolerance_rad;
 }
 
 }  // namespace curbline::daemon

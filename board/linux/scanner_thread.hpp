@@ -39,7 +39,6 @@ class ScannerThread {
  private:
   void run();
   void take_line();
-  bool has_beams_of_laser(const scanner::Line& line) const;
 
   std::string name_;
   tools::ScannerLink link_;

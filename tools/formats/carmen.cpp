@@ -72,25 +72,31 @@ std::optional<CarmenLine> CarmenReader::next() {
   return std::nullopt;
 }
 
+Misfit misfit_of(std::size_t beams, double first_bearing_rad, double bearing_step_rad, const LaserSettings& laser) {
+  if (beams != static_cast<std::size_t>(laser.beams)) return Misfit::beams;
+  const double first_rad = laser.first_bearing_rad, step_rad = laser.bearing_step_rad;
+  const double tolerance_rad = 0.5 * std::abs(step_rad);
+  if (!(std::abs(first_bearing_rad - first_rad) <= tolerance_rad)) return Misfit::first_bearing;
+  const double at_last_rad = std::abs(bearing_step_rad - step_rad) * (laser.beams - 1);
+  return at_last_rad <= tolerance_rad ? Misfit::none : Misfit::bearing_step;
+}
+
 void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const std::string& file, long line) {
-  const auto beams = static_cast<int>(scan.ranges_m.size());
-  if (beams != laser.beams) {
-    throw BadInput(file, line,
-                   std::to_string(beams) + " ranges; expected " + std::to_string(laser.beams) +
-                       ", the beams of the robot's laser");
-  }
-  const double tolerance_rad = 0.5 * std::abs(static_cast<double>(laser.bearing_step_rad));
-  const double first_rad = laser.first_bearing_rad;
-  if (!(std::abs(scan.start_angle_rad - first_rad) <= tolerance_rad)) {
-    throw BadInput(file, line,
-                   "start_angle is " + readable(scan.start_angle_rad, 6) + "; expected " + decimals(first_rad, 6) +
-                       ", first_bearing_rad of the robot's laser");
-  }
-  const double step_rad = laser.bearing_step_rad;
-  if (!(std::abs(scan.angular_resolution_rad - step_rad) * (beams - 1) <= tolerance_rad)) {
-    throw BadInput(file, line,
-                   "angular_resolution is " + readable(scan.angular_resolution_rad, 9) + "; expected " +
-                       decimals(step_rad, 9) + ", bearing_step_rad of the robot's laser");
+  const auto refuse = [&](const std::string& what, const std::string& expected, const char* name) {
+    throw BadInput(file, line, what + "; expected " + expected + ", " + name + " of the robot's laser");
+  };
+  const std::size_t beams = scan.ranges_m.size();
+  switch (misfit_of(beams, scan.start_angle_rad, scan.angular_resolution_rad, laser)) {
+    case Misfit::none:
+      return;
+    case Misfit::beams:
+      return refuse(std::to_string(beams) + " ranges", std::to_string(laser.beams), "the beams");
+    case Misfit::first_bearing:
+      return refuse("start_angle is " + readable(scan.start_angle_rad, 6), decimals(laser.first_bearing_rad, 6),
+                    "first_bearing_rad");
+    case Misfit::bearing_step:
+      return refuse("angular_resolution is " + readable(scan.angular_resolution_rad, 9),
+                    decimals(laser.bearing_step_rad, 9), "bearing_step_rad");
   }
 }
 

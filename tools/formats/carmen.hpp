@@ -41,8 +41,12 @@ class CarmenReader {
   std::optional<std::int64_t> last_time_ns_;
 };
 
-/// Throws BadInput("file:line: ...") unless the scan line has the beams and bearings of the robot's laser: as many
-/// beams, the first and last within half a step.
+/// What of a scan line is not as the robot's laser has it: it has as many beams, the first and the last within half a
+/// step.
+enum class Misfit : unsigned char { none, beams, first_bearing, bearing_step };
+Misfit misfit_of(std::size_t beams, double first_bearing_rad, double bearing_step_rad, const LaserSettings& laser);
+
+/// Throws BadInput("file:line: ...") unless the scan line has the beams and bearings of the robot's laser.
 void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const std::string& file, long line);
 
 /// Writes one line: ranges to the millimetre, angles to 1e-9 rad, times to the microsecond.
