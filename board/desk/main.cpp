@@ -1,6 +1,9 @@
 // The boards' program where there are files: on a desk, and under qemu-user. drive IN OUT runs a drive.
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <utility>
 
 #include "drive.hpp"
 
@@ -22,10 +25,14 @@ curbline::Pipeline<curbline::board::limits> pipeline;
 
 int main(int count, char** words) {
   if (count != 3) return std::fprintf(stderr, "usage: %s DRIVE RESULTS\n", words[0]), 2;
-  Files files{File(std::fopen(words[1], "rb"), std::fclose), File(std::fopen(words[2], "wb"), std::fclose)};
-  if (!files.in)
-    return std::fprintf(stderr, "%s: cannot be read; expected a stream of curbline-drive-log\n", words[1]), 1;
-  if (!files.out) return std::fprintf(stderr, "%s: cannot be written\n", words[2]), 1;
+  File in(std::fopen(words[1], "rb"), std::fclose);
+  if (!in) {
+    const char* const why = std::strerror(errno);
+    return std::fprintf(stderr, "%s: cannot be read: %s; expected a stream of curbline-drive-log\n", words[1], why), 1;
+  }
+  File out(std::fopen(words[2], "wb"), std::fclose);
+  if (!out) return std::fprintf(stderr, "%s: cannot be written: %s\n", words[2], std::strerror(errno)), 1;
+  Files files{std::move(in), std::move(out)};
   curbline::board::Drive drive(files, pipeline);
   curbline::board::DriveEnd end = drive.run();
   if (std::fflush(files.out.get()) != 0) end = curbline::board::DriveEnd::no_room_for_results;
