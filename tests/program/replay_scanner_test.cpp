@@ -102,7 +102,7 @@ TEST_CASE("program: curbline-scanner says what is wrong with its arguments and i
   CHECK(status_of("scip2 --speed 0 --scans " + scans) == 2);
   for (const std::string bad : {"inf", "5x"})
     check_wrong_usage(run(CURBLINE_SCANNER, {"scip2", "--scans", scans, "--speed", bad}),
-                      "--speed: " + bad + "; expected max or a finite number above 0\n");
+                      "--speed: " + bad + "; expected max or a number from 0.001 to 1000\n");
   for (const std::string bad : {"99999", "-1", "x"})
     check_wrong_usage(run(CURBLINE_SCANNER, {"scip2", "--scans", scans, "--port", bad}),
                       "--port: " + bad + "; expected a whole number from 0 to 65535\n");

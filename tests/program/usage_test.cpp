@@ -147,7 +147,7 @@ TEST_CASE("program: an empty file name, as an unset variable of a shell gives, i
 
 TEST_CASE("program: a seed that is no whole number of 64 bits is wrong usage") {
   const TemporaryDirectory dir;
-  for (const std::string bad : {"-1", "18446744073709551616", "1.5", "x", ""}) {
+  for (const std::string bad : {"-1", "18446744073709551616", "1.5", "x"}) {
     check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
                                 dir.path("o"), "--seed", bad}),
                       "--seed: " + bad + "; expected a whole number from 0 to 18446744073709551615\n");
@@ -199,6 +199,22 @@ TEST_CASE("program: a number that makes no sense is wrong usage and named") {
   }
 }
 
+TEST_CASE("program: an empty text, as a shell's unset variable gives, is no number") {
+  const TemporaryDirectory dir;
+  const std::string cloud = dir.write("a.xyz", "1 1 0\n");
+  check_wrong_usage(curbline({"map", cloud, "--origin", "", "-2", "--size", "4", "4"}),
+                    "--origin: empty; expected metres in [-1e9, 1e9]\n");
+  check_wrong_usage(curbline({"map", cloud, "--max-height", ""}),
+                    "--max-height: empty; expected metres in [-1e9, 1e9]\n");
+  check_wrong_usage(curbline({"replay", "--scans", cloud, "--robot", shipped_robot("utm30lx"), "--speed", ""}),
+                    "--speed: empty; expected max or a number from 0.001 to 1000\n");
+  const Words simulate{"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out", dir.path("o")};
+  check_wrong_usage(curbline(simulate + Words{"--seed", ""}),
+                    "--seed: empty; expected a whole number from 0 to 18446744073709551615\n");
+  check_wrong_usage(curbline(simulate + Words{"--duration", ""}),
+                    "--duration: empty; expected seconds above 0, at most a day\n");
+}
+
 TEST_CASE("program: a window of more than 512 cells is refused") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");
@@ -214,11 +230,11 @@ TEST_CASE("program: a window of more than 512 cells is refused") {
 
 TEST_CASE("program: a speed and a duration that make no sense are wrong usage") {
   const Recording logs("street", "utm30lx", {"--duration", "0.1"});
-  for (const std::string bad : {"fast", "0", "-1", "nan", "1x", "inf"}) {
+  for (const std::string bad : {"fast", "0", "-1", "nan", "1x", "inf", "1e-300", "0.0009", "1001"}) {
     check_wrong_usage(curbline(logs.replay() + Words{"--speed", bad}),
-                      "--speed: " + bad + "; expected max or a finite number above 0\n");
+                      "--speed: " + bad + "; expected max or a number from 0.001 to 1000\n");
   }
-  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300", "5s", ""}) {
+  for (const std::string bad : {"0", "-1", "nan", "inf", "x", "1e300", "5s"}) {
     const TemporaryDirectory out;
     check_wrong_usage(curbline({"simulate", "--scene", "street", "--robot", shipped_robot("utm30lx"), "--out",
                                 out.path("o"), "--duration", bad}),

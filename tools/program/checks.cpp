@@ -1,24 +1,31 @@
 #include "program/checks.hpp"
 
 #include <charconv>
-#include <cmath>
 #include <cstdlib>
 
 namespace curbline::tools {
+namespace {
+
+std::string refusal(const std::string& text, const std::string& expected) {
+  return (text.empty() ? "empty" : text) + "; expected " + expected;
+}
+
+}  // namespace
 
 CLI::Validator file_name() {
   return not_empty("a file name");
 }
 
 CLI::Validator not_empty(const std::string& expected) {
-  return CLI::Validator([=](const std::string& name) { return name.empty() ? "empty; expected " + expected : ""; }, "");
+  return CLI::Validator([=](const std::string& name) { return name.empty() ? refusal(name, expected) : ""; }, "");
 }
 
 CLI::Validator within(double low, double high, const std::string& expected) {
   const auto check = [=](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    return value >= low && value <= high && *end == '\0' ? "" : text + "; expected " + expected;
+    const bool good = !text.empty() && value >= low && value <= high && *end == '\0';
+    return good ? "" : refusal(text, expected);
   };
   return CLI::Validator(check, "");
 }
@@ -28,18 +35,18 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
     std::uint64_t value = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool good = problem == std::errc{} && end == text.data() + text.size() && value >= low && value <= high;
-    return good ? "" : text + "; expected a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    return good ? "" : refusal(text, "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
   };
   return CLI::Validator(check, "");
 }
 
+CLI::Validator speed() {
+  const CLI::Validator number = within(0.001, 1000, "max or a number from 0.001 to 1000");
+  return CLI::Validator([=](const std::string& text) { return text == "max" ? "" : number(text); }, "");
+}
+
 double parse_speed(const std::string& text) {
-  if (text == "max") return 0;
-  double speed = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), speed);
-  if (failed != std::errc{} || end != text.data() + text.size() || !(speed > 0) || !std::isfinite(speed))
-    throw CLI::ValidationError("--speed", text + "; expected max or a finite number above 0");
-  return speed;
+  return text == "max" ? 0 : std::strtod(text.c_str(), nullptr);
 }
 
 }  // namespace curbline::tools

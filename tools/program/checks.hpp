@@ -18,7 +18,8 @@ CLI::Validator within(double low, double high, const std::string& expected);
 /// Of 64 bits. CLI11 takes -1 for the greatest.
 CLI::Validator whole_number(std::uint64_t low = 0, std::uint64_t high = UINT64_MAX);
 
-/// Of --speed: times as fast as the log, 0 for max. Throws CLI::ValidationError.
-double parse_speed(const std::string& text);
+/// Of --speed: max, or times as fast as the log.
+CLI::Validator speed();
+double parse_speed(const std::string& text);  ///< of what speed() lets through; 0 for max
 
 }  // namespace curbline::tools

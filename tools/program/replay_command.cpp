@@ -31,15 +31,15 @@ class Pace {
   void wait_for(std::int64_t log_time_ns) {
     if (speed_ <= 0) return;
     if (first_ns_ == none) first_ns_ = log_time_ns;
-    const auto since_start =
-        std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(log_time_ns - first_ns_) / speed_));
-    std::this_thread::sleep_until(start_ + since_start);
+    const double since_start_ns = std::min(static_cast<double>(log_time_ns - first_ns_) / speed_, longest_ns);
+    std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(static_cast<std::int64_t>(since_start_ns)));
   }
 
  private:
   double speed_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   static constexpr std::int64_t none = INT64_MIN;
+  static constexpr double longest_ns = 1e18;  // 30 years: the steady clock can bear that
   std::int64_t first_ns_ = none;
 };
 
@@ -163,9 +163,10 @@ void add_replay(CLI::App& app) {
   command->add_option("--poses", o->logs.poses, "robot poses, TUM trajectory; none if the robot stands")
       ->check(file_name());
   command->add_option("--robot", o->robot, "robot description (TOML)")->check(file_name())->required();
-  command->add_option(
-      "--speed", o->speed,
-      "times as fast as the logs' own time, or max, as fast as can be: the default, but 1 with can:IFACE");
+  command
+      ->add_option("--speed", o->speed,
+                   "times as fast as the logs' own time, or max, as fast as can be: the default, but 1 with can:IFACE")
+      ->check(speed());
   command->add_option("--line-costs", o->line_costs, "file to write: CSV, the time and work of each scan line")
       ->check(file_name());
   add_map_options(*command, o->map);

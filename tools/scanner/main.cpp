@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
   app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)")
       ->check(whole_number(0, 65535));
   app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
+      ->check(speed())
       ->capture_default_str();
   app.callback([o] { run(*o); });
   return run_program(app, argc, argv);
