@@ -50,11 +50,6 @@ double speed_of(const std::string& text, bool live) {
   throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
 }
 
-bool same_curb(const MapCurb& a, const MapCurb& b) {
-  return a.x0_m == b.x0_m && a.y0_m == b.y0_m && a.x1_m == b.x1_m && a.y1_m == b.y1_m && a.height_m == b.height_m &&
-         a.height_sd_m == b.height_sd_m && a.probability == b.probability && a.kind == b.kind;
-}
-
 /// Each curb that the last scan line found or changed, one JSON object a line.
 class CurbStream {
  public:
@@ -62,8 +57,8 @@ class CurbStream {
     std::vector<MapCurb> now;
     for (const Curb& curb : curbs) {
       now.push_back(to_map_curb(curb));
-      const auto same = [&](const MapCurb& old) { return same_curb(old, now.back()); };
-      if (std::none_of(before_.begin(), before_.end(), same)) write_curb_json(std::cout, now.back());
+      if (std::find(before_.begin(), before_.end(), now.back()) == before_.end())
+        write_curb_json(std::cout, now.back());
     }
     std::cout.flush();
     before_ = std::move(now);
