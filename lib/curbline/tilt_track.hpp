@@ -26,7 +26,7 @@ struct TiltAngle {
   enum class Source : std::uint8_t { none, interpolated, extrapolated };
   Source source = Source::none;
   float angle_rad = 0.0f;
-  float rate_rad_s = 0.0f;
+  float rate_rad_s = 0.0f;  ///< by which the angle would differ if time did: over 20 ms about it, if there are readings
 };
 
 /// Readings as they were at one moment, ascending in time; times are those at which the angles were true. Ask with
@@ -45,8 +45,12 @@ class TiltSnapshot {
   friend class TiltTrack;
   TiltAngle find(std::int64_t time_ns);
   TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
-  static TiltAngle along(const TiltReading& a, const TiltReading& b, std::int64_t time_ns, TiltAngle::Source source);
+  static float seconds(std::int64_t ns) { return static_cast<float>(ns) * 1e-9f; }
+  static float slope_rad_s(const TiltReading& a, const TiltReading& b) {
+    return (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(b.time_ns - a.time_ns);
+  }
   static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
+  float rate_about(int before, int after, float own_rad_s) const;
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
@@ -54,9 +58,14 @@ class TiltSnapshot {
   std::uint32_t written_ = 0;  ///< readings up to the newest of them, since init()
   int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
+  float angle_variance_ = 0.0f, time_variance_s2_ = 0.0f;  ///< of a reading
   // Between the two readings that the last question fell between: empty if it did not.
   std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
-  float segment_angle_rad_ = 0.0f, segment_rate_rad_s_ = 0.0f;
+  float segment_angle_rad_ = 0.0f, segment_slope_rad_s_ = 0.0f, segment_rate_rad_s_ = 0.0f;
+
+  /// Rates are told over as long a time at least: two frames of a servo that reports at 100 Hz, or many of one whose
+  /// frames come as fast as their stamps jitter, of which two next to each other tell any rate.
+  static constexpr std::int64_t rate_span_ns = 20'000'000;
 };
 
 /// Ring of the newest readings. One writer, one reader, neither ever waits.
@@ -149,13 +158,15 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) cons
   out.segment_from_ns_ = out.segment_to_ns_ = 0;
   out.max_gap_ns_ = static_cast<std::int64_t>(settings_.max_gap_s * 1e9f);
   out.max_extrapolation_ns_ = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
+  out.angle_variance_ = square(settings_.angle_sd_rad);
+  out.time_variance_s2_ = square(settings_.time_sd_s);
 }
 
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
   if (time_ns < segment_from_ns_ || time_ns >= segment_to_ns_) return find(time_ns);
   const auto since_s = static_cast<float>(static_cast<std::int32_t>(time_ns - segment_from_ns_)) * 1e-9f;
-  return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_rate_rad_s_, segment_rate_rad_s_};
+  return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_slope_rad_s_, segment_rate_rad_s_};
 }
 
 /// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in
@@ -169,14 +180,34 @@ TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   if (cursor_ == size_) return beyond(time_ns, size_ - 1, -1);
   const TiltReading &a = reading(cursor_ - 1), &b = reading(cursor_);
   if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, a);
-  const TiltAngle angle = along(a, b, time_ns, TiltAngle::Source::interpolated);
+  const float slope = slope_rad_s(a, b), rate_rad_s = rate_about(cursor_ - 1, cursor_, slope);
   if (b.time_ns - a.time_ns <= INT32_MAX) {
     segment_from_ns_ = a.time_ns;
     segment_to_ns_ = b.time_ns;
     segment_angle_rad_ = a.angle_rad;
-    segment_rate_rad_s_ = angle.rate_rad_s;
+    segment_slope_rad_s_ = slope;
+    segment_rate_rad_s_ = rate_rad_s;
   }
-  return angle;
+  return {TiltAngle::Source::interpolated, a.angle_rad + seconds(time_ns - a.time_ns) * slope, rate_rad_s};
+}
+
+/// About two readings, of which the rate from one to the other is `own_rad_s`: with those around them, as long as they
+/// are too close to tell it. If they lie off that by three standard deviations, near a turn of the servo or a damaged
+/// reading, their own.
+template <Limits limits>
+float TiltSnapshot<limits>::rate_about(int before, int after, float own_rad_s) const {
+  const auto goes_on = [this](int k) { return reading(k + 1).time_ns - reading(k).time_ns <= max_gap_ns_; };
+  int from = before, to = after;
+  while (reading(to).time_ns - reading(from).time_ns < rate_span_ns) {
+    const bool earlier = from > 0 && goes_on(from - 1), later = to + 1 < size_ && goes_on(to);
+    if (!earlier && !later) break;
+    from -= earlier;
+    to += later;
+  }
+  const float rate_rad_s = slope_rad_s(reading(from), reading(to));
+  const float off_rad = (own_rad_s - rate_rad_s) * seconds(reading(after).time_ns - reading(before).time_ns);
+  const float variance = 2.0f * (angle_variance_ + square(rate_rad_s) * time_variance_s2_);
+  return square(off_rad) <= gate * variance ? rate_rad_s : own_rad_s;
 }
 
 /// The angle at an end of the readings or beyond it, at their rate there. `inward` is the way to the other end.
@@ -187,18 +218,12 @@ TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward
   if (beyond_ns > max_extrapolation_ns_) return {};
   const int other = sample_for_rate(time_ns, end, inward, size_, [this](int k) { return reading(k).time_ns; });
   if (other < 0) return alone(time_ns, reading(end));
-  const TiltReading &a = reading(inward > 0 ? end : other), &b = reading(inward > 0 ? other : end);
+  const int before = inward > 0 ? end : other, after = inward > 0 ? other : end;
+  const TiltReading &a = reading(before), &b = reading(after);
   if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, reading(end));
-  return along(a, b, time_ns, beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated);
-}
-
-/// On the line through two readings, a before b.
-template <Limits limits>
-TiltAngle TiltSnapshot<limits>::along(const TiltReading& a, const TiltReading& b, std::int64_t time_ns,
-                                      TiltAngle::Source source) {
-  const float rate_rad_s = (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(b.time_ns - a.time_ns);
-  const float since_s = static_cast<float>(time_ns - a.time_ns) * 1e-9f;
-  return {source, a.angle_rad + since_s * rate_rad_s, rate_rad_s};
+  const float rate_rad_s = rate_about(before, after, slope_rad_s(a, b));
+  return {beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
+          reading(end).angle_rad + seconds(time_ns - end_ns) * rate_rad_s, rate_rad_s};
 }
 
 /// Of one reading, or beside a gap too wide to say anything of the time between: good at its own moment only.

@@ -1,6 +1,7 @@
 // The tilt servo's readings: interpolation and its bounds, bad readings, and a reader beside a writer that never waits.
 #include "curbline/tilt_track.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -8,6 +9,8 @@
 #include <limits>
 #include <memory>
 #include <thread>
+
+#include "support/terrain.hpp"
 
 namespace curbline {
 namespace {
@@ -72,6 +75,48 @@ TEST_CASE("tilt track: two stamps that lie close together do not tell the rate f
   CHECK(beyond.source == Source::extrapolated);
   CHECK(beyond.angle_rad == Approx(-0.2 + 0.081).margin(1e-4));
   CHECK(beyond.rate_rad_s == Approx(0.3).epsilon(0.01));
+}
+
+TEST_CASE("tilt track: readings that come as fast as their stamps jitter tell the rate all the same") {
+  constexpr Limits many{.tilt_samples = 64};
+  const auto track = std::make_unique<TiltTrack<many>>();
+  track->init(TiltSettings{});
+  test::Noise noise(5);
+  for (int k = 0; k < 64; ++k) {  // 0.3 rad/s at 1 kHz, stamped up to 0.4 ms early or late
+    const double jitter_ms = std::clamp(0.4 * noise.normal(), -0.4, 0.4);
+    track->push({t0 + k * ms + static_cast<std::int64_t>(jitter_ms * 1e6), 0.3e-3f * static_cast<float>(k)});
+  }
+  TiltSnapshot<many> angles;
+  track->snapshot(angles);
+  for (int k = 0; k < 280; ++k) {
+    const double time_ms = 0.25 * k - 3.0;
+    INFO(time_ms << " ms");
+    const TiltAngle angle = angles.at(t0 + static_cast<std::int64_t>(time_ms * 1e6));
+    CHECK(angle.rate_rad_s == Approx(0.3).epsilon(0.04));  // 0.8 of 20 ms
+    CHECK(angle.angle_rad == Approx(0.3e-3 * time_ms).margin(0.3e-3));
+  }
+}
+
+TEST_CASE("tilt track: near a turn, beside a damaged reading and where readings come slowly the rate is their own") {
+  TiltSettings settings;
+  settings.angle_sd_rad = 1e-4f;
+  const auto turns = std::make_unique<Track>(), damaged = std::make_unique<Track>();
+  turns->init(settings);
+  damaged->init(settings);
+  for (int k = 5; k <= 20; ++k) {  // every 5 ms at 0.2 rad/s, one track back from 50 ms on
+    turns->push({t0 + 5 * k * ms, 1e-3f * static_cast<float>(k < 10 ? k : 20 - k)});
+    damaged->push({t0 + 5 * k * ms, 1e-3f * static_cast<float>(k) + (k == 12 ? 0.05f : 0.0f)});
+  }
+  Snapshot turned = snapshot(*turns), beside = snapshot(*damaged);
+  for (const int time_ms : {37, 47, 49}) CHECK(turned.at(t0 + time_ms * ms).rate_rad_s == Approx(0.2).epsilon(1e-3));
+  for (const int time_ms : {51, 63}) CHECK(turned.at(t0 + time_ms * ms).rate_rad_s == Approx(-0.2).epsilon(1e-3));
+  for (const int time_ms : {47, 52, 67, 72})
+    CHECK(beside.at(t0 + time_ms * ms).rate_rad_s == Approx(0.2).epsilon(1e-3));
+  const auto slow = turning(10);  // every 25 ms
+  slow->push({t0 + 250 * ms, -0.2f});
+  Snapshot back = snapshot(*slow);
+  CHECK(back.at(t0 + 220 * ms).rate_rad_s == Approx(0.3).epsilon(1e-3));
+  CHECK(back.at(t0 + 230 * ms).rate_rad_s == Approx(-0.0675 / 0.025).epsilon(1e-3));
 }
 
 TEST_CASE("tilt track: the sample that tells the rate is found between stamps as far apart as any") {
