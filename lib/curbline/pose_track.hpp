@@ -44,8 +44,9 @@ struct PoseShift {
 };
 
 /// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by
-/// going on from it as fast as they did. No robot does that, a localisation does; if poses come seldom a robot does,
-/// too. Until the next has come a pose that jumps may be either; one that jumps on withdraws the step.
+/// going on from it as fast as they did, off where they lead it too. No robot does that, a localisation does; if poses
+/// come seldom a robot does, too. Until the next has come a pose that jumps may be either; one that jumps on, or back
+/// to the way before, withdraws the step.
 struct PoseStepNews {
   enum class Kind { begun, confirmed, withdrawn } kind;
   PoseShift by{};  ///< of one that has begun
@@ -72,7 +73,8 @@ PoseStep step_of(const Pose& first, const Pose& last, const Pose& before, const 
 PoseShift shift_of(const PoseStep& step, const Pose& now);
 }  // namespace detail
 
-/// Ring of the newest poses; linear in position and normalised-linear in attitude between two of them.
+/// Ring of the newest poses, 12 ms apart at least but for the very newest; linear in position and normalised-linear in
+/// attitude between two of them.
 template <Limits limits>
 class PoseTrack {
  public:
@@ -83,8 +85,9 @@ class PoseTrack {
     forget();
   }
 
-  /// Takes a pose; false if it is not finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not
-  /// later than the one before (rising_times.hpp). O(1).
+  /// Takes a pose, in place of the newest if that one has come sooner than poses are kept apart; false if it is not
+  /// finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not later than the one before
+  /// (rising_times.hpp). O(1).
   bool push(const Pose& pose);
 
   /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
@@ -99,13 +102,22 @@ class PoseTrack {
   /// By the poses that were asked: do they jump on end, as a robot's do that climbs?
   bool climbs() const { return moves_; }
 
-  bool empty() const { return size_ == 0; }
   const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
 
  private:
   const Pose& back(int age) const {
     return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)];
   }
+
+  /// Does the pose of an age, the second since a jump, lie off where those before the jump lead? If not, the first did
+  /// by its own error, as one in seventy does.
+  bool lies_off_before(int age) const {
+    const int before = age + 2, first = before + poses_of_a_way < size_ ? before + poses_of_a_way : size_ - 1;
+    return first > before && detail::step_of(back(first), back(before), back(before), back(age), settings_).jumps();
+  }
+
+  /// Is the newest pose nearer to the one before than poses are kept apart, so that the next one takes its place?
+  bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
   /// How far the pose of an age lies off where the one before it leads, as fast as on the way that ends with the pose
   /// of age `last`, over `most` poses before that; nothing if there are too few.
@@ -122,6 +134,9 @@ class PoseTrack {
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
+  /// Each pose errs on its own (PoseSettings): of more of them more jump by chance, and the way of a few is too short
+  /// to tell where they lead. More than 83 a second are thinned out.
+  static constexpr std::int64_t least_spacing_ns = 12'000'000;
   /// Where a robot is led is told by the way of as many poses: less than a tenth of a second at 50 Hz.
   static constexpr int poses_of_a_way = 4;
 
@@ -139,6 +154,10 @@ bool PoseTrack<limits>::push(const Pose& pose) {
   if (!detail::acceptable(pose) || !times_.admits(pose.time_ns)) return false;
   if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // those before are of another time
   times_.take(pose.time_ns);
+  if (open()) {
+    poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)] = pose;
+    return true;
+  }
   poses_[static_cast<std::size_t>(next_)] = pose;
   next_ = (next_ + 1) % limits.poses;
   if (size_ < limits.poses) ++size_;
@@ -174,7 +193,7 @@ PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) 
 template <Limits limits>
 std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) {
   using Kind = PoseStepNews::Kind;
-  while (fresh_ > 0 && back(fresh_ - 1).time_ns <= until_ns) {
+  while (fresh_ > (open() ? 1 : 0) && back(fresh_ - 1).time_ns <= until_ns) {
     const int age = --fresh_;
     // As fast as after the last jump, if there are two poses to tell, else as before it.
     const int last = since_jump_ == 1 ? age + 2 : age + 1;
@@ -184,7 +203,7 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
     const bool begins = by.jumps() && !stepped && !moves_;
     moves_ = by.jumps() && (stepped || moves_);
     since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
-    if (stepped) return PoseStepNews{by.jumps() ? Kind::withdrawn : Kind::confirmed};
+    if (stepped) return PoseStepNews{by.jumps() || !lies_off_before(age) ? Kind::withdrawn : Kind::confirmed};
     if (begins) return PoseStepNews{Kind::begun, detail::shift_of(by, back(age))};
   }
   return {};
