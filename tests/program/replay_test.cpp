@@ -64,6 +64,11 @@ std::string robot_with_signal(const TemporaryDirectory& dir, const std::string& 
   return dir.write("signal.toml", text);
 }
 
+std::string with_key(std::string toml, const std::string& key, const std::string& value) {
+  const std::size_t begin = toml.find("\n" + key + " = ") + 1;
+  return toml.replace(begin, toml.find('\n', begin) - begin, key + " = " + value);
+}
+
 /// Labels of a recording by a robot whose description has these lines of its tilt signal.
 std::string labels_by_signal(const std::string& lines) {
   const TemporaryDirectory dir;
@@ -267,6 +272,27 @@ TEST_CASE("program: evaluate says what the reference makes of the same sweep, an
   const nlohmann::json same = nlohmann::json::parse(of_method.out);
   CHECK(same.at("v") == figures.at("reference").at("v"));
   CHECK(same.at("steps") == figures.at("reference").at("steps"));
+}
+
+TEST_CASE("program: a kerb between the robot's middle and its laser is up or down as the laser sees it") {
+  const TemporaryDirectory dir;
+  std::string robot = read_file(shipped_robot("utm30lx"));
+  robot = with_key(with_key(robot, "from_rad", "0.6"), "to_rad", "1.5");  // looks down before its wheels
+  const std::string scene = dir.write("beside.toml", R"(
+[ground]
+z = 0.12
+[[region]]
+name = "road"
+polygon = [[-0.6, 0.0], [0.6, -2.4], [9.0, -2.4], [9.0, 9.0], [-0.6, 9.0]]
+z = 0.0
+[robot]
+at = [-0.75, 0.0]
+)");
+  const Recording logs(scene, dir.write("robot.toml", robot));
+  const nlohmann::json figures = evaluate(logs);
+  INFO(figures.dump(1));
+  CHECK(figures.at("curbs").at(0).at("found") == true);
+  CHECK(figures.at("height_error_median_m").get<double>() < 0.01);
 }
 
 TEST_CASE("program: evaluate draws the map with the truth and the robot") {

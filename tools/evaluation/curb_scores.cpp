@@ -174,7 +174,7 @@ std::vector<CurbMatch> match_steps(const Found& found, const Truth& truth, const
 
 CurbScores score_curbs(const Found& found, const Truth& truth, const Seen& seen) {
   const std::vector<TruthSample> samples = truth_samples(truth);
-  const Nearest nearest(samples, found.robot);
+  const Nearest nearest(samples, found.seen_from);
   const std::vector<FoundSample> of_found = found_samples(found, nearest, seen);
   const std::vector<TruthDistance> of_truth = truth_distances(samples, found, seen);
   const auto any = [](const auto&) { return true; };

@@ -16,9 +16,9 @@ namespace curbline::tools {
 /// What is scored.
 struct Found {
   std::vector<std::vector<LabelledCell>>
-      windows;                  ///< one for a robot that stands, some along the way of one that drives
-  std::vector<MapCurb> curbs;   ///< of the whole way
-  std::optional<Point2> robot;  ///< where it stands; without, steps are compared without their signs
+      windows;                      ///< one for a robot that stands, some along the way of one that drives
+  std::vector<MapCurb> curbs;       ///< of the whole way
+  std::optional<Point2> seen_from;  ///< near sides are those of this place; without, steps are compared without signs
 };
 
 /// Median and 95 % of errors; NaN of none.

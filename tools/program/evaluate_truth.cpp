@@ -27,8 +27,9 @@ struct Evaluation {
   std::optional<Found> reference;  ///< what crf-em makes of the same sweep
 };
 
-Found found_in(const Map& map, const RecordedRun& run) {
-  return {{labelled_cells(map)}, map.curbs, run.found.robot};
+/// By a method for whole clouds, which are seen from their origin.
+Found found_in(const Map& map) {
+  return {{labelled_cells(map)}, map.curbs, Point2{0, 0}};
 }
 
 /// What replay left in DIR: the labels of the last window and the curbs of the whole way. Its window may be another
@@ -55,7 +56,7 @@ Evaluation evaluate_recording(const EvaluateOptions& options) {
     e.found = e.run->found;
   }
   const bool small = e.run && !e.run->drove && e.run->map.grid.cells() <= most_reference_cells;
-  if (small) e.reference = found_in(map_recording(dir, *e.run, MapMethod::crf_em), *e.run);
+  if (small) e.reference = found_in(map_recording(dir, *e.run, MapMethod::crf_em));
   if (options.method) {
     if (!e.run) throw BadInput(dir + ": no logs for --method; expected scans.carmen and robot.toml");
     if (*options.method == MapMethod::curbline) return e;
@@ -63,7 +64,7 @@ Evaluation evaluate_recording(const EvaluateOptions& options) {
       throw BadInput(dir + ": the robot drove; expected one that stands for a method that takes a whole cloud");
     e.run->map = map_recording(dir, *e.run, *options.method);
     e.run->detections.clear();
-    e.found = found_in(e.run->map, *e.run);
+    e.found = found_in(e.run->map);
   } else if (results) {
     take_results(dir, e);
   }

@@ -47,7 +47,6 @@ class Record {
     run_.robot = replay.robot();
     run_.found.windows.push_back(labelled_cells(run_.map));
     run_.found.curbs = replay.all_curbs();
-    if (!run_.drove) run_.found.robot = Point2{run_.robot.x_m, run_.robot.y_m};
     run_.detections.assign(detections_.of_curbs().begin(), detections_.of_curbs().end());
   }
 
@@ -90,6 +89,8 @@ RecordedRun replay_recording(const std::string& dir, const Truth& truth) {
   }
   replay.check_complete();
   record.finish(replay);
+  const MountSettings& axis = robot.tilt.T_base_tilt;
+  if (!run.drove) run.found.seen_from = Point2{static_cast<double>(axis.x_m), static_cast<double>(axis.y_m)};
   return run;
 }
 
