@@ -77,7 +77,7 @@ bool run() {
   }
   for (std::uint32_t i = 0; i < snapshots && good; ++i) {
     const std::uint32_t before = pushed.load();
-    track.snapshot(snapshot);
+    track.snapshot(snapshot, 0.0f, INT64_MAX);
     const std::uint32_t added = pushed.load() - before;
     interrupted += added > 0;
     good = added <= most_added && whole(before, added);

@@ -294,7 +294,7 @@ Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, Ti
 /// False if there are no angles for the line.
 template <Limits limits>
 bool Pipeline<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt) {
-  tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
+  tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
   const TiltAngle first = tilt.at(first_ns);
   const std::uint32_t reading = tilt.reading_number();
   const TiltAngle last = tilt.at(last_ns);
@@ -304,7 +304,7 @@ bool Pipeline<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, 
   tilt_rate_rad_s_ = any.rate_rad_s;
   const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s, reading);
   if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
-  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s());
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
   return true;
 }
 

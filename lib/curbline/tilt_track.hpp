@@ -55,6 +55,7 @@ class TiltSnapshot {
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
+  int awaited_ = 0;            ///< readings up to the first later than the line's last beam
   std::uint32_t written_ = 0;  ///< readings up to the newest of them, since init()
   int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
@@ -94,8 +95,9 @@ class TiltTrack {
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
-  /// `offset_s` is added to TiltSettings::latency_s.
-  void snapshot(TiltSnapshot<limits>& out, float offset_s = 0.0f) const;
+  /// `offset_s` is added to TiltSettings::latency_s. `until_ns` is the line's last beam: how many readings have come
+  /// beyond the first that is later changes nothing of what is told between readings.
+  void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) const;
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
@@ -131,7 +133,7 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
 }
 
 template <Limits limits>
-void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) const {
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) const {
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
@@ -152,7 +154,8 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s) cons
   std::uint32_t kept = whole > 0 ? 1 : 0;  // what came before the times went back is of another time
   while (kept < whole && out.readings_[count - kept - 1].time_ns < out.readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) out.readings_[k] = out.readings_[count - kept + k];
-  out.size_ = static_cast<int>(kept);
+  out.size_ = out.awaited_ = static_cast<int>(kept);
+  while (out.awaited_ > 1 && out.reading(out.awaited_ - 2).time_ns > until_ns) --out.awaited_;
   out.written_ = before;
   out.cursor_ = 0;
   out.segment_from_ns_ = out.segment_to_ns_ = 0;
@@ -199,7 +202,7 @@ float TiltSnapshot<limits>::rate_about(int before, int after, float own_rad_s) c
   const auto goes_on = [this](int k) { return reading(k + 1).time_ns - reading(k).time_ns <= max_gap_ns_; };
   int from = before, to = after;
   while (reading(to).time_ns - reading(from).time_ns < rate_span_ns) {
-    const bool earlier = from > 0 && goes_on(from - 1), later = to + 1 < size_ && goes_on(to);
+    const bool earlier = from > 0 && goes_on(from - 1), later = to + 1 < awaited_ && goes_on(to);
     if (!earlier && !later) break;
     from -= earlier;
     to += later;

@@ -27,7 +27,7 @@ struct Bench {
   }
   std::vector<Point> project(const std::vector<float>& ranges, std::int64_t time_ns = t0) {
     std::vector<Point> points;
-    track.snapshot(snapshot);
+    track.snapshot(snapshot, 0.0f, INT64_MAX);
     ProjectedLine<limits> line;
     projection.project({time_ns, ranges}, snapshot, motion, counters, line);
     for (const Point& p : line.points()) points.push_back(p);

@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "support/terrain.hpp"
 
@@ -31,9 +33,9 @@ std::unique_ptr<Track> turning(int readings, const TiltSettings& settings = {}) 
   return track;
 }
 
-Snapshot snapshot(const Track& track) {
+Snapshot snapshot(const Track& track, std::int64_t until_ns = INT64_MAX) {
   Snapshot out;
-  track.snapshot(out);
+  track.snapshot(out, 0.0f, until_ns);
   return out;
 }
 
@@ -87,7 +89,7 @@ TEST_CASE("tilt track: readings that come as fast as their stamps jitter tell th
     track->push({t0 + k * ms + static_cast<std::int64_t>(jitter_ms * 1e6), 0.3e-3f * static_cast<float>(k)});
   }
   TiltSnapshot<many> angles;
-  track->snapshot(angles);
+  track->snapshot(angles, 0.0f, INT64_MAX);
   for (int k = 0; k < 280; ++k) {
     const double time_ms = 0.25 * k - 3.0;
     INFO(time_ms << " ms");
@@ -95,6 +97,27 @@ TEST_CASE("tilt track: readings that come as fast as their stamps jitter tell th
     CHECK(angle.rate_rad_s == Approx(0.3).epsilon(0.053));  // 0.8 of 15 ms
     CHECK(angle.angle_rad == Approx(0.3e-3 * time_ms).margin(0.3e-3));
   }
+}
+
+TEST_CASE("tilt track: how many readings have come after a line's last beam changes none of its angles") {
+  const auto track = std::make_unique<Track>();
+  track->init(TiltSettings{});
+  const std::int64_t last_beam = t0 + 47 * ms;
+  std::vector<std::pair<float, float>> told;
+  for (int k = 0; k < 16; ++k) {  // every 5 ms, faster and faster
+    track->push({t0 + 5 * k * ms, 1e-4f * static_cast<float>(k * k)});
+    if (t0 + 5 * k * ms <= last_beam) continue;
+    Snapshot angles = snapshot(*track, last_beam);
+    std::vector<std::pair<float, float>> now;
+    for (std::int64_t time = t0 + 22 * ms; time <= last_beam; time += ms) {
+      const TiltAngle angle = angles.at(time);
+      now.emplace_back(angle.angle_rad, angle.rate_rad_s);
+    }
+    CHECK(angles.reading_number() == 10);
+    if (told.empty()) told = now;
+    CHECK(now == told);
+  }
+  CHECK(told.size() == 26);
 }
 
 TEST_CASE("tilt track: near a turn, beside a damaged reading and where readings come slowly the rate is their own") {
@@ -271,7 +294,7 @@ TEST_CASE("tilt track: a snapshot beside a hammering writer is never torn") {
   Snapshot angles;
   for (int k = 0; k < readings;) {
     k = written.load(std::memory_order_acquire);
-    track->snapshot(angles);
+    track->snapshot(angles, 0.0f, INT64_MAX);
     // Asked in the middle between readings, rising: a descending or mixed pair has another angle or rate.
     for (int back = 12; back > 0 && k > 16; --back) {
       const TiltAngle a = angles.at(t0 + static_cast<std::int64_t>(k - back) * ms + ms / 2);
