@@ -85,10 +85,9 @@ class PoseTrack {
     forget();
   }
 
-  /// Takes a pose, in place of the newest if that one has come sooner than poses are kept apart (so of poses that come
-  /// as fast, those of a line hang on how many have come); false if it is not
-  /// finite or beyond 1000 km, its quaternion not of unit length within 1 %, or not later than the one before
-  /// (rising_times.hpp). O(1).
+  /// Takes a pose, in place of the newest if that one has come sooner than poses are kept apart: the pose of a line
+  /// hangs on how many have come then. False if it is not finite or beyond 1000 km, its quaternion not of unit length
+  /// within 1 %, or not later than the one before (rising_times.hpp). O(1).
   bool push(const Pose& pose);
 
   /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
