@@ -287,13 +287,15 @@ void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
   const std::int32_t row = nearest_block(x_m / (settings_.cell_x_m * block_side), first_row_);
   const std::int32_t col = nearest_block(y_m / (settings_.cell_y_m * block_side), first_col_);
   if (row == first_row_ && col == first_col_) return;
-  const auto before = [](int place, std::int32_t first, std::int32_t now) {  // below 0: a great number
-    return static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) - static_cast<std::uint32_t>(now);
+  // Of a row or column, in the window as it will be; a great number if it lies before it.
+  const auto moved = [](int place, std::int32_t first, std::int32_t first_now) {
+    return static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) -
+           static_cast<std::uint32_t>(first_now);
   };
   for (int i = 0; i < settings_.rows; ++i) {
-    const bool row_stays = before(i, first_row_, row) < static_cast<std::uint32_t>(settings_.rows);
+    const bool row_stays = moved(i, first_row_, row) < static_cast<std::uint32_t>(settings_.rows);
     for (int j = 0; j < settings_.cols; ++j) {
-      if (row_stays && before(j, first_col_, col) < static_cast<std::uint32_t>(settings_.cols)) continue;
+      if (row_stays && moved(j, first_col_, col) < static_cast<std::uint32_t>(settings_.cols)) continue;
       const int s = slot(i, j);
       if (!cell(s).valid()) continue;
       left(s);
