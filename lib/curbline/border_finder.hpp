@@ -49,7 +49,6 @@ class BorderFinder {
   void find(Borders<limits>& borders, Counters& counters);
 
  private:
-  static constexpr Label none = no_label;
   using Border = typename Borders<limits>::Border;
 
   static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
@@ -60,7 +59,7 @@ class BorderFinder {
   };
   /// A cell of a line and its plane.
   struct Place {
-    Label label = none;
+    Label label = no_label;
     std::int16_t along = 0;
   };
   /// From a cell of one plane to one of another.
@@ -71,7 +70,7 @@ class BorderFinder {
   /// The last cell of a plane, of a face or before a veil, beyond which no ground is seen.
   struct End {
     Line line;
-    Place last;  ///< label is `none` if there is no such end
+    Place last;  ///< label is no_label if there is no such end
     int toward;  ///< 1 if the plane is left along the axis, -1 if against it
   };
   struct Brink {
@@ -126,16 +125,16 @@ class BorderFinder {
 template <Limits limits>
 bool BorderFinder<limits>::bears_ground(int slot) const {
   const Label label = field_.label(slot);
-  return label != none && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.may_be_veil(label);
+  return label != no_label && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.may_be_veil(label);
 }
 
 /// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of a
 /// region too small for a plane, or of a plane that may be a veil.
 template <Limits limits>
 bool BorderFinder<limits>::is_veil(int slot) const {
-  if (mixture_.region_label(slot) == none) return true;
+  if (mixture_.region_label(slot) == no_label) return true;
   const Label label = field_.label(slot);
-  return mixture_.on_ground(slot) ? label != none && mixture_.may_be_veil(label) : !mixture_.covered(slot);
+  return mixture_.on_ground(slot) ? label != no_label && mixture_.may_be_veil(label) : !mixture_.covered(slot);
 }
 
 /// Within three standard deviations.
@@ -152,15 +151,16 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   const auto pass = [&](Place& before, const Place& here, const Line& line) {
     const Gap gap{line, before, here};
     before = here;
-    if (gap.first.label == none || gap.first.label == here.label || here.along - gap.first.along > settings_.link_reach)
+    if (gap.first.label == no_label || gap.first.label == here.label ||
+        here.along - gap.first.along > settings_.link_reach)
       return;
     add(border_of(gap));
     for (const int toward : {-1, 1}) {
-      if (const End end = find_face_end(gap, toward); end.last.label != none) add(border_of_face(end));
+      if (const End end = find_face_end(gap, toward); end.last.label != no_label) add(border_of_face(end));
     }
   };
   const auto end_before = [&](const Line& line, int veil) {
-    if (const Brink brink = find_brink(line, veil); brink.end.last.label != none) add(border_of(brink));
+    if (const Brink brink = find_brink(line, veil); brink.end.last.label != no_label) add(border_of(brink));
   };
   std::array<Place, limits.cols> before_in_col{};
   Place before_in_row;
@@ -185,7 +185,7 @@ float BorderFinder<limits>::same_plane(const Gap& gap) const {
   float same = 0.0f;
   for (std::size_t m = 0; m < p.label.size(); ++m) {
     for (std::size_t n = 0; n < q.label.size(); ++n) {
-      if (p.label[m] == q.label[n] && p.label[m] != none) same += p.probability[m] * q.probability[n];
+      if (p.label[m] == q.label[n] && p.label[m] != no_label) same += p.probability[m] * q.probability[n];
     }
   }
   return same;
@@ -200,13 +200,13 @@ auto BorderFinder<limits>::border_at(const Line& line, float along_m) const -> B
   return border;
 }
 
-/// `high` is none, and on the side of what is not seen.
+/// `high` is no_label, and on the side of what is not seen.
 template <Limits limits>
 auto BorderFinder<limits>::border_at(const End& end, float along_m) const -> Border {
   Border border = border_at(end.line, along_m);
   border.probability = belief(end.line, end.last.along).of(end.last.label);
   border.low = end.last.label;
-  border.high = none;
+  border.high = no_label;
   border.sign = static_cast<std::int8_t>(end.toward);
   return border;
 }
@@ -238,7 +238,7 @@ Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward
     if (along < 0 || along >= cells_of(line)) return false;
     const int s = slot(line, along);
     const Cell& cell = dem_.cell(s);
-    return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != none && mixture_.on_ground(s) &&
+    return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != no_label && mixture_.on_ground(s) &&
            !dem_.mixed(cell, slope_m2);
   };
   const float border = border_m / pitch_m(line);
@@ -297,7 +297,7 @@ auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const
   while (const int g = dem_.next_valid(slot(line, last), direction(line.axis, toward), settings_.link_reach)) {
     const int next = last + toward * g;
     const int s = slot(line, next);
-    if (bears_ground(s) && (mixture_.region_label(s) != none || on_plane(next, field_.label(s)))) return {};
+    if (bears_ground(s) && (mixture_.region_label(s) != no_label || on_plane(next, field_.label(s)))) return {};
     if (!is_veil(s)) break;
     last = next;
   }

@@ -66,7 +66,7 @@ class CommonNoise {
   static constexpr std::size_t patch_rows = (limits.rows + side - 1) / side;
 
   struct Seen {
-    Label label = PlaneMixture<limits>::none;
+    Label label = no_label;
     int i = -2;
     float above_m = 0.0f;
   };
@@ -89,7 +89,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
   std::array<Seen, limits.cols> last{};  // of each column
   const auto visit = [&](int i, int j, int s) {
     const Label label = mixture.region_label(s);
-    if (label == PlaneMixture<limits>::none) return;
+    if (label == no_label) return;
     const Plane& plane = mixture.plane(label);
     const Cell& cell = dem.cell(s);
     if (dem.mixed(cell, dem.slope_m2(plane))) return;

@@ -52,7 +52,6 @@ class Ground {
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
-  static constexpr Label none = no_label;
   using PlaneFlags = std::array<bool, limits.planes>;
   enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
   static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
@@ -172,8 +171,8 @@ class Ground {
     }
     /// How far it begins below where `before` or `next`, the one nearer to the laser, ends; 0 if there is none.
     float begins_below_m(const Run& before, const Run& next, const Sight& sight) const {
-      if (sight.ahead(first)) return before.label == none ? 0.0f : before.last_height_m - first_height_m;
-      return next.label == none ? 0.0f : next.first_height_m - last_height_m;
+      if (sight.ahead(first)) return before.label == no_label ? 0.0f : before.last_height_m - first_height_m;
+      return next.label == no_label ? 0.0f : next.first_height_m - last_height_m;
     }
     /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of
     /// what the run falls, and one more. If a step of more than that parts it from the run before it, it is not the
@@ -229,14 +228,14 @@ template <typename LabelOf, typename EndRun>
 void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run) {
   const bool along_x = axis == 0;
   const int line_count = along_x ? dem.cols() : dem.rows(), length = along_x ? dem.rows() : dem.cols();
-  const Run nothing{none, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  const Run nothing{no_label, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int line = 0; line < line_count; ++line) {
     Run before = nothing, run = nothing;
     for (int k = 0; k < length; ++k) {
       const int s = along_x ? dem.slot(k, line) : dem.slot(line, k);
       const Cell& cell = dem.cell(s);
-      const Label label = cell.valid() ? label_of(s) : none;
-      if (label == none) continue;
+      const Label label = cell.valid() ? label_of(s) : no_label;
+      if (label == no_label) continue;
       const float h = cell.height_m;
       if (label != run.label) {
         const Run next{label, k, k, h, h, h, h, cell.scatter_m2, cell.weight};
@@ -265,10 +264,10 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
                                 Tallies& tallies) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     walk(dem, axis, label_of, [&](const Run& before, const Run& run, const Run& next, int line) {
-      if (run.label == none) return;
+      if (run.label == no_label) return;
       Tally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
-      const bool leads = before.label != none && next.label != none && run.between(before, next);
+      const bool leads = before.label != no_label && next.label != no_label && run.between(before, next);
       if (leads || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = sight(dem, from, axis), aside = sight(dem, from, 1 - axis);
@@ -278,8 +277,8 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
         if (drops[run.label]) tally.blurred_cells[axis] += run.blurred_cells(before, next, across, aside_m);
       }
       if (run.length() > longest_strip) return;
-      const bool after_high = before.label != none && obstacles.high(before.label) && run.first == before.last + 1;
-      const bool before_high = next.label != none && obstacles.high(next.label) && next.first == run.last + 1;
+      const bool after_high = before.label != no_label && obstacles.high(before.label) && run.first == before.last + 1;
+      const bool before_high = next.label != no_label && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
       if (leads && !obstacles.is(before.label) && !obstacles.is(next.label)) tally.add_strip(before, run, next);
     });

@@ -31,7 +31,6 @@ enum class FieldScope : std::uint8_t {
 template <Limits limits>
 class LabelField {
  public:
-  static constexpr Label none = no_label;
   static constexpr int capacity = Dem<limits>::capacity;
 
   /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
@@ -186,12 +185,12 @@ bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slo
   if (mixture.relabelled(slot)) return true;
   const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
   if (mixture.any_fresh()) {
-    if (mixture.region_label(slot) != none && mixture.fresh(mixture.region_label(slot))) return true;
+    if (mixture.region_label(slot) != no_label && mixture.fresh(mixture.region_label(slot))) return true;
     for (const Label label : site.label) {
-      if (label != none && mixture.fresh(label)) return true;
+      if (label != no_label && mixture.fresh(label)) return true;
     }
   }
-  return site.label[0] == none;
+  return site.label[0] == no_label;
 }
 
 /// The planes of the regions in each block and those around it.
@@ -207,7 +206,7 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
       for (int k = 0; k < block_side * block_side; ++k) {
         const int s = dem.slot(i + k / block_side, j + k % block_side);
         const Label label = mixture.region_label(s);
-        if (dem.cell(s).valid() && label != none) here.insert(label);
+        if (dem.cell(s).valid() && label != no_label) here.insert(label);
       }
       for (int a = i - block_side; a <= i + block_side; a += block_side) {
         for (int b = j - block_side; b <= j + block_side; b += block_side) {
@@ -228,7 +227,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const float cell_variance = dem.height_variance_m2(cell);
   // exp(-2 log potential): a logarithm each of those that are kept is enough.
   std::array<float, label_candidates> doubt{};
-  LabelSite::Labels label{none, none, none};
+  LabelSite::Labels label{no_label, no_label, no_label};
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
     if (!plane.alive() || !mixture.ground(k)) return;
@@ -239,7 +238,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     const float u3 = u * u * u;
     const float doubted = variance * u3 * u3 * u;
     std::size_t rank = label.size();
-    while (rank > 0 && (label[rank - 1] == none || doubted < doubt[rank - 1])) --rank;
+    while (rank > 0 && (label[rank - 1] == no_label || doubted < doubt[rank - 1])) --rank;
     if (rank == label.size()) return;
     for (std::size_t c = label.size() - 1; c > rank; --c) {
       label[c] = label[c - 1];
@@ -249,14 +248,14 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     doubt[rank] = doubted;
   };
   near_by_[block_of(dem, i, j)].for_each(consider);
-  if (label[0] == none) {
+  if (label[0] == no_label) {
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
   LabelSite& site = sites_[static_cast<std::size_t>(slot)];
   site.set_labels(label);
   site.node.fill(0);
   if (mixture.covered(slot)) return;
-  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
+  for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
     const float below = -0.5f * log(doubt[c] / doubt[0]);
     site.node[c] =
         static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{LabelSite::node_scale}));
@@ -349,7 +348,7 @@ template <Limits limits>
 auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
   const int slot = dem.slot(i, j);
   const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
-  if (site.decided()) return {site.label, {site.label[0] == none ? 0.0f : 1.0f, 0.0f, 0.0f}};
+  if (site.decided()) return {site.label, {site.label[0] == no_label ? 0.0f : 1.0f, 0.0f, 0.0f}};
   Visit here = visit_to(dem, i, j, slot);
   hear_neighbours(here);
   return {site.label, site.probabilities(here.heard)};

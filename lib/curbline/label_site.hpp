@@ -31,7 +31,6 @@ struct Belief {
 };
 
 struct LabelSite {
-  static constexpr Label none = no_label;
   // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
   // nothing.
   static constexpr int message_scale = 32, node_scale = 256;
@@ -46,8 +45,8 @@ struct LabelSite {
     std::uint8_t loudest = 0;  ///< J / g, what a cell says that is sure
   };
 
-  Labels label{none, none, none};
-  Label best = none;
+  Labels label{no_label, no_label, no_label};
+  Label best = no_label;
   std::array<std::int16_t, label_candidates> node{};  ///< log potential of each candidate
   std::array<Message, directions> sent{};             ///< to the neighbour there, last
 
@@ -56,7 +55,7 @@ struct LabelSite {
   }
 
   /// Only one label is possible, or none.
-  bool decided() const { return label[1] == none; }
+  bool decided() const { return label[1] == no_label; }
   /// Candidates in another order, or others: what was said of a label stays with it.
   void set_labels(const Labels& labels);
   /// Adds to `sum` (sign 1) or takes from it (-1) what a neighbour says of the labels that both may bear.
@@ -81,7 +80,7 @@ inline void LabelSite::set_labels(const Labels& labels) {
     for (std::size_t c = 0; c < label.size(); ++c) {
       message[c] = 0;
       for (std::size_t o = 0; o < label.size(); ++o) {
-        if (labels[c] != none && label[o] == labels[c]) message[c] = before[o];
+        if (labels[c] != no_label && label[o] == labels[c]) message[c] = before[o];
       }
     }
   }
@@ -93,7 +92,7 @@ inline void LabelSite::hear(const Labels& others, const Message& said, bool same
     for (std::size_t c = 0; c < label.size(); ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[c]);
     return;
   }
-  for (std::size_t c = 0; c < label.size() && label[c] != none; ++c) {
+  for (std::size_t c = 0; c < label.size() && label[c] != no_label; ++c) {
     for (std::size_t o = 0; o < others.size(); ++o) {
       if (label[c] == others[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[o]);
     }
@@ -110,12 +109,12 @@ inline auto LabelSite::probabilities(const Heard& heard) const -> Probabilities 
   constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
   const Nats logs = log_belief(heard);
   std::int32_t top = logs[0];
-  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
+  for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
     if (logs[c] > top) top = logs[c];
   }
   Probabilities p{};
   float sum = 0.0f;
-  for (std::size_t c = 0; c < label.size() && label[c] != none; ++c) {
+  for (std::size_t c = 0; c < label.size() && label[c] != no_label; ++c) {
     const std::int32_t below = logs[c] - top;
     if (below < nothing) continue;
     p[c] = below == 0 ? 1.0f : exp(static_cast<float>(below) * (1.0f / node_scale));
@@ -141,7 +140,7 @@ inline auto LabelSite::most_likely(const Heard& heard) const -> Label {
   if (decided()) return label[0];
   const Nats logs = log_belief(heard);
   std::size_t best_one = 0;
-  for (std::size_t c = 1; c < label.size() && label[c] != none; ++c) {
+  for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
     if (logs[c] > logs[best_one]) best_one = c;
   }
   return label[best_one];

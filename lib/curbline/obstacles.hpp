@@ -39,7 +39,6 @@ class Obstacles {
   const Plane* ground() const { return ground_; }
 
  private:
-  static constexpr Label none = no_label;
   using PlaneFlags = std::array<bool, limits.planes>;
   using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
   static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
@@ -78,7 +77,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
   std::array<float, limits.planes> spread{}, weight{};
   dem.for_each_valid([&](int, int, int s) {
     const Label label = label_of(s);
-    if (label == none) return;
+    if (label == no_label) return;
     cells_[label] += 1.0f;
     spread[label] += dem.spread_m2(dem.cell(s));
     weight[label] += dem.cell(s).weight;
@@ -144,7 +143,7 @@ auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view
   Extents found{};
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = label_of(s);
-    if (label == none || !asked[label]) return;
+    if (label == no_label || !asked[label]) return;
     Extent& extent = found[label];
     if (i == 0 || j == 0 || i == dem.rows() - 1 || j == dem.cols() - 1) extent.reaches_end = true;
     const auto same = [&](int slot) { return label_of(slot) == label; };
@@ -184,12 +183,12 @@ auto Obstacles<limits>::neighbours(const Dem<limits>& dem, LabelOf&& label_of, c
   Neighbours found{};
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = label_of(s);
-    if (label == none || !asked[label]) return;
+    if (label == no_label || !asked[label]) return;
     const auto meet = [&](int p, int q) {
       if (p >= dem.rows() || q >= dem.cols()) return;
       const int slot = dem.slot(p, q);
-      const Label other = dem.cell(slot).valid() ? label_of(slot) : none;
-      if (other == none || other == label || !asked[other]) return;
+      const Label other = dem.cell(slot).valid() ? label_of(slot) : no_label;
+      if (other == no_label || other == label || !asked[other]) return;
       found[label].insert(other);
       found[other].insert(label);
     };

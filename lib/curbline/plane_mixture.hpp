@@ -22,7 +22,6 @@ namespace curbline {
 template <Limits limits>
 class PlaneMixture {
  public:
-  static constexpr Label none = no_label;
   static constexpr int capacity = limits.planes;
   using Cells = IndexSet<Dem<limits>::capacity>;
 
@@ -32,7 +31,7 @@ class PlaneMixture {
     fresh_.fill(false);
     any_fresh_ = any_relabelled_ = false;
     ground_.clear();
-    region_label_.fill(none);
+    region_label_.fill(no_label);
     relabelled_.clear();
   }
 
@@ -51,7 +50,7 @@ class PlaneMixture {
   void forget_changes();
 
   /// Forgets a cell that leaves the window.
-  void forget(int slot) { region_label_[static_cast<std::size_t>(slot)] = none; }
+  void forget(int slot) { region_label_[static_cast<std::size_t>(slot)] = no_label; }
 
   /// The window's lowest corner moved by (dx, dy): planes are kept in its frame.
   void shift(float dx_m, float dy_m) {
@@ -73,9 +72,9 @@ class PlaneMixture {
   /// May it, being ground, be a veil? No curb has it for a side.
   bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
-  bool on_ground(int slot) const { return region_label(slot) == none || ground_.is(region_label(slot)); }
+  bool on_ground(int slot) const { return region_label(slot) == no_label || ground_.is(region_label(slot)); }
   /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.
-  bool covered(int slot) const { return region_label(slot) != none && ground_.covers(region_label(slot)); }
+  bool covered(int slot) const { return region_label(slot) != no_label && ground_.covers(region_label(slot)); }
   /// Does something stand in it: do its heights spread as on 45 degrees, or is its ground covered?
   bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }
   bool any_fresh() const { return any_fresh_; }
@@ -91,7 +90,7 @@ class PlaneMixture {
   /// Regions by size, and the labels that they take. Of one update().
   struct Ranking {
     std::size_t regions = 0;                      ///< how many are planes
-    std::array<Label, limits.regions> of_node;    ///< rank of a region's node, `none` if it is too small
+    std::array<Label, limits.regions> of_node;    ///< rank of a region's node, no_label if it is too small
     std::array<Candidate, limits.planes> region;  ///< by rank
     std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap{};  ///< [rank][label], cells
     std::array<Label, limits.planes> label;                                        ///< by rank
@@ -136,21 +135,21 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   rank_regions(work, ranking, counters);
   const auto rank_of = [&](int slot) {
     const Node node = work.node_of_cell[static_cast<std::size_t>(slot)];
-    return node == RegionGraph<limits>::none ? none : ranking.of_node[work.graph.root(node)];
+    return node == RegionGraph<limits>::none ? no_label : ranking.of_node[work.graph.root(node)];
   };
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = rank_of(s);
-    if (rank == none) return;
+    if (rank == no_label) return;
     // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
     const Label before = region_label_[static_cast<std::size_t>(s)];
-    const Label old = before != none ? before : label_of(s);
-    if (old != none) ++ranking.overlap[rank][old];
+    const Label old = before != no_label ? before : label_of(s);
+    if (old != no_label) ++ranking.overlap[rank][old];
   });
 
   match(ranking);
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = rank_of(s);
-    const Label label = rank == none ? none : ranking.label[rank];
+    const Label label = rank == no_label ? no_label : ranking.label[rank];
     Label& now = region_label_[static_cast<std::size_t>(s)];
     if (now == label) return;
     now = label;
@@ -197,7 +196,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   }
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = region_label(s);
-    if (label == none || !clean[label].wanted) return;
+    if (label == no_label || !clean[label].wanted) return;
     Clean& of_plane = clean[label];
     const Cell& cell = dem.cell(s);
     of_plane.cells += 1.0f;
@@ -205,7 +204,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (dem.mixed(cell, of_plane.slope_m2)) return;
     if (of_plane.wide && crossed.contains(s)) return;
     const Label borne = label_of(s);
-    if (borne != label && borne != none && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
+    if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);
     if (!of_plane.steep) moments.zz = 0.0f;
     const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
@@ -271,7 +270,7 @@ void PlaneMixture<limits>::forget_changes() {
 template <Limits limits>
 void PlaneMixture<limits>::rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking,
                                         Counters& counters) const {
-  ranking.of_node.fill(none);
+  ranking.of_node.fill(no_label);
   auto& region = ranking.region;
   std::size_t& kept = ranking.regions;
   Segmentation<limits>::for_each_region(work, [&](Node node, const PlaneMoments& moments) {
@@ -293,12 +292,12 @@ void PlaneMixture<limits>::rank_regions(const typename Segmentation<limits>::Wor
 template <Limits limits>
 void PlaneMixture<limits>::match(Ranking& ranking) {
   std::array<bool, limits.planes> taken{};
-  ranking.label.fill(none);
+  ranking.label.fill(no_label);
   for (std::size_t round = 0; round < ranking.regions; ++round) {
     std::size_t best_rank = 0, best_label = 0;
     std::uint32_t best = 0;
     for (std::size_t r = 0; r < ranking.regions; ++r) {
-      if (ranking.label[r] != none) continue;
+      if (ranking.label[r] != no_label) continue;
       for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
         if (!taken[l] && ranking.overlap[r][l] > best) {
           best = ranking.overlap[r][l];
@@ -313,7 +312,7 @@ void PlaneMixture<limits>::match(Ranking& ranking) {
   }
   std::size_t free = 0;
   for (std::size_t r = 0; r < ranking.regions; ++r) {
-    if (ranking.label[r] != none) continue;
+    if (ranking.label[r] != no_label) continue;
     while (taken[free]) ++free;
     taken[free] = true;
     fresh_[free] = any_fresh_ = true;

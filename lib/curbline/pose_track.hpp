@@ -102,29 +102,25 @@ class PoseTrack {
   /// By the poses that were asked: do they jump on end, as a robot's do that climbs?
   bool climbs() const { return moves_; }
 
-  const Pose& newest() const { return poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)]; }
+  const Pose& newest() const { return back(0); }
 
  private:
-  const Pose& back(int age) const {
-    return poses_[static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses)];
-  }
+  std::size_t place(int age) const { return static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses); }
+  const Pose& back(int age) const { return poses_[place(age)]; }
 
   /// Does the pose of an age, the second since a jump, lie off where those before the jump lead? If not, the first did
   /// by its own error, as one in seventy does.
-  bool lies_off_before(int age) const {
-    const int before = age + 2, first = before + poses_of_a_way < size_ ? before + poses_of_a_way : size_ - 1;
-    return first > before && detail::step_of(back(first), back(before), back(before), back(age), settings_).jumps();
-  }
+  bool lies_off_before(int age) const { return step(age + 2, poses_of_a_way, age + 2, age).jumps(); }
 
   /// Is the newest pose nearer to the one before than poses are kept apart, so that the next one takes its place?
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
-  /// How far the pose of an age lies off where the one before it leads, as fast as on the way that ends with the pose
-  /// of age `last`, over `most` poses before that; nothing if there are too few.
-  detail::PoseStep step(int last, int most, int age) const {
+  /// How far the pose of an age lies off where the one of age `before` leads, as fast as on the way that ends with the
+  /// pose of age `last`, over `most` poses before that; nothing if there are too few.
+  detail::PoseStep step(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;
-    return detail::step_of(back(first), back(last), back(age + 1), back(age), settings_);
+    return detail::step_of(back(first), back(last), back(before), back(age), settings_);
   }
 
   void forget() {
@@ -155,7 +151,7 @@ bool PoseTrack<limits>::push(const Pose& pose) {
   if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // those before are of another time
   times_.take(pose.time_ns);
   if (open()) {
-    poses_[static_cast<std::size_t>((next_ + limits.poses - 1) % limits.poses)] = pose;
+    poses_[place(0)] = pose;
     return true;
   }
   poses_[static_cast<std::size_t>(next_)] = pose;
@@ -183,7 +179,7 @@ PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) 
   PoseJumps jumps;
   for (int age = 0; age < size_ && back(age).time_ns > first_ns; ++age) {
     if (age + 1 < size_ && back(age + 1).time_ns >= last_ns) continue;
-    const detail::PoseStep by = step(age + 1, poses_of_a_way, age);
+    const detail::PoseStep by = step(age + 1, poses_of_a_way, age + 1, age);
     if (by.height_jumps) jumps.height_m2 += by.height_m * by.height_m;
     if (by.attitude_jumps) jumps.attitude_rad2 += by.roll_rad * by.roll_rad + by.pitch_rad * by.pitch_rad;
   }
@@ -198,7 +194,7 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
     // As fast as after the last jump, if there are two poses to tell, else as before it.
     const int last = since_jump_ == 1 ? age + 2 : age + 1;
     const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
-    const detail::PoseStep by = step(last, most, age);
+    const detail::PoseStep by = step(last, most, age + 1, age);
     const bool stepped = since_jump_ == 1 && !moves_;
     const bool begins = by.jumps() && !stepped && !moves_;
     moves_ = by.jumps() && (stepped || moves_);

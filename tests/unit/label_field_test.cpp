@@ -202,7 +202,7 @@ TEST_CASE("label field: a height far from all planes is still given the nearest,
   for (const int i : {5, 6}) {
     const auto belief = tiny->field.belief(tiny->dem, i, 17);
     for (const float p : belief.probability) CHECK(is_finite(p));
-    CHECK(tiny->field.label(tiny->dem.slot(i, 17)) != tiny->field.none);
+    CHECK(tiny->field.label(tiny->dem.slot(i, 17)) != no_label);
   }
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("label field: without planes no cell has a label") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   stages->dem.add({1.0f, 1.0f, 0.0f, 1e-4f});
   stages->infer();
-  CHECK(stages->label_at(10, 10) == stages->field.none);
+  CHECK(stages->label_at(10, 10) == no_label);
 }
 
 TEST_CASE("label field: with fewer planes than candidates the others are none, with probability nought") {
@@ -251,7 +251,7 @@ TEST_CASE("label field: with fewer planes than candidates the others are none, w
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   stages->infer(true);
   const auto belief = stages->field.belief(stages->dem, 3, 3);
-  CHECK(belief.label[2] == stages->field.none);
+  CHECK(belief.label[2] == no_label);
   CHECK(belief.probability[2] == 0.0f);
   CHECK(belief.probability[0] > 0.99f);
 }
@@ -260,9 +260,9 @@ TEST_CASE("label field: a cell that left the window is forgotten") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double, double) { return 0.0; });
   stages->infer(true);
-  REQUIRE(stages->label_at(4, 4) != stages->field.none);
+  REQUIRE(stages->label_at(4, 4) != no_label);
   stages->field.forget(stages->dem.slot(4, 4));
-  CHECK(stages->label_at(4, 4) == stages->field.none);
+  CHECK(stages->label_at(4, 4) == no_label);
 }
 
 TEST_CASE("label field: once its messages stand, a line that touches nothing costs the refreshing of its rows only") {
@@ -287,7 +287,7 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   bounded->label(false);
   CHECK(bounded->counters.messages <= 400);
   CHECK(bounded->counters.cells_deferred == 576 - 100);
-  CHECK(bounded->label_at(23, 23) == bounded->field.none);
+  CHECK(bounded->label_at(23, 23) == no_label);
   for (int call = 0; call < 20; ++call) bounded->infer();
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) CHECK(bounded->label_at(i, j) == free->label_at(i, j));
@@ -310,7 +310,7 @@ TEST_CASE("label field: a budget that is not given grows with the window, three 
 int cells_without_label(const Stages<>& stages) {
   int without = 0;
   for (int i = 0; i < 24; ++i) {
-    for (int j = 0; j < 24; ++j) without += stages.label_at(i, j) == stages.field.none;
+    for (int j = 0; j < 24; ++j) without += stages.label_at(i, j) == no_label;
   }
   return without;
 }

@@ -7,8 +7,6 @@
 namespace curbline {
 namespace {
 
-constexpr auto none = LabelSite::none;
-
 /// Labels 2, 5 and 7, of which the second is `nats` less likely than the first, the third ruled out.
 LabelSite site(double nats) {
   LabelSite s;
@@ -20,7 +18,7 @@ LabelSite site(double nats) {
 TEST_CASE("label site: what it has heard can be taken back to the bit, in any order") {
   const LabelSite s = site(1.0);
   LabelSite::Heard sum{};
-  const LabelSite::Labels others{7, 2, none};
+  const LabelSite::Labels others{7, 2, no_label};
   const LabelSite::Message first{31, 12, 0}, second{3, 48, 9};
   s.hear(others, first, false, 1, sum);
   s.hear(s.label, second, true, 1, sum);
@@ -36,7 +34,7 @@ TEST_CASE("label site: what was said of a label stays with it when candidates ch
   s.sent[1] = {10, 20, 30};
   s.set_labels({7, 4, 2});
   CHECK(s.sent[1] == LabelSite::Message{30, 0, 10});
-  s.set_labels({4, none, none});
+  s.set_labels({4, no_label, no_label});
   CHECK(s.sent[1] == LabelSite::Message{});
 }
 
@@ -64,8 +62,8 @@ TEST_CASE("label site: one that is sure says the whole coupling, one that is not
 TEST_CASE("label site: one label is borne whatever is heard, and none by a site that knows none") {
   LabelSite s;
   CHECK(s.decided());
-  CHECK(s.most_likely({}) == none);
-  s.set_labels({3, none, none});
+  CHECK(s.most_likely({}) == no_label);
+  s.set_labels({3, no_label, no_label});
   CHECK(s.decided());
   CHECK(s.most_likely({0, 100, 100}) == 3);
 }

@@ -175,7 +175,7 @@ TEST_CASE("plane mixture: a plane whose cells still wait for their labels is not
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   stages->infer();
-  REQUIRE(stages->label_at(23, 0) == stages->field.none);
+  REQUIRE(stages->label_at(23, 0) == no_label);
   stages->infer();
   for (int l = 0; l < stages->mixture.capacity; ++l) CHECK_FALSE(stages->mixture.fresh(l));
 }
@@ -207,8 +207,8 @@ TEST_CASE("plane mixture: regions smaller than the bound are no planes") {
   add_points(*stages, {1.8, 2.0, 1.8, 2.0}, noise, [](double, double) { return 0.5; });  // four
   stages->infer();
   CHECK(alive(*stages) == 2);
-  CHECK(stages->mixture.region_label(stages->dem.slot(13, 0)) == stages->mixture.none);
-  CHECK(stages->mixture.region_label(stages->dem.slot(18, 18)) != stages->mixture.none);
+  CHECK(stages->mixture.region_label(stages->dem.slot(13, 0)) == no_label);
+  CHECK(stages->mixture.region_label(stages->dem.slot(18, 18)) != no_label);
 }
 
 TEST_CASE("plane mixture: with more regions than planes the largest win and the others are counted") {
@@ -221,10 +221,10 @@ TEST_CASE("plane mixture: with more regions than planes the largest win and the 
   CHECK(stages->counters.planes_full == 2);
   CHECK(alive(*stages) == 2);
   const auto plane_of = [&](int i) { return stages->mixture.region_label(stages->dem.slot(i, 0)); };
-  CHECK(plane_of(0) == stages->mixture.none);
-  CHECK(plane_of(5) == stages->mixture.none);
-  REQUIRE(plane_of(10) != stages->mixture.none);
-  REQUIRE(plane_of(20) != stages->mixture.none);
+  CHECK(plane_of(0) == no_label);
+  CHECK(plane_of(5) == no_label);
+  REQUIRE(plane_of(10) != no_label);
+  REQUIRE(plane_of(20) != no_label);
   CHECK(stages->mixture.plane(plane_of(10)).height_m(1.2f, 1.2f) == Approx(0.4).margin(1e-3));
   CHECK(stages->mixture.plane(plane_of(20)).height_m(1.9f, 1.2f) == Approx(0.6).margin(1e-3));
 }
