@@ -33,6 +33,7 @@
 #include "curbline/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/label_field.hpp"      // belief propagation
 #include "curbline/map_comparison.hpp"   // what a line says against the map: to tilt_latency, pose_offset
+#include "curbline/line_intake.hpp"      // from a line to its points: the tracks, the projection, what they are off by
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
 #include "curbline/beside.hpp"           // the ground beside them
 #include "curbline/borders.hpp"          // where labels change

@@ -61,6 +61,10 @@ class LineProjection {
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, Counters& counters,
                ProjectedLine<limits>& out) const;
 
+  const LaserSettings& laser() const { return laser_; }
+  const TiltSettings& tilt() const { return tilt_; }
+  const PoseSettings& pose() const { return pose_; }
+
  private:
   bool returned(float range_m) const {
     return range_m > 0.0f && range_m >= laser_.min_range_m && range_m < laser_.max_range_m;

@@ -16,17 +16,18 @@ namespace curbline {
 template <Limits limits>
 class MapComparison {
  public:
-  /// Points above the ceiling, z of the map frame, are none of the ground.
+  /// Points above the ceiling, z of the map frame, are none of the ground. Cells without a mark are looked for at most
+  /// `reach` away, on a row or column.
   MapComparison(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-                float ceiling_m)
-      : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m) {}
+                float ceiling_m, int reach)
+      : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m), reach_(reach) {}
 
-  /// While it is not decided who has jumped: tells `offset` how the line lies against cells without a mark, at most
-  /// `reach` from its points on a row or column, and sets the line back by what is known then.
-  void follow_jump(ProjectedLine<limits>& line, int reach, const TiltLatency& latency, PoseOffset& offset) const;
+  /// While it is not decided who has jumped: tells `offset` how the line lies against cells without a mark, and sets
+  /// the line back by what is known then.
+  void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
 
   /// Of a line that is measured while poses jump: do points lie off the map, the same way, by as much as they jump?
-  bool lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, int reach, const TiltLatency& latency,
+  bool lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, const TiltLatency& latency,
                 const PoseOffset& offset) const;
 
   /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
@@ -35,7 +36,7 @@ class MapComparison {
 
  private:
   using Place = typename Dem<limits>::Place;
-  void compare(const ProjectedLine<limits>& line, int reach, const TiltLatency& latency, PoseOffset& offset) const;
+  void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
   /// What a cell says of the ground at a point.
   struct Ground {
     float above_m, variance_m2;  ///< how far the point lies above it; variance of the ground's own height
@@ -48,35 +49,36 @@ class MapComparison {
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
   float ceiling_m_;
+  int reach_;
 };
 
 template <Limits limits>
-void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, int reach, const TiltLatency& latency,
+void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency,
                                         PoseOffset& offset) const {
-  compare(line, reach, latency, offset);
+  compare(line, latency, offset);
   const PoseShift shift = offset.end_line();
   if (!shift.any()) return;
   for (Point& p : line.points()) p.z_m += offset.at(shift, p.x_m, p.y_m);
 }
 
 template <Limits limits>
-bool MapComparison<limits>::lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, int reach,
+bool MapComparison<limits>::lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps,
                                      const TiltLatency& latency, const PoseOffset& offset) const {
   PoseOffset suspect = offset.suspecting(jumps);
-  compare(line, reach, latency, suspect);
+  compare(line, latency, suspect);
   suspect.end_line();
   return suspect.likelier();
 }
 
 template <Limits limits>
-void MapComparison<limits>::compare(const ProjectedLine<limits>& line, int reach, const TiltLatency& latency,
+void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const TiltLatency& latency,
                                     PoseOffset& offset) const {
   Ground ground;
   for (const Point& p : line.points()) {
     if (p.z_m > ceiling_m_) continue;
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside()) continue;
-    const Place near = dem_.nearest_unmarked(place, reach);
+    const Place near = dem_.nearest_unmarked(place, reach_);
     if (!near.inside() || !ground_at(p, place, near, ground)) {
       offset.pass();
       continue;

@@ -3,7 +3,7 @@
 //   tilt readings --> TiltTrack --+
 //   poses ----------> PoseTrack --+
 //   scan line --------------------+--> LineProjection --> Dem --> Segmentation --> PlaneMixture <--> LabelField --+
-//                                                                                                                 |
+//   \_________________ LineIntake _________________/                                                              |
 //   curbs <------------------------------------------------------------------------------------ CurbTracer <------+
 //
 // No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
@@ -21,13 +21,11 @@
 #include "curbline/ground_label.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/limits.hpp"
-#include "curbline/line_projection.hpp"
+#include "curbline/line_intake.hpp"
 #include "curbline/map_comparison.hpp"
 #include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
-#include "curbline/pose_offset.hpp"
 #include "curbline/pose_track.hpp"
-#include "curbline/rising_times.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
@@ -56,7 +54,7 @@ class Pipeline {
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
   /// dropped: not finite, beyond 1e6 rad, not later than the one before. init() forgets those before it.
-  bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
+  bool add_tilt(const TiltReading& reading) { return line_intake_.add_tilt(reading); }
 
   /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond
   /// Pose::furthest_m, its quaternion not of unit length; before init().
@@ -117,15 +115,12 @@ class Pipeline {
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
   /// What the map has been set back by against the poses, about where the robot is: pose_offset.hpp
-  const PoseShift& pose_offset() const { return pose_offset_.offset(); }
-  const TiltLatency& tilt_latency() const { return tilt_latency_; }
+  const PoseShift& pose_offset() const { return line_intake_.pose_offset().offset(); }
+  const TiltLatency& tilt_latency() const { return line_intake_.tilt_latency(); }
   const Settings& settings() const { return settings_; }
 
  private:
-  Status place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt);
-  bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt);
-  void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping);
-  bool compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion);
+  void follow_robot(const Transform& T_map_base);
   void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -146,18 +141,11 @@ class Pipeline {
 
   Settings settings_{};
   bool ready_ = false;
-  bool planes_next_ = true;  ///< which half of the inference is due
-  RisingTimes line_times_{};
+  bool planes_next_ = true;                               ///< which half of the inference is due
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
   Counters counters_{};
-  float tilt_rate_rad_s_ = 0.0f;  ///< of the line in hand
-  TiltTrack<limits> tilt_track_{};
-  TiltLatency tilt_latency_{};
-  PoseTrack<limits> pose_track_{};
-  PoseOffset pose_offset_{};
-  bool jumped_ = false;  ///< poses, while the last line was measured
-  LineProjection<limits> line_projection_{};
+  LineIntake<limits> line_intake_{};
   Dem<limits> dem_{};
   Segmentation<limits> segmentation_{};
   PlaneMixture<limits> plane_mixture_{};
@@ -178,15 +166,9 @@ Status Pipeline<limits>::init(const Settings& settings) {
   if (prior.noise_m2 < by_range_m2) prior.noise_m2 = by_range_m2;
   counters_ = Counters{};
   planes_next_ = true;
-  jumped_ = false;
-  line_times_ = RisingTimes{};
   p_map_tilt_ = p_base_tilt();
   ceiling_m_ = window.max_height_m;
-  tilt_track_.init(settings.tilt);
-  tilt_latency_.init(settings.tilt, settings.pose);
-  pose_track_.init(settings.pose);
-  pose_offset_.init(settings.pose);
-  line_projection_.init(settings);
+  line_intake_.init(settings);
   dem_.init(window, prior);
   segmentation_.init(settings.segmentation, prior);
   plane_mixture_.init(settings_.planes);
@@ -200,7 +182,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
 template <Limits limits>
 bool Pipeline<limits>::add_pose(const Pose& pose) {
   if (!ready_) return false;
-  if (pose_track_.push(pose)) return true;
+  if (line_intake_.add_pose(pose)) return true;
   ++counters_.poses_dropped;
   return false;
 }
@@ -228,98 +210,22 @@ Status Pipeline<limits>::observe(const ScanLine& line) {
 template <Limits limits>
 template <typename Take>
 Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
-  LineMotion motion;
   auto& work = workspace_.line();
-  const Status status = place_line(line, motion, work.tilt);
-  counters_.tilt_dropped = tilt_track_.dropped();
+  const Status status = ready_ ? line_intake_.place(line, dem_, work) : Status::not_initialised;
+  counters_.tilt_dropped = line_intake_.tilt_dropped();
   if (status != Status::ok) {
     ++counters_.lines_dropped;
     return status;
   }
-  line_times_.take(line.time_ns);
   ++counters_.lines;
-  if (!motion.still) {
-    const Transform& T_map_base = motion.T_map_base_last;
-    ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : T_map_base.translation.z());
-    p_map_tilt_ = T_map_base * p_base_tilt();
-    move_window(T_map_base);
-    dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
-  }
-  line_projection_.project(line, work.tilt, motion, counters_, work.projected);
-  if (!compare_with_map(work.projected, motion)) {
+  if (!work.motion.still) follow_robot(work.motion.T_map_base_last);
+  const MapComparison<limits> map(dem_, plane_mixture_, label_field_, ceiling_m_, settings_.segmentation.link_reach);
+  if (!line_intake_.project(line, map, dem_, work, counters_)) {
     ++counters_.lines_off_map;
     return Status::ok;
   }
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
-}
-
-/// By ground that was mapped before: whose a jump of the poses was, and how late the tilt is. What the latency turns
-/// out to be moves the map. False if the line was measured as poses jumped, and the map says that it does not lie where
-/// they have it: a ridge as high as the jump, of a single line.
-template <Limits limits>
-bool Pipeline<limits>::compare_with_map(ProjectedLine<limits>& line, const LineMotion& motion) {
-  const MapComparison<limits> map(dem_, plane_mixture_, label_field_, ceiling_m_);
-  const int reach = settings_.segmentation.link_reach;
-  if (!motion.jumps.any()) {
-    if (pose_offset_.undecided()) map.follow_jump(line, reach, tilt_latency_, pose_offset_);
-  } else if (!pose_track_.climbs() && map.lies_off(line, motion.jumps, reach, tilt_latency_, pose_offset_)) {
-    return false;
-  }
-  if (settings_.tilt.fixed) return true;
-  map.follow_latency(line, motion, pose_offset_, tilt_latency_);
-  const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
-  if (correction.any()) dem_.delay(correction.this_sweep_s, correction.earlier_s);
-  return true;
-}
-
-/// Everything that can be wrong with a line, before it changes anything; the tilt snapshot and the motion for it.
-template <Limits limits>
-Status Pipeline<limits>::place_line(const ScanLine& line, LineMotion& motion, TiltSnapshot<limits>& tilt) {
-  if (!ready_) return Status::not_initialised;
-  if (line.ranges_m.size() > static_cast<std::size_t>(settings_.laser.beams)) return Status::line_too_long;
-  if (!line_times_.admits(line.time_ns)) return Status::line_out_of_order;
-  const std::int64_t last_beam_ns = line.time_ns + settings_.laser.duration_ns(line.ranges_m.size());
-  Pose first, last;
-  if (!settings_.pose.still && !(pose_track_.at(line.time_ns, first) && pose_track_.at(last_beam_ns, last)))
-    return Status::no_pose;
-  if (!settings_.tilt.fixed && !follow_tilt(line.time_ns, last_beam_ns, tilt)) return Status::no_tilt;
-  if (settings_.pose.still) return Status::ok;
-  const PoseJumps jumps = pose_track_.jumps(line.time_ns, last_beam_ns);
-  follow_poses(line.time_ns, first, jumps.any());
-  motion = {make_transform(pose_offset_.corrected(first)), make_transform(pose_offset_.corrected(last)), false, jumps};
-  return Status::ok;
-}
-
-/// False if there are no angles for the line.
-template <Limits limits>
-bool Pipeline<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, TiltSnapshot<limits>& tilt) {
-  tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
-  const TiltAngle first = tilt.at(first_ns);
-  const std::uint32_t reading = tilt.reading_number();
-  const TiltAngle last = tilt.at(last_ns);
-  tilt.rewind();
-  if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return false;
-  const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
-  tilt_rate_rad_s_ = any.rate_rad_s;
-  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s, reading);
-  if (turn == TiltLatency::Turn::new_sweep) dem_.begin_sweep();
-  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
-  return true;
-}
-
-/// The robot is where a line begins. Lines that are measured while poses jump say nothing of where the ground was
-/// before, nor do those after.
-template <Limits limits>
-void Pipeline<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping) {
-  pose_offset_.follow(pose.x_m, pose.y_m);
-  bool begun = false;
-  while (const auto step = pose_track_.next_step(line_ns)) {
-    pose_offset_.follow(*step);
-    begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
-  }
-  if ((jumping || begun) && !jumped_) dem_.begin_marking();
-  jumped_ = jumping;
 }
 
 template <Limits limits>
@@ -335,6 +241,14 @@ void Pipeline<limits>::take_point(const Point& point) {
   } else {
     ++counters_.outside;
   }
+}
+
+template <Limits limits>
+void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
+  ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : T_map_base.translation.z());
+  p_map_tilt_ = T_map_base * p_base_tilt();
+  move_window(T_map_base);
+  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
 }
 
 /// Moves the window with the robot, its middle with the robot's heading; what leaves it leaves every stage.
@@ -414,7 +328,7 @@ void Pipeline<limits>::follow_curbs() {
 template <Limits limits>
 void Pipeline<limits>::follow_noise() {
   common_noise_.follow(dem_, plane_mixture_, view());
-  dem_.set_common(common_noise_.common_m2(settings_.planes.prior, tilt_latency_.sd_s()), common_noise_.line_rad2());
+  dem_.set_common(common_noise_.common_m2(settings_.planes.prior, tilt_latency().sd_s()), common_noise_.line_rad2());
 }
 
 template <Limits limits>

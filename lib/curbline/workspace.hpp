@@ -7,9 +7,8 @@
 
 #include "curbline/curb_tracer.hpp"
 #include "curbline/label_field.hpp"
-#include "curbline/line_projection.hpp"
+#include "curbline/line_intake.hpp"
 #include "curbline/segmentation.hpp"
-#include "curbline/tilt_track.hpp"
 
 namespace curbline {
 
@@ -18,13 +17,10 @@ class Workspace {
  public:
   Workspace() {}
 
-  struct Line {
-    TiltSnapshot<limits> tilt;
-    ProjectedLine<limits> projected;
-  };
-
   /// Each begins anew and ends what another holds.
-  Line& line() { return *::new (static_cast<void*>(&line_)) Line; }
+  typename LineIntake<limits>::Work& line() {
+    return *::new (static_cast<void*>(&line_)) typename LineIntake<limits>::Work;
+  }
   typename Segmentation<limits>::Work& segmentation() {
     return *::new (static_cast<void*>(&segmentation_)) typename Segmentation<limits>::Work;
   }
@@ -37,7 +33,7 @@ class Workspace {
 
  private:
   union {
-    Line line_;
+    typename LineIntake<limits>::Work line_;
     typename Segmentation<limits>::Work segmentation_;
     typename LabelField<limits>::Visits visits_;
     typename CurbTracer<limits>::Work curbs_;

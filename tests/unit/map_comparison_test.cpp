@@ -32,7 +32,7 @@ struct Late {
   }
   /// Twenty lines, each with a point of row i in every column.
   void look(int i, float ceiling_m = 1.0f, const LineMotion& motion = {}) {
-    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m);
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m, 10);
     for (std::uint32_t n = 1; n <= 20; ++n) {
       latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
       auto line = std::make_unique<ProjectedLine<small_limits>>();
@@ -112,13 +112,13 @@ struct Jumping {
   }
   /// Is a line across, with its points so high, off the map?
   bool off(float above_m, float slope_y = 0.0f) const {
-    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f);
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
     auto line = std::make_unique<ProjectedLine<small_limits>>();
     for (int j = 0; j < 24; ++j) {
       const float y_m = 0.1f * static_cast<float>(j) + 0.05f;
       line->add({1.25f, y_m, above_m + slope_y * (y_m - 1.2f), 1e-4f});
     }
-    return map.lies_off(*line, {square(0.02f), square(0.007f)}, 10, latency, offset);
+    return map.lies_off(*line, {square(0.02f), square(0.007f)}, latency, offset);
   }
 
   std::unique_ptr<Stages<>> stages = std::make_unique<Stages<>>(test::small_settings());

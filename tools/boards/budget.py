@@ -83,7 +83,9 @@ def instruction_rows(results):
 def measure(build, board):
     elf = boards.program_of(build, board.name).resolve()
     results = run_drives.results_folder(build, board.name)
-    parts = members.member_sizes(elf, "Pipeline<", board.compilers)
+    parts = []
+    for name, size in members.member_sizes(elf, "Pipeline<", board.compilers):
+        parts += members.member_sizes(elf, "LineIntake<", board.compilers) if name == "line_intake_" else [(name, size)]
     rows = [("flash", "firmware", flash_bytes(elf, board.compilers)), ("ram", "pipeline", sum(size for _, size in parts))]
     rows += [("", name.rstrip("_"), size) for name, size in parts if size >= 64]
     return rows + stack_rows(board, elf, results) + instruction_rows(results)
