@@ -2,7 +2,9 @@
 
 #include <array>
 
+#include "curbline/frames.hpp"
 #include "curbline/math.hpp"
+#include "curbline/pose_track.hpp"
 
 namespace curbline::can {
 namespace {

@@ -31,7 +31,7 @@
 #include "can/frame.hpp"
 #include "can/signal.hpp"
 #include "curbline/curb.hpp"
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/tilt_watch.hpp"
 
 namespace curbline::can {

@@ -5,8 +5,8 @@
 namespace curbline::can {
 namespace {
 
-/// No servo winds further (TiltTrack drops it too); a float holds it.
-constexpr double max_angle_rad = 1e6;
+/// Within them a float holds an angle, whatever the signal's number.
+constexpr double furthest_rad = TiltReading::furthest_rad;
 
 /// How long a position may take after the first SYNC of all: a full bus delays it by a few frames, a millisecond.
 constexpr std::int64_t longest_first_delay_ns = 5'000'000;
@@ -47,7 +47,7 @@ std::optional<TiltReading> TiltDecoder::take(const Frame& frame) {
   }
   const auto time_ns = time_of_position(frame.time_ns);
   const auto angle = decode(signal_, frame);
-  if (!angle || !(*angle >= -max_angle_rad && *angle <= max_angle_rad)) {
+  if (!angle || !(*angle >= -furthest_rad && *angle <= furthest_rad)) {
     count(counters_.malformed);
     return std::nullopt;
   }

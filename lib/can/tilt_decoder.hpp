@@ -20,7 +20,7 @@
 
 #include "can/frame.hpp"
 #include "can/signal.hpp"
-#include "curbline/tilt_track.hpp"
+#include "curbline/tilt_reading.hpp"
 
 namespace curbline::can {
 

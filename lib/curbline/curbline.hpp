@@ -11,11 +11,13 @@
 #include "curbline/scan_line.hpp"        // in: ranges
 #include "curbline/rising_times.hpp"     // what comes late, a clock that is set back
 #include "curbline/extrapolation.hpp"    // how angles and poses go on
-#include "curbline/tilt_track.hpp"       // in: servo angles
+#include "curbline/tilt_reading.hpp"     // in: a servo angle
+#include "curbline/tilt_track.hpp"       // they over time
 #include "curbline/tilt_watch.hpp"       // whether the servo is alive
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt
 #include "curbline/tilt_latency.hpp"     // how late they are, found on the way
-#include "curbline/pose_track.hpp"       // in: robot poses
+#include "curbline/pose.hpp"             // in: a robot pose
+#include "curbline/pose_track.hpp"       // they over time, jumps and steps
 #include "curbline/pose_offset.hpp"      // whether a jump was the robot's
 #include "curbline/line_projection.hpp"  // beams to points with variance
 #include "curbline/point.hpp"            //

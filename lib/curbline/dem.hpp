@@ -13,7 +13,7 @@
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/viewpoints.hpp"
 

@@ -12,6 +12,7 @@
 #include "curbline/limits.hpp"
 #include "curbline/line_projection.hpp"
 #include "curbline/map_comparison.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/pose_offset.hpp"
 #include "curbline/pose_track.hpp"
 #include "curbline/rising_times.hpp"
@@ -19,6 +20,7 @@
 #include "curbline/settings.hpp"
 #include "curbline/status.hpp"
 #include "curbline/tilt_latency.hpp"
+#include "curbline/tilt_reading.hpp"
 #include "curbline/tilt_track.hpp"
 
 namespace curbline {

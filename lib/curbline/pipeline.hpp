@@ -25,13 +25,14 @@
 #include "curbline/map_comparison.hpp"
 #include "curbline/passability.hpp"
 #include "curbline/plane_mixture.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/pose_track.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/status.hpp"
 #include "curbline/tilt_latency.hpp"
-#include "curbline/tilt_track.hpp"
+#include "curbline/tilt_reading.hpp"
 #include "curbline/workspace.hpp"
 
 namespace curbline {
@@ -53,7 +54,8 @@ class Pipeline {
   Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
-  /// dropped: not finite, beyond 1e6 rad, not later than the one before. init() forgets those before it.
+  /// dropped: not finite, beyond TiltReading::furthest_rad, not later than the one before. init() forgets those before
+  /// it.
   bool add_tilt(const TiltReading& reading) { return line_intake_.add_tilt(reading); }
 
   /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond

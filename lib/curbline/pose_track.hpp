@@ -11,19 +11,11 @@
 #include "curbline/extrapolation.hpp"
 #include "curbline/frames.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/rising_times.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
-
-/// Position of the base in the map frame and its attitude as a unit quaternion. float keeps 0.1 mm within 1 km of the
-/// map's origin: put it near the robot.
-struct Pose {
-  static constexpr float furthest_m = 1e6f;  ///< along each axis: beyond, float would not tell one cell from the next
-  std::int64_t time_ns = 0;
-  float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
-  float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;
-};
 
 /// How far poses lie off where those before them led, by three standard deviations or more: a wheel has met a kerb, or
 /// a localisation has thought better of it. Sums of squares.

@@ -13,13 +13,9 @@
 #include "curbline/math.hpp"
 #include "curbline/rising_times.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/tilt_reading.hpp"
 
 namespace curbline {
-
-struct TiltReading {
-  std::int64_t time_ns = 0;
-  float angle_rad = 0.0f;  ///< tilt > 0 looks down; continuous: an encoder's zero does not lie within the sweep
-};
 
 /// The angle at one time.
 struct TiltAngle {
@@ -85,13 +81,9 @@ class TiltTrack {
     times_ = RisingTimes{};
   }
 
-  /// No servo winds further, and what follows can reduce it, carried beyond the readings too: a greater angle is a
-  /// damaged frame.
-  static constexpr float max_angle_rad = 1e6f;
-
-  /// Takes a reading; false (and counted) if it is not within max_angle_rad or not later than the one before
-  /// (rising_times.hpp). O(1), wait-free: may be called from an interrupt while another context takes snapshots. One
-  /// writer only.
+  /// Takes a reading; false (and counted) if it is not within TiltReading::furthest_rad or not later than the one
+  /// before (rising_times.hpp). O(1), wait-free: may be called from an interrupt while another context takes snapshots.
+  /// One writer only.
   bool push(const TiltReading& reading);
 
   /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
@@ -115,7 +107,8 @@ class TiltTrack {
 
 template <Limits limits>
 bool TiltTrack<limits>::push(const TiltReading& reading) {
-  if (!(reading.angle_rad >= -max_angle_rad && reading.angle_rad <= max_angle_rad) || !times_.admits(reading.time_ns)) {
+  constexpr float furthest_rad = TiltReading::furthest_rad;
+  if (!(reading.angle_rad >= -furthest_rad && reading.angle_rad <= furthest_rad) || !times_.admits(reading.time_ns)) {
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return false;
   }

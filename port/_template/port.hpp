@@ -10,7 +10,7 @@
 #include "can/curb_frames.hpp"
 #include "can/frame.hpp"
 #include "can/signal.hpp"
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 
 /// What a robot's firmware needs of its board. All calls come from one context; none waits.

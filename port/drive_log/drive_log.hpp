@@ -16,7 +16,7 @@
 #include "can/signal.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/curb.hpp"
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/status.hpp"

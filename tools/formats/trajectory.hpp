@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "formats/line_reader.hpp"
 
 namespace curbline::tools {

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "curbline/limits.hpp"
-#include "curbline/pose_track.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 #include "drive_log/drive_log.hpp"
 
