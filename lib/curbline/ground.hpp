@@ -32,8 +32,6 @@
 
 namespace curbline {
 
-inline constexpr float least_ramp = 0.05f;  ///< 1 in 20: a way that rises by more is a ramp, ISO 21542
-
 template <Limits limits>
 class Ground {
  public:

@@ -8,6 +8,7 @@
 
 namespace curbline {
 
+inline constexpr float least_ramp = 0.05f;      ///< 1 in 20: a way that rises by more is a ramp, ISO 21542
 inline constexpr float steepest_ramp = 0.125f;  ///< 1 in 8: of a kerb ramp, AS 1428.1
 
 /// Weighted moments of points (x, y, z), metres in the window's frame. 48 bytes.

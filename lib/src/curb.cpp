@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "curbline/ground.hpp"
 #include "curbline/math.hpp"
 
 namespace curbline {
