@@ -58,20 +58,20 @@ class BorderFinder {
     int axis, across;
   };
   /// A cell of a line and its plane.
-  struct Place {
+  struct LabelledCell {
     Label label = no_label;
     std::int16_t along = 0;
   };
   /// From a cell of one plane to one of another.
   struct Gap {
     Line line;
-    Place first, second;
+    LabelledCell first, second;
   };
   /// The last cell of a plane, of a face or before a veil, beyond which no ground is seen.
   struct End {
     Line line;
-    Place last;  ///< label is no_label if there is no such end
-    int toward;  ///< 1 if the plane is left along the axis, -1 if against it
+    LabelledCell last;  ///< label is no_label if there is no such end
+    int toward;         ///< 1 if the plane is left along the axis, -1 if against it
   };
   struct Brink {
     End end;
@@ -148,7 +148,7 @@ bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& 
 template <Limits limits>
 void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
-  const auto pass = [&](Place& before, const Place& here, const Line& line) {
+  const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
     const Gap gap{line, before, here};
     before = here;
     if (gap.first.label == no_label || gap.first.label == here.label ||
@@ -162,8 +162,8 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   const auto end_before = [&](const Line& line, int veil) {
     if (const Brink brink = find_brink(line, veil); brink.end.last.label != no_label) add(border_of(brink));
   };
-  std::array<Place, limits.cols> before_in_col{};
-  Place before_in_row;
+  std::array<LabelledCell, limits.cols> before_in_col{};
+  LabelledCell before_in_row;
   int row = -1;
   dem_.for_each_valid([&](int i, int j, int s) {
     const Label label = field_.label(s);
@@ -214,8 +214,8 @@ auto BorderFinder<limits>::border_at(const End& end, float along_m) const -> Bor
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first.label < gap.second.label;
-  const Place& low = rising ? gap.first : gap.second;
-  const Place& high = rising ? gap.second : gap.first;
+  const LabelledCell& low = rising ? gap.first : gap.second;
+  const LabelledCell& high = rising ? gap.second : gap.first;
   const float along_m = middle_m(gap);
   Border border = border_at(gap.line, along_m);
   border.probability = 1.0f - same_plane(gap);
@@ -254,7 +254,7 @@ Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward
 template <Limits limits>
 auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> End {
   const Line& line = gap.line;
-  const Place& first = toward > 0 ? gap.second : gap.first;
+  const LabelledCell& first = toward > 0 ? gap.second : gap.first;
   const Plane& plane = mixture_.plane(first.label);
   const auto sign = static_cast<float>(toward);
   const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);

@@ -165,8 +165,8 @@ class Dem {
   /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
-    const Viewpoints::Place& place = viewpoints_.at(touched_[static_cast<std::size_t>(slot)] / a_viewpoint);
-    return {place.x_m - origin_x_m(), place.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
+    const Viewpoints::Position& from = viewpoints_.at(touched_[static_cast<std::size_t>(slot)] / a_viewpoint);
+    return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
   }
   /// If not, all has been seen from one place.
   bool seen_from_several() const { return viewpoints_.moved(); }

@@ -13,7 +13,7 @@ class Viewpoints {
  public:
   static constexpr int numbers = 32;
 
-  struct Place {
+  struct Position {
     float x_m = 0.0f, y_m = 0.0f;  ///< map frame
   };
 
@@ -23,13 +23,13 @@ class Viewpoints {
   }
 
   /// The laser is there.
-  void look_from(const Place& place) {
-    const float dx_m = place.x_m - began_.x_m, dy_m = place.y_m - began_.y_m;
+  void look_from(const Position& position) {
+    const float dx_m = position.x_m - began_.x_m, dy_m = position.y_m - began_.y_m;
     if (places_ == 0 || dx_m * dx_m + dy_m * dy_m > apart_m_ * apart_m_) {
-      began_ = place;
+      began_ = position;
       ++places_;
     }
-    at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + place.x_m), 0.5f * (began_.y_m + place.y_m)};
+    at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + position.x_m), 0.5f * (began_.y_m + position.y_m)};
   }
 
   /// Has it left the first place?
@@ -37,11 +37,11 @@ class Viewpoints {
   /// Of what is seen now; after look_from().
   int newest() const { return static_cast<int>((places_ - 1) % numbers); }
   /// The middle of the way on which that was the number. 0 <= number < numbers.
-  const Place& at(int number) const { return at_[static_cast<std::size_t>(number)]; }
+  const Position& at(int number) const { return at_[static_cast<std::size_t>(number)]; }
 
  private:
-  std::array<Place, numbers> at_{};
-  Place began_{};  ///< the newest
+  std::array<Position, numbers> at_{};
+  Position began_{};  ///< the newest
   float apart_m_ = 0.0f;
   std::uint32_t places_ = 0;  ///< that there have been; 2^32 are 700,000 km in windows of 4 m
 };
