@@ -143,7 +143,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   first_row_ = first + 1;
   const int band = band_ < rows ? band_ : 0;
   band_ = band + settings_.refresh_rows;
-  const int messages = settings_.max_messages > 0 ? settings_.max_messages : 3 * rows * dem.cols() / 4;
+  const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
   int left = scope == FieldScope::line ? messages / directions : capacity;
   /// `visited`, with `renew` or without, or `quiet`.
   const auto wanted = [&](int s) -> std::uint8_t {

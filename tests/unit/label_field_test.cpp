@@ -300,7 +300,7 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
 TEST_CASE("label field: a budget that is not given grows with the window, three messages for four cells") {
   const int rows = GENERATE(12, 24);
   Settings settings = small_settings(rows, 24);
-  settings.labels.max_messages = 0;
+  settings.labels.max_messages.reset();
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   stages->infer();

@@ -178,7 +178,8 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, "labels.coupling", [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
   refuses(bad, "labels.link_reach", [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
   refuses(bad, "labels.refresh_rows", [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
-  refuses(bad, "labels.max_messages", [](Settings& s) -> int& { return s.labels.max_messages; }, {3, 1, -1});
+  refuses(bad, "labels.max_messages", [](Settings& s) -> int& { return s.labels.max_messages.emplace(); },
+          {3, 1, 0, -1});
   refuses(bad, "curbs.link_reach", [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});
   refuses(bad, "curbs.max_step_m", [](Settings& s) -> float& { return s.curbs.max_step_m; }, {0.0f, nan, infinity});
 }
