@@ -34,6 +34,13 @@ TEST_CASE("drive log: the stream takes the place of no log that it is made of") 
   CHECK(drive_log(write_of(logs) + Words{"--out", logs.path("drive")}).status == 0);
 }
 
+TEST_CASE("drive log: the same logs make the same bytes") {
+  const Recording logs("city", "utm30lx", {"--duration", "0.5"});
+  CHECK(drive_log(write_of(logs) + Words{"--out", logs.path("once")}).status == 0);
+  CHECK(drive_log(write_of(logs) + Words{"--out", logs.path("again")}).status == 0);
+  CHECK(read_file(logs.path("once")) == read_file(logs.path("again")));
+}
+
 TEST_CASE("drive log: an empty file name is wrong usage") {
   check_wrong_usage(drive_log({"write", "--robot", "r", "--scans", "s", "--out", "o", "--can", ""}),
                     "--can: empty; expected a file name\n");
