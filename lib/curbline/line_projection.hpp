@@ -75,6 +75,11 @@ class LineProjection {
     const float apart = after_m - before_m, off = 0.5f * (before_m + after_m) - own_m;
     return apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2 ? off : 0.0f;
   }
+  /// Of the map's x, y or z in the tilt axis' frame.
+  Eigen::Vector3f gradient(const LineMotion& motion, int axis) const {
+    if (motion.still) return T_base_tilt_.rotation.row(axis);
+    return rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(axis));
+  }
   TiltAngle tilt_at(std::int64_t time_ns, TiltSnapshot<limits>& tilt) const;
   float height_variance_m2(float range_m, float by_range, float by_bearing, float by_tilt,
                            const Eigen::Vector3f& p_base, float tilt_rate) const;
@@ -110,12 +115,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
                                      Counters& counters, ProjectedLine<limits>& out) const {
   const std::size_t beams = line.ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
-  // Gradients of the map's x, y and z in the tilt axis' frame.
-  const auto gradient = [&](int axis) -> Eigen::Vector3f {
-    if (motion.still) return T_base_tilt_.rotation.row(axis);
-    return rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(axis));
-  };
-  const Eigen::Vector3f x_axis = gradient(0), y_axis = gradient(1), up_axis = gradient(2);
+  const Eigen::Vector3f x_axis = gradient(motion, 0), y_axis = gradient(motion, 1), up_axis = gradient(motion, 2);
   const float three_sd_m2 = gate * laser_.range_sd_m * laser_.range_sd_m;
   NearSinCos near;
   for (std::size_t i = 0; i < beams; ++i) {
