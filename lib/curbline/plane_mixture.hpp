@@ -4,6 +4,7 @@
 // nothing else. Cost: three passes over the window, K^3 for the matching, and ground.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -102,7 +103,7 @@ class PlaneMixture {
     float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
     float cells = 0.0f, points = 0.0f;  ///< of the region
     PlaneMoments inner, beside;
-    float bias_m2 = 0.0f;  ///< of those beside a step down, each by its weight
+    float bias_m2 = 0.0f;  ///< of those beside a step, each by its weight
   };
   /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
   static constexpr float wide_cells = 200.0f;
@@ -116,6 +117,7 @@ class PlaneMixture {
   void fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const;
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
   float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
+  float step_beside_m(const Dem<limits>& dem, int i, int j, int s) const;
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -181,8 +183,9 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -
 /// Fits planes that are ground to the mean heights of those cells of their regions that hold nothing else, and do not
 /// bear another plane on which they lie better: what mixes both sides of a step would tilt the plane of a small region
 /// toward the other. Where the step is low the heights within a cell do not show it. A wide plane does without the
-/// cells that a step crosses; of a small one they say too much. Beside a step down a cell lies too high, and all along
-/// it do alike: together they are one observation, too high by up to the half of the step, anywhere.
+/// cells that a step crosses; of a small one they say too much. They hold something of the other side, and beside a
+/// step down a cell lies too high: all along it do alike. Together they are one observation, off by up to the half of
+/// the step, anywhere.
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
@@ -207,7 +210,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);
     if (!of_plane.steep) moments.zz = 0.0f;
-    const float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
+    float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
+    if (crossed.contains(s)) step_m = std::max(step_m, step_beside_m(dem, i, j, s));
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
     of_plane.beside.add_cell(moments);
     of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
@@ -254,6 +258,23 @@ float PlaneMixture<limits>::step_down_m(const Dem<limits>& dem, const Viewpoint&
     if (region_label(next) == region_label(s)) continue;
     const float step_m = dem.cell(next).height_m - cell.height_m;
     if (step_m > most_m) most_m = step_m;
+  }
+  return most_m;
+}
+
+/// How far a cell lies above or below those beside it of other regions that are ground; 0 if there are none.
+template <Limits limits>
+float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, int i, int j, int s) const {
+  const float height_m = dem.cell(s).height_m;
+  float most_m = 0.0f;
+  for (int toward = 0; toward < directions; ++toward) {
+    if (dem.next_valid(s, toward, 1) == 0) continue;
+    const auto d = static_cast<std::size_t>(toward);
+    const int next = dem.slot(i + step_i[d], j + step_j[d]);
+    const Label other = region_label(next);
+    if (other == no_label || other == region_label(s) || !ground_.is(other)) continue;
+    const float step_m = dem.cell(next).height_m - height_m;
+    most_m = std::max(most_m, step_m < 0.0f ? -step_m : step_m);
   }
   return most_m;
 }
