@@ -26,9 +26,10 @@ const char* to_string(CurbKind kind);
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
   float position_sd_m = 0.0f;  ///< across it, of its middle; twice that at its ends
-  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the gap between them and of the piece, along
-                          ///< which it changes by 2 cm at most; more where the ground beside it lies farther apart than
-                          ///< its planes, as in a gutter; above 0 is a step up; 0 of a crease or the edge of a ramp
+  float height_m = 0.0f;  ///< far plane less near plane, in the middle of the piece and of the gap between them, of a
+                          ///< step with a shadow at its edge; along the piece it changes by 2 cm at most; more where
+                          ///< the ground beside it lies farther apart than its planes, as in a gutter; above 0 is a
+                          ///< step up; 0 of a crease or the edge of a ramp
   float height_sd_m = 0.0f;   ///< from both planes' posteriors, from how far and how often they were seen, what the
                               ///< piece's place leaves open where their slopes differ, and how far the cells beside the
                               ///< border lie off them

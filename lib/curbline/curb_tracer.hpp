@@ -62,7 +62,7 @@ class CurbTracer {
   void cut(const Stages& stages, int length, Work& work, Counters& counters) const;
   static int bend(const Borders<limits>& borders, int first, int last);
   Curb curb_of(const Stages& stages, const Border& border, const Piece& piece) const;
-  float leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last, const Curb& curb,
+  float leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last, Curb& curb,
                      Piece& piece) const;
   static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
   static float more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece);
@@ -259,20 +259,28 @@ float CurbTracer<limits>::more_from_afar_m2(const Stages& stages, const Plane& p
   return more_m2 > 0.0f ? more_m2 / plane.fit_variance_m2 * plane.height_variance_m2(piece.x_m, piece.y_m) : 0.0f;
 }
 
-/// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. Returns
-/// how wide the shadow is.
+/// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. It is as
+/// high as its planes lie apart at the edge, where its line moves to. Returns how wide the shadow is.
 template <Limits limits>
 float CurbTracer<limits>::leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last,
-                                       const Curb& curb, Piece& piece) const {
+                                       Curb& curb, Piece& piece) const {
   const bool down = curb.height_m < 0.0f;
   const std::uint16_t upper = down ? curb.near_label : curb.far_label, lower = down ? curb.far_label : curb.near_label;
   const Viewpoint view =
       Piece::seen_from(stages, borders, first, last, settings_.link_reach, static_cast<Label>(lower));
   const bool upper_is_right = (upper == borders.at(first).low) == piece.low_is_right;
   if (piece.has_right(view) != upper_is_right) return 0.0f;
-  const float above_m = view.z_m - stages.mixture.plane(upper).height_m(piece.x_m, piece.y_m);
+  const Plane& above = stages.mixture.plane(upper);
+  const Plane& below = stages.mixture.plane(lower);
+  const float above_m = view.z_m - above.height_m(piece.x_m, piece.y_m);
   const float drop_m = down ? -curb.height_m : curb.height_m;
-  return move_before_shadow(piece.line, view, {drop_m, above_m, piece.gap_m + piece.cell_m});
+  const LineFit::Segment before = piece.line;
+  const float shadow_m = move_before_shadow(piece.line, view, {drop_m, above_m, piece.gap_m + piece.cell_m});
+  const float rise_m = (above.slope_x - below.slope_x) * (piece.line.x0_m - before.x0_m) +
+                       (above.slope_y - below.slope_y) * (piece.line.y0_m - before.y0_m);
+  curb.height_m += down ? -rise_m : rise_m;
+  curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
+  return shadow_m;
 }
 
 /// The plane that is borne nearest to the laser: the robot's own ground, as far as is seen.

@@ -407,6 +407,16 @@ TEST_CASE("curb tracer: between planes of different slope the height is as uncer
   CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.15));
 }
 
+TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its edge, not in its shadow") {
+  const auto stages = traced([](double x, double) { return x < 1.4 ? 0.12 : 0.05 * (x - 1.4); });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  REQUIRE(curb.kind == CurbKind::step_down);
+  const double edge_m = 0.5 * static_cast<double>(curb.x0_m + curb.x1_m);
+  CHECK(edge_m < 1.36);
+  CHECK(curb.height_m == Approx(0.05 * (edge_m - 1.4) - 0.12).margin(0.0003));
+}
+
 TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);
