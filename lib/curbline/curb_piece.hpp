@@ -53,6 +53,7 @@ struct CurbPiece {
   float borders = 0.0f;                ///< how many
   float place_variance_m2 = 0.0f;      ///< of a border, across the line
   float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
+  float told_variance_m2 = 0.0f;       ///< the same of a step, whose cells tell where in the gap it lies
   float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
   bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
   bool low_is_right = false;           ///< of the line, from its first end to its second
@@ -68,11 +69,14 @@ struct CurbPiece {
   /// middle of the widest gap that a chain bridges, nor than a quarter of its length, where the variance of where it
   /// lies has doubled.
   void go_on(const Stages& stages, const Border& border, int link_reach, bool at_start);
-  /// Mean square of how far a step's height, if it is wrong, shifts the line: each cell of the gap tells by its own
-  /// height where in it the edge lies, and is then off by half of that share of the step; at most by half a gap.
-  float shifted_m2(float step_m, float height_variance_m2) const {
-    const float share = height_variance_m2 / square(step_m);
-    return square(0.5f * gap_m) * (share < 1.0f ? share : 1.0f);
+  /// Mean square of how far heights shift the line of a step. Each cell of the gap, the ones on both sides too, tells
+  /// by its own height where in it the edge lies. If the step's is wrong by a share of it all are off by half of that
+  /// share, at most by half the gap; if a cell's own is, it alone is off by that share, at most by all of it.
+  float shifted_m2(float step_m, float height_variance_m2, float cell_variance_m2) const {
+    const float each = 1.0f / square(step_m);
+    const float all = height_variance_m2 * each, own = cell_variance_m2 * each;
+    return square(0.5f * gap_m) * (all < 1.0f ? all : 1.0f) +
+           (gap_m + cell_m) * cell_m * (own < 1.0f ? own : 1.0f) / borders;
   }
   /// Does it look from the right of the line?
   bool has_right(const Viewpoint& view) const {
@@ -98,6 +102,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   piece.borders = static_cast<float>(last - first + 1);
   const float n = piece.borders, each = 1.0f / n;
   LineFit fit;
+  float told = 0.0f;
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
@@ -110,11 +115,14 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
+    told += weight(border) / border.half_gap_m * (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m());
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
   // Each lies anywhere in its gap, on its own; those without a far plane as little known as one of them.
   piece.borders_variance_m2 = (1.0f / 3) * (a.high == no_label ? n : 1.0f) / fit.weight();
+  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own.
+  piece.told_variance_m2 = (1.0f / 6) * told / square(fit.weight());
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());

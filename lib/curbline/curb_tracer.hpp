@@ -65,6 +65,8 @@ class CurbTracer {
   float leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last, Curb& curb,
                      Piece& piece) const;
   static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
+  static float place_variance_m2(const Stages& stages, const Border& border, const Piece& piece, const Curb& curb,
+                                 float height_variance_m2);
   static float more_from_afar_m2(const Stages& stages, const Plane& plane, const Piece& piece);
   struct Deviations {
     Deviation low, high;
@@ -250,6 +252,18 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
          square(slope) * piece.place_variance_m2 + square(hidden_m) * (1.0f / 3);
 }
 
+/// Of a piece's middle, across it. What the points of a place share of their errors, tilt, mount and pose of the lines
+/// that saw it, shifts all borders of a step alike.
+template <Limits limits>
+float CurbTracer<limits>::place_variance_m2(const Stages& stages, const Border& border, const Piece& piece,
+                                            const Curb& curb, float height_variance_m2) {
+  if (!is_step(curb) || border.high == no_label) return piece.borders_variance_m2;
+  const float cell_variance_m2 =
+      0.5f * (stages.mixture.plane(border.low).fit_variance_m2 + stages.mixture.plane(border.high).fit_variance_m2);
+  return piece.told_variance_m2 + stages.dem.prior().common_m2() +
+         piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
+}
+
 /// By how much more a plane errs beside a piece than its fit says, which takes what cells share for the same wherever
 /// they lie.
 template <Limits limits>
@@ -335,8 +349,7 @@ void CurbTracer<limits>::give_out(const Stages& stages, int first, int last, int
     }
   }
   if (obstacle(stages, curb, piece, work)) return;
-  const float by_height_m2 = is_step(curb) && !one_sided ? piece.shifted_m2(curb.height_m, variance_m2) : 0.0f;
-  curb.position_sd_m = square_root(piece.borders_variance_m2 + by_height_m2);
+  curb.position_sd_m = square_root(place_variance_m2(stages, border, piece, curb, variance_m2));
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
   curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;

@@ -417,11 +417,21 @@ TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its ed
   CHECK(curb.height_m == Approx(0.05 * (edge_m - 1.4) - 0.12).margin(0.0003));
 }
 
-TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number") {
+/// Variance of a step's place, of 24 borders in gaps of a cell of 10 cm, but for what its height leaves open: each
+/// anywhere within half a cell, off by a cell's own error as a share of the step, and all by what points share.
+double place_variance_m2(const Stages<>& stages, const Curb& curb) {
+  const double cells_m2 = 0.5 * static_cast<double>(stages.mixture.plane(curb.near_label).fit_variance_m2 +
+                                                    stages.mixture.plane(curb.far_label).fit_variance_m2);
+  const double step_m2 = static_cast<double>(curb.height_m * curb.height_m);
+  return 0.05 * 0.05 / (3.0 * 24.0) + 0.2 * 0.1 * cells_m2 / step_m2 / 24.0 +
+         static_cast<double>(stages.dem.prior().common_m2());
+}
+
+TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number, and what they share") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);
-  // 24 borders, each anywhere within half a cell of 5 cm.
-  CHECK(stages->tracer.curbs()[0].position_sd_m == Approx(0.05 / std::sqrt(3.0 * 24.0)).epsilon(0.02));
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.position_sd_m == Approx(std::sqrt(place_variance_m2(*stages, curb))).epsilon(0.02));
 }
 
 TEST_CASE("curb tracer: a low step's place is known less well, as its height is") {
@@ -430,9 +440,9 @@ TEST_CASE("curb tracer: a low step's place is known less well, as its height is"
   const Curb& curb = stages->tracer.curbs()[0];
   REQUIRE(curb.kind == CurbKind::step_up);
   // Cells of 10 cm, each off by half of what the height may be, as a share of it.
-  const double borders_m2 = 0.05 * 0.05 / (3.0 * 24.0), by_height_m = 0.1 * 0.5 * curb.height_sd_m / curb.height_m;
-  CHECK(curb.position_sd_m == Approx(std::sqrt(borders_m2 + by_height_m * by_height_m)).epsilon(0.02));
-  CHECK(by_height_m * by_height_m > 0.1 * borders_m2);
+  const double others_m2 = place_variance_m2(*stages, curb), by_height_m = 0.1 * 0.5 * curb.height_sd_m / curb.height_m;
+  CHECK(curb.position_sd_m == Approx(std::sqrt(others_m2 + by_height_m * by_height_m)).epsilon(0.02));
+  CHECK(by_height_m > 0.001);
 }
 
 TEST_CASE("curb tracer: a sharp step has no width to tell") {
