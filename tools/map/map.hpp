@@ -58,6 +58,7 @@ struct MapCurb {
   double position_sd_m = 0, face_width_m = 0;
   int id = 0;         ///< 0: it has none
   double rise_m = 0;  ///< how much height_m, which is that of the middle, grows from one end to the other
+  double rise_sd_m = 0;
   bool operator==(const MapCurb&) const = default;
 };
 

@@ -56,19 +56,20 @@ class PipelineOf final : public HostPipeline {
     std::vector<MapCurb> out;
     for (const Curb& curb : pipeline_.curbs()) {
       out.push_back(to_map_curb(curb));
-      out.back().rise_m = rise_m(curb);
+      set_rise(curb, out.back());
     }
     return out;
   }
 
  private:
   /// By the slopes of both planes.
-  double rise_m(const Curb& curb) const {
-    if (!is_step(curb) || curb.near_label == no_label || curb.far_label == no_label) return 0;
+  void set_rise(const Curb& curb, MapCurb& out) const {
+    if (!is_step(curb) || curb.near_label == no_label || curb.far_label == no_label) return;
     const Plane &near = pipeline_.plane(curb.near_label), &far = pipeline_.plane(curb.far_label);
-    if (!near.alive() || !far.alive()) return 0;
-    return (far.slope_x - near.slope_x) * (curb.x1_m - curb.x0_m) +
-           (far.slope_y - near.slope_y) * (curb.y1_m - curb.y0_m);
+    if (!near.alive() || !far.alive()) return;
+    const float dx_m = curb.x1_m - curb.x0_m, dy_m = curb.y1_m - curb.y0_m;
+    out.rise_m = (far.slope_x - near.slope_x) * dx_m + (far.slope_y - near.slope_y) * dy_m;
+    out.rise_sd_m = std::sqrt(near.rise_variance_m2(dx_m, dy_m) + far.rise_variance_m2(dx_m, dy_m));
   }
 
   MapCell cell(int i, int j) const {
