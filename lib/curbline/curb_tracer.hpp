@@ -64,6 +64,7 @@ class CurbTracer {
   Curb curb_of(const Stages& stages, const Border& border, const Piece& piece) const;
   float leave_shadow(const Stages& stages, const Borders<limits>& borders, int first, int last, Curb& curb,
                      Piece& piece) const;
+  static float carried_m(const Plane& plane, float dx_m, float dy_m);
   static float height_variance_m2(const Stages& stages, const Border& border, const Piece& piece, float hidden_m);
   static float place_variance_m2(const Stages& stages, const Border& border, const Piece& piece, const Curb& curb,
                                  float height_variance_m2);
@@ -288,13 +289,22 @@ float CurbTracer<limits>::leave_shadow(const Stages& stages, const Borders<limit
   const Plane& below = stages.mixture.plane(lower);
   const float above_m = view.z_m - above.height_m(piece.x_m, piece.y_m);
   const float drop_m = down ? -curb.height_m : curb.height_m;
-  const LineFit::Segment before = piece.line;
+  const float x_m = piece.line.x0_m, y_m = piece.line.y0_m;
   const float shadow_m = move_before_shadow(piece.line, view, {drop_m, above_m, piece.gap_m + piece.cell_m});
-  const float rise_m = (above.slope_x - below.slope_x) * (piece.line.x0_m - before.x0_m) +
-                       (above.slope_y - below.slope_y) * (piece.line.y0_m - before.y0_m);
+  const float dx_m = piece.line.x0_m - x_m, dy_m = piece.line.y0_m - y_m;
+  const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
   curb.height_m += down ? -rise_m : rise_m;
   curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
   return shadow_m;
+}
+
+/// What a plane rises on the way to where nothing of it is seen: less than its slope makes, by the share that the
+/// square of that way has beside the mean square of how far its cells reach along it. A strip of two rows, of which one
+/// holds something of the other side, tells no slope to go by.
+template <Limits limits>
+float CurbTracer<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) {
+  const float beyond = plane.rise_variance_m2(dx_m, dy_m) * plane.cells / plane.fit_variance_m2;
+  return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
 }
 
 /// The plane that is borne nearest to the laser: the robot's own ground, as far as is seen.
