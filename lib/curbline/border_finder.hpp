@@ -5,6 +5,7 @@
 //     as well as the face; what lies beyond is flatter than the rays.
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
 //     follow the ground, away from the laser, and lie below it. They fall as far as is seen of the step.
+// Planes that lie farther apart than the reach of links are asked whether a step down hides what is between them.
 // Cost: a pass over the window and a look at each cell of a gap, a face and a veil.
 #pragma once
 
@@ -52,6 +53,7 @@ class BorderFinder {
   using Border = typename Borders<limits>::Border;
 
   static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
+  static constexpr int widest_blur = 2;         ///< cells that mix both sides, at an edge and at the end of its shadow
 
   /// A line of cells: a column, along x (axis 0), or a row, along y (axis 1).
   struct Line {
@@ -78,6 +80,8 @@ class BorderFinder {
     int last_of_veil;  ///< place along the line
   };
 
+  bool wide(const Gap& gap) const { return gap.second.along - gap.first.along > settings_.link_reach; }
+  bool hidden(const Gap& gap) const;
   Border border_of(const Gap& gap) const;
   End find_face_end(const Gap& gap, int toward) const;
   Border border_of_face(const End& end) const;
@@ -151,9 +155,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
   const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
     const Gap gap{line, before, here};
     before = here;
-    if (gap.first.label == no_label || gap.first.label == here.label ||
-        here.along - gap.first.along > settings_.link_reach)
-      return;
+    if (gap.first.label == no_label || gap.first.label == here.label || (wide(gap) && !hidden(gap))) return;
     add(border_of(gap));
     for (const int toward : {-1, 1}) {
       if (const End end = find_face_end(gap, toward); end.last.label != no_label) add(border_of_face(end));
@@ -176,6 +178,33 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
     pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
     pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {1, i});
   });
+}
+
+/// Does a step down hide what a wide gap lacks? Then nothing stands in it, and the ray to its far cell has passed over
+/// the plane that ends at its near one: where it met that plane, or a blur before, lie cells that bear it.
+template <Limits limits>
+bool BorderFinder<limits>::hidden(const Gap& gap) const {
+  const bool ahead = away(gap.line, gap.first.along) > 0;
+  const LabelledCell& near = ahead ? gap.first : gap.second;
+  const LabelledCell& far = ahead ? gap.second : gap.first;
+  for (int along = gap.first.along + 1; along < gap.second.along; ++along) {
+    if (mixture_.obstructed(dem_, slot(gap.line, along))) return false;
+  }
+  const int i = row(gap.line, far.along), j = col(gap.line, far.along), far_slot = dem_.slot(i, j);
+  const Viewpoint from = dem_.seen_from(far_slot, view_);
+  const Plane& plane = mixture_.plane(near.label);
+  const Cell& cell = dem_.cell(far_slot);
+  const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem_.above_m(i, j, cell, plane);
+  if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
+  const float dx_m = dem_.centroid_x_m(i, cell) - from.x_m, dy_m = dem_.centroid_y_m(j, cell) - from.y_m;
+  const float share = above_m / (above_m + below_m);  // of the ray, up to the plane
+  const float cells = square_root(square(dx_m / dem_.cell_x_m()) + square(dy_m / dem_.cell_y_m()));
+  for (int back = 0; back <= widest_blur; ++back) {
+    const float at = share - static_cast<float>(back) / cells;
+    const int s = dem_.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
+    if (s >= 0 && dem_.cell(s).valid() && bears_ground(s) && field_.label(s) == near.label) return true;
+  }
+  return false;
 }
 
 /// Probability that the cells on both sides lie on one plane.

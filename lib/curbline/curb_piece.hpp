@@ -153,7 +153,7 @@ bool CurbPiece<limits>::even(const Stages& stages, const Border& border, float d
 template <Limits limits>
 auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label own) -> Side {
   const Dem<limits>& dem = stages.dem;
-  const int slot = dem.slot_at(dem.origin_x_m() + x_m, dem.origin_y_m() + y_m);
+  const int slot = dem.slot_within(x_m, y_m);
   if (slot < 0 || !dem.cell(slot).valid() || !stages.mixture.on_ground(slot)) return Side::unseen;
   const Label label = stages.field.label(slot);
   return label == own ? Side::own : label == no_label ? Side::unseen : Side::other;
@@ -194,8 +194,10 @@ Viewpoint CurbPiece<limits>::seen_from(const Stages& stages, const Borders<limit
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const int d = direction(border.axis, lower == border.high ? border.sign : -border.sign);
+    const float pitch_m = border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m();
+    const int reach = link_reach + static_cast<int>(border.half_gap_m / pitch_m);
     int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
-    for (int g = 0; g <= link_reach && i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols(); ++g) {
+    for (int g = 0; g <= reach && i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols(); ++g) {
       const int slot = dem.slot(i, j);
       if (dem.cell(slot).valid() && stages.field.label(slot) == lower) {
         const Viewpoint view = dem.seen_from(slot, stages.view);

@@ -185,12 +185,14 @@ class Dem {
     bool inside() const { return i >= 0; }
   };
   /// Of a place of the map; what is not finite lies outside.
-  Place place_at(float x_m, float y_m) const;
+  Place place_at(float x_m, float y_m) const { return place_within(x_m - origin_x_m(), y_m - origin_y_m()); }
+  /// The same, from the window's lowest corner.
+  Place place_within(float x_m, float y_m) const;
   /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
   Place nearest_unmarked(const Place& place, int reach) const;
-  /// The cell there; -1 outside the window.
-  int slot_at(float x_m, float y_m) const {
-    const Place place = place_at(x_m, y_m);
+  /// The cell at a place, from the window's lowest corner; -1 outside the window.
+  int slot_within(float x_m, float y_m) const {
+    const Place place = place_within(x_m, y_m);
     return place.inside() ? slot(place.i, place.j) : -1;
   }
 
@@ -345,8 +347,8 @@ void Dem<limits>::leave(int i, int j) {
 }
 
 template <Limits limits>
-auto Dem<limits>::place_at(float x_m, float y_m) const -> Place {
-  const float u = (x_m - origin_x_m()) / settings_.cell_x_m, v = (y_m - origin_y_m()) / settings_.cell_y_m;
+auto Dem<limits>::place_within(float x_m, float y_m) const -> Place {
+  const float u = x_m / settings_.cell_x_m, v = y_m / settings_.cell_y_m;
   if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
       !(v < static_cast<float>(settings_.cols)))
     return {};

@@ -394,6 +394,46 @@ TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
 
+/// A platform up to `edge`, and ground `drop` below it from where the laser sees it, or `gap` beyond, along x or
+/// turned.
+std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool turned) {
+  Stages<small_limits> stages(small_settings());
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
+        const double x = 0.1 * i + at, y = 0.1 * j + at, along = turned ? 2.4 - y : x;
+        if (along > edge && along < edge + gap) continue;
+        stages.dem.add(
+            {static_cast<float>(x), static_cast<float>(y), along > edge ? static_cast<float>(-drop) : 0.0f, 1e-4f});
+      }
+    }
+  }
+  stages.view = turned ? Viewpoint{1.2f, 2.4f, 1.0f} : Viewpoint{0.0f, 1.2f, 1.0f};
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.trace(stages.view.x_m, stages.view.y_m);
+  return {stages.tracer.curbs().begin(), stages.tracer.curbs().end()};
+}
+
+//  o
+//  _______
+//         ' .
+//             ' ._____    the edge of a platform, 0.5 m high, hides 0.6 m: more than the reach of links
+TEST_CASE("border finder: a step down is told, however wide what it hides") {
+  const bool turned = GENERATE(false, true);
+  const double edge = GENERATE(1.2, 1.25);
+  const auto curbs = curbs_of_platform(edge, 0.5, 0.5 * edge, turned);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].kind == CurbKind::step_down);
+  CHECK(curbs[0].height_m == Approx(-0.5).margin(0.01));
+  CHECK((turned ? 2.4f - curbs[0].y0_m : curbs[0].x0_m) == Approx(edge).margin(0.05));
+}
+
+TEST_CASE("border finder: planes that more parts than what a step hides tell no step") {
+  const bool turned = GENERATE(false, true);
+  CHECK(curbs_of_platform(1.2, 0.05, 0.6, turned).empty());
+  CHECK(curbs_of_platform(1.2, -0.05, 0.6, turned).empty());
+}
+
 TEST_CASE("borders: one that lies before the window or beyond it is found from its neighbour") {
   Stages<small_limits> stages(small_settings());
   Borders<small_limits> borders;
