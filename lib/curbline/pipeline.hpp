@@ -298,7 +298,8 @@ template <Limits limits>
 void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
   segmentation_.update(
-      dem_, work, [this](int slot) { return plane_mixture_.obstructed(dem_, slot); }, counters_);
+      dem_, work, plane_mixture_.largest_ground(), [this](int slot) { return plane_mixture_.obstructed(dem_, slot); },
+      counters_);
   plane_mixture_.update(
       dem_, work, view(), crossed_cells(dem_, curbs()), [this](int slot) { return label_field_.label(slot); },
       counters_);

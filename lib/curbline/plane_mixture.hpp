@@ -72,6 +72,14 @@ class PlaneMixture {
   bool ground(int label) const { return ground_.is(label); }
   /// May it, being ground, be a veil? No curb has it for a side.
   bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
+  /// The largest plane of ground, a level one if there is none.
+  Plane largest_ground() const {
+    Plane largest;
+    for (std::size_t l = 0; l < planes_.size(); ++l) {
+      if (ground_.is(static_cast<int>(l)) && planes_[l].cells > largest.cells) largest = planes_[l];
+    }
+    return largest;
+  }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == no_label || ground_.is(region_label(slot)); }
   /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.

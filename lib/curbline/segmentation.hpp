@@ -1,7 +1,8 @@
 // Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher
-// 2004) inside each block of 4 x 4 cells; regions, leaves merged by evidence (region_graph.hpp). A scan line re-cuts
-// the blocks that it touched, dissolves the regions that it touched and their neighbours into leaves and merges again:
-// that is how a region splits. What no line touched stands. What stands on the ground parts no regions.
+// 2004) inside each block of 4 x 4 cells, by heights above what the ground leans; regions, leaves merged by evidence
+// (region_graph.hpp). A scan line re-cuts the blocks that it touched, dissolves the regions that it touched and their
+// neighbours into leaves and merges again: that is how a region splits. What no line touched stands. What stands on the
+// ground parts no regions.
 #pragma once
 
 #include <array>
@@ -12,6 +13,8 @@
 #include "curbline/dem.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/link.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
 #include "curbline/region_graph.hpp"
 #include "curbline/settings.hpp"
 
@@ -56,11 +59,11 @@ class Segmentation {
     std::array<Region, limits.regions> region_of_node;
   };
 
-  /// Follows the cells that were touched, in working memory that is the caller's. What is obstructed(slot) parts no
-  /// regions: those on both sides are neighbours too. Cost: passes over the window, 16 cells a touched block, and the
-  /// merging; nothing if no cell was touched.
+  /// Follows the cells that were touched, in working memory that is the caller's. `ground` is the plane of the ground,
+  /// a level one if none is known. What is obstructed(slot) parts no regions: those on both sides are neighbours too.
+  /// Cost: passes over the window, 16 cells a touched block, and the merging; nothing if no cell was touched.
   template <typename Obstructed>
-  void update(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters);
+  void update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed, Counters& counters);
 
   /// Of a valid cell; `none` if the store of regions was full when it came to its leaf.
   Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
@@ -78,7 +81,7 @@ class Segmentation {
   using Node = typename RegionGraph<limits>::Index;
   static constexpr Node no_node = RegionGraph<limits>::none;
 
-  void cut_touched_blocks(const Dem<limits>& dem);
+  void cut_touched_blocks(const Dem<limits>& dem, const Plane& ground);
   void dissolve_neighbours(const Dem<limits>& dem);
   template <typename Obstructed>
   void build_graph(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) const;
@@ -97,18 +100,30 @@ class Segmentation {
 
 template <Limits limits>
 template <typename Obstructed>
-void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) {
+void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed,
+                                  Counters& counters) {
   if (!dem.any_touched()) return;
   evidence_.set_common_share(dem.prior().common_share);
-  cut_touched_blocks(dem);
+  cut_touched_blocks(dem, ground);
   dissolve_neighbours(dem);
   build_graph(dem, work, obstructed, counters);
   counters.evidences += static_cast<std::uint32_t>(work.graph.merge(evidence_));
   name_regions(dem, work);
 }
 
+/// Cells that are about as high lie along contours where the ground leans: leaves would be rows of cells, which say
+/// nothing of the slope across them and join end to end, through low steps. So what the ground is steeper than 1 in 20
+/// is taken off. Not all of it: leaves as large as blocks tear ground that is bent (lib/README.md).
 template <Limits limits>
-void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem) {
+void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plane& ground) {
+  const float slope = square_root(square(ground.slope_x) + square(ground.slope_y));
+  const bool leans = slope > least_ramp;
+  Plane lean;
+  if (leans) {
+    const float share = 1.0f - least_ramp / slope;
+    lean.slope_x = share * ground.slope_x;
+    lean.slope_y = share * ground.slope_y;
+  }
   for (int bi = 0; bi < dem.rows(); bi += block_side) {
     for (int bj = 0; bj < dem.cols(); bj += block_side) {
       std::array<BlockCell, block_side * block_side> cells{};
@@ -122,7 +137,10 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem) {
       if (!touched) continue;
       for (std::size_t n = 0; n < cells.size(); ++n) {
         const Cell& cell = dem.cell(slots[n]);
-        cells[n] = {cell.height_m, cell.variance_m2(settings_.cell), cell.valid()};
+        const int k = static_cast<int>(n);
+        const float height_m =
+            leans ? dem.above_m(bi + k / block_side, bj + k % block_side, cell, lean) : cell.height_m;
+        cells[n] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
         const auto s = static_cast<std::size_t>(slots[n]);
         if (region_[s] != none) dissolved_.insert(region_[s]);
       }

@@ -54,7 +54,8 @@ struct Stages {
   void segment() {
     segmented = &work.segmentation();
     segmentation.update(
-        dem, *segmented, [this](int slot) { return mixture.obstructed(dem, slot); }, counters);
+        dem, *segmented, mixture.largest_ground(), [this](int slot) { return mixture.obstructed(dem, slot); },
+        counters);
   }
   /// What it changes can be asked until the next one.
   void mix() {

@@ -77,6 +77,31 @@ TEST_CASE("segmentation: two planes with a step between them are two regions, pa
   }
 }
 
+TEST_CASE("segmentation: a low step across a slope parts planes as soon as the ground's slope is known") {
+  //          __--   a slope of 12 or 15 %
+  //      __-|       22 mm, aslant across it: cells of one height lie on both sides
+  //   --
+  const double slope = GENERATE(0.12, 0.15);
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  test::Noise noise;
+  const auto beyond = [](double x, double y) { return x + 4.0 * y > 6.0; };
+  const auto see = [&] {
+    fill(stages->dem,
+         [&](double x, double y) { return slope * x + (beyond(x, y) ? 0.022 : 0.0) + 0.003 * noise.normal(); });
+    stages->infer();
+  };
+  see();
+  see();
+  CHECK(regions(*stages).size() == 2);
+  int wrong = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      wrong += stages->region_at(i, j) != stages->region_at(i, beyond(0.1 * i + 0.05, 0.1 * j + 0.05) ? 23 : 0);
+    }
+  }
+  CHECK(wrong <= 24);  // of those that the step crosses
+}
+
 TEST_CASE("segmentation: a region splits again when new cells show a step") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   // Far apart and few, the first cells look like one slope.

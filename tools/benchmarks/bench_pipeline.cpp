@@ -164,7 +164,7 @@ void belief_messages(benchmark::State& state) {
   Workspace<board_limits> workspace;
   auto& work = workspace.segmentation();
   segmentation.update(
-      dem, work, [&](int slot) { return mixture.obstructed(dem, slot); }, counters);
+      dem, work, mixture.largest_ground(), [&](int slot) { return mixture.obstructed(dem, slot); }, counters);
   mixture.update(
       dem, work, Viewpoint{}, {}, [&](int slot) { return field.label(slot); }, counters);
   auto& visits = workspace.visits();
