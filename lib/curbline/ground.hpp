@@ -4,9 +4,10 @@
 //     and a half, and its plane is what mixing both sides makes.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it is no wider than the shadow of a step down, and falls there at least half
-//     as steeply as the rays, as about an edge that is bent, or is so narrow that its slope is not known: what is seen
-//     beyond an edge is flatter than the ray that grazes it, and so wider.
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and falls there at least a
+//     quarter as far as the rays, as about an edge that is bent, or is so narrow that its slope is not known: what is
+//     seen beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair whose cells at
+//     both ends hold half of the next one falls by half a step where the rays fall by two.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle and the ground around it. One that falls away
 //     from the laser as its rays do is a veil before the obstacle.
@@ -76,7 +77,7 @@ class Ground {
       fall.own_m += of_strip.own_m;
       fall.of_rays_m += of_strip.of_rays_m;
     }
-    bool falls_as_rays() const { return 2.0f * fall.own_m >= fall.of_rays_m; }
+    bool falls_with_rays() const { return 4.0f * fall.own_m >= fall.of_rays_m; }
   };
   /// What is known of a plane's cells, and of those of its runs that are strips between other planes.
   struct Tally {
@@ -113,7 +114,7 @@ class Ground {
     bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
     bool veil(const Shadowed& in_shadow) const {
-      return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_as_rays());
+      return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
     }
   };
   using Tallies = std::array<Tally, limits.planes>;

@@ -34,7 +34,7 @@ const std::string bump = "[ground]\nz = 0\n[[region]]\nname = 'bump'\nrectangle 
 TEST_CASE("scene: every scene that ships can be read and stood on") {
   const std::vector<std::string> names = shipped_scenes();
   for (const char* name : {"straight_curb", "t_junction", "roundabout", "inclined_planes", "lowered_curb",
-                           "curb_above_below", "unfavourable_viewpoint", "steps", "stairs_down", "platform",
+                           "curb_above_below", "unfavourable_viewpoint", "steps", "stairs_down", "platform", "hill",
                            "low_walls", "low_curb", "gutter", "ramp", "city", "street"}) {
     INFO(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);

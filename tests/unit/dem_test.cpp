@@ -30,6 +30,13 @@ Map make_map(const WindowSettings& window) {
   return dem;
 }
 
+/// The cell at a place of the map.
+int slot_at(const Map& dem, float x_m, float y_m) {
+  const Map::Place place = dem.place_at(x_m, y_m);
+  REQUIRE(place.inside());
+  return dem.slot(place.i, place.j);
+}
+
 Point at(double x, double y, double z = 0.0, float variance = 1e-4f) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), variance};
 }
@@ -403,7 +410,7 @@ TEST_CASE(
 TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, however many have been") {
   Map dem = make_map(moving());
   REQUIRE(dem.add(at(0.05, 0.05)));
-  const int slot = dem.slot_within(0.05f, 0.05f);
+  const int slot = slot_at(dem, 0.05f, 0.05f);
   REQUIRE_FALSE(dem.mapped_before(slot));
   for (int sweep = 1; sweep <= 300; ++sweep) {
     dem.begin_sweep();
@@ -425,7 +432,7 @@ TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame,
   dem.clear_touched();
   dem.look_from(0.0f, 1.0f);
   REQUIRE(dem.seen_from_several());
-  const auto seen_from = [&](float x_m) { return dem.seen_from(dem.slot_within(x_m, 0.05f), now); };
+  const auto seen_from = [&](float x_m) { return dem.seen_from(slot_at(dem, x_m, 0.05f), now); };
   CHECK(seen_from(0.05f).x_m == Approx(-2.0));
   CHECK(seen_from(0.15f).x_m == Approx(-1.0));
   CHECK(seen_from(0.15f).y_m == Approx(1.0 + 0.8));
@@ -433,8 +440,8 @@ TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame,
   CHECK(seen_from(0.15f).end_x_m == now.end_x_m);
   REQUIRE(dem.add(at(0.05, 0.05)));
   CHECK(seen_from(0.05f).x_m == Approx(0.0));
-  CHECK_FALSE(dem.mapped_before(dem.slot_within(0.05f, 0.05f)));
-  CHECK(dem.mapped_before(dem.slot_within(0.15f, 0.05f)));
+  CHECK_FALSE(dem.mapped_before(slot_at(dem, 0.05f, 0.05f)));
+  CHECK(dem.mapped_before(slot_at(dem, 0.15f, 0.05f)));
 }
 
 TEST_CASE("dem: ground from before marking began is found along rows and columns, the nearest first") {
@@ -445,7 +452,7 @@ TEST_CASE("dem: ground from before marking began is found along rows and columns
   };
   REQUIRE(dem.add(at(0.05, 0.05)));
   REQUIRE(dem.add(at(0.35, 0.25)));
-  const int corner = dem.slot_within(0.05f, 0.05f), further = dem.slot_within(0.35f, 0.25f);
+  const int corner = slot_at(dem, 0.05f, 0.05f), further = slot_at(dem, 0.35f, 0.25f);
   dem.begin_marking();
   REQUIRE(dem.add(at(0.15, 0.05)));
   CHECK(nearest(0.05f, 0.05f, 0) == corner);
@@ -457,7 +464,7 @@ TEST_CASE("dem: ground from before marking began is found along rows and columns
   REQUIRE(dem.add(at(0.05, 0.05)));
   CHECK(nearest(0.05f, 0.05f, 0) == -1);
   dem.begin_marking();
-  CHECK(nearest(0.15f, 0.05f, 0) == dem.slot_within(0.15f, 0.05f));
+  CHECK(nearest(0.15f, 0.05f, 0) == slot_at(dem, 0.15f, 0.05f));
 }
 
 TEST_CASE("dem: ground that changes is known again as soon after a day as after a minute") {
@@ -465,7 +472,7 @@ TEST_CASE("dem: ground that changes is known again as soon after a day as after 
   const auto see = [&](int points, double height_m) {
     for (int k = 0; k < points; ++k) REQUIRE(dem.add(at(0.05, 0.05, height_m + (k % 2 == 0 ? 0.01 : -0.01))));
   };
-  const Cell& cell = dem.cell(dem.slot_within(0.05f, 0.05f));
+  const Cell& cell = dem.cell(slot_at(dem, 0.05f, 0.05f));
   see(1'000'000, 0.0);
   CHECK(cell.height_m == Approx(0.0).margin(1e-4));
   CHECK(cell.variance_m2({0.0f, 0.0f}) == Approx(0.8e-4).epsilon(0.01));  // each point weighs 0.8
@@ -478,9 +485,9 @@ TEST_CASE("dem: a cell that comes into the window has no growth left of the one 
   Point point = at(0.05, 0.05);
   point.growth_m_s = 2.0f;
   REQUIRE(dem.add(point));
-  const int slot = dem.slot_within(0.05f, 0.05f);
+  const int slot = slot_at(dem, 0.05f, 0.05f);
   dem.follow(4.8f, 0.0f, [](int) {});
-  REQUIRE(dem.slot_within(4.85f - dem.origin_x_m(), 0.05f - dem.origin_y_m()) == slot);
+  REQUIRE(slot_at(dem, 4.85f, 0.05f) == slot);
   CHECK(dem.growth_m_s(slot) == 0.0f);
 }
 
@@ -496,7 +503,7 @@ TEST_CASE("dem: the mean growth of many points follows what little each of them 
   };
   add(400, 1.0f);
   add(2000, 0.8f);
-  CHECK(dem.growth_m_s(dem.slot_within(0.05f, 0.05f)) == Approx(0.804).margin(0.02));
+  CHECK(dem.growth_m_s(slot_at(dem, 0.05f, 0.05f)) == Approx(0.804).margin(0.02));
 }
 
 TEST_CASE("dem: a point that float cannot weigh against others is not taken") {
@@ -517,7 +524,7 @@ TEST_CASE("dem: a growth that no servo makes is not kept") {
   point.growth_m_s =
       GENERATE(1e6f, -1e6f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN());
   REQUIRE(dem.add(point));
-  CHECK(dem.growth_m_s(dem.slot_within(0.05f, 0.05f)) == 0.0f);
+  CHECK(dem.growth_m_s(slot_at(dem, 0.05f, 0.05f)) == 0.0f);
 }
 
 TEST_CASE("dem: a window smaller than its limits uses the rows and columns it was given") {
