@@ -81,7 +81,7 @@ class BorderFinder {
   };
 
   bool wide(const Gap& gap) const { return gap.second.along - gap.first.along > settings_.link_reach; }
-  bool hidden(const Gap& gap) const;
+  [[gnu::noinline]] bool hidden(const Gap& gap) const;  // seldom: inlined twice it would not fit the flash's budget
   Border border_of(const Gap& gap) const;
   End find_face_end(const Gap& gap, int toward) const;
   Border border_of_face(const End& end) const;
@@ -187,15 +187,15 @@ bool BorderFinder<limits>::hidden(const Gap& gap) const {
   const bool ahead = away(gap.line, gap.first.along) > 0;
   const LabelledCell& near = ahead ? gap.first : gap.second;
   const LabelledCell& far = ahead ? gap.second : gap.first;
-  for (int along = gap.first.along + 1; along < gap.second.along; ++along) {
-    if (mixture_.obstructed(dem_, slot(gap.line, along))) return false;
-  }
   const int i = row(gap.line, far.along), j = col(gap.line, far.along), far_slot = dem_.slot(i, j);
   const Viewpoint from = dem_.seen_from(far_slot, view_);
   const Plane& plane = mixture_.plane(near.label);
   const Cell& cell = dem_.cell(far_slot);
   const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem_.above_m(i, j, cell, plane);
   if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
+  for (int along = gap.first.along + 1; along < gap.second.along; ++along) {
+    if (mixture_.obstructed(dem_, slot(gap.line, along))) return false;
+  }
   const float dx_m = dem_.centroid_x_m(i, cell) - from.x_m, dy_m = dem_.centroid_y_m(j, cell) - from.y_m;
   const float share = above_m / (above_m + below_m);  // of the ray, up to the plane
   const float cells = square_root(square(dx_m / dem_.cell_x_m()) + square(dy_m / dem_.cell_y_m()));

@@ -74,11 +74,12 @@ class PlaneMixture {
   bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
   /// The largest plane of ground, a level one if there is none.
   Plane largest_ground() const {
-    Plane largest;
+    const Plane* largest = nullptr;
     for (std::size_t l = 0; l < planes_.size(); ++l) {
-      if (ground_.is(static_cast<int>(l)) && planes_[l].cells > largest.cells) largest = planes_[l];
+      if (!ground_.is(static_cast<int>(l)) || !planes_[l].alive()) continue;
+      if (largest == nullptr || planes_[l].cells > largest->cells) largest = &planes_[l];
     }
-    return largest;
+    return largest == nullptr ? Plane{} : *largest;
   }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == no_label || ground_.is(region_label(slot)); }
@@ -124,8 +125,7 @@ class PlaneMixture {
               LabelOf&& label_of);
   void fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const;
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
-  float step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const;
-  float step_beside_m(const Dem<limits>& dem, int i, int j, int s) const;
+  float step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s, bool crossed) const;
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -218,8 +218,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);
     if (!of_plane.steep) moments.zz = 0.0f;
-    float step_m = of_plane.wide ? 0.0f : step_down_m(dem, view, i, j, s);
-    if (crossed.contains(s)) step_m = std::max(step_m, step_beside_m(dem, i, j, s));
+    const float step_m = of_plane.wide ? 0.0f : step_beside_m(dem, view, i, j, s, crossed.contains(s));
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
     of_plane.beside.add_cell(moments);
     of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
@@ -252,37 +251,26 @@ bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, con
   return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
 }
 
-/// How far a cell lies below those beside it, toward the laser, of other regions; 0 if none is higher.
+/// How far a cell lies below those beside it, toward the laser, of other regions, and where a step crosses it, above or
+/// below those of other regions that are ground; 0 if there are none.
 template <Limits limits>
-float PlaneMixture<limits>::step_down_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s) const {
+float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s,
+                                          bool crossed) const {
   const Cell& cell = dem.cell(s);
+  const int along_x = dem.centroid_x_m(i, cell) < view.x_m ? 1 : -1;
+  const int along_y = dem.centroid_y_m(j, cell) < view.y_m ? 1 : -1;
+  const std::array<int, 4> beside{direction(0, along_x), direction(1, along_y),  // toward the laser
+                                  direction(0, -along_x), direction(1, -along_y)};
   float most_m = 0.0f;
-  const int along_x = direction(0, dem.centroid_x_m(i, cell) < view.x_m ? 1 : -1);
-  const int along_y = direction(1, dem.centroid_y_m(j, cell) < view.y_m ? 1 : -1);
-  for (const int toward : {along_x, along_y}) {
-    if (dem.next_valid(s, toward, 1) == 0) continue;
-    const auto d = static_cast<std::size_t>(toward);
-    const int next = dem.slot(i + step_i[d], j + step_j[d]);
-    if (region_label(next) == region_label(s)) continue;
-    const float step_m = dem.cell(next).height_m - cell.height_m;
-    if (step_m > most_m) most_m = step_m;
-  }
-  return most_m;
-}
-
-/// How far a cell lies above or below those beside it of other regions that are ground; 0 if there are none.
-template <Limits limits>
-float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, int i, int j, int s) const {
-  const float height_m = dem.cell(s).height_m;
-  float most_m = 0.0f;
-  for (int toward = 0; toward < directions; ++toward) {
-    if (dem.next_valid(s, toward, 1) == 0) continue;
-    const auto d = static_cast<std::size_t>(toward);
+  for (std::size_t k = 0; k < (crossed ? 4u : 2u); ++k) {
+    if (dem.next_valid(s, beside[k], 1) == 0) continue;
+    const auto d = static_cast<std::size_t>(beside[k]);
     const int next = dem.slot(i + step_i[d], j + step_j[d]);
     const Label other = region_label(next);
-    if (other == no_label || other == region_label(s) || !ground_.is(other)) continue;
-    const float step_m = dem.cell(next).height_m - height_m;
-    most_m = std::max(most_m, step_m < 0.0f ? -step_m : step_m);
+    if (other == region_label(s)) continue;
+    const float step_m = dem.cell(next).height_m - cell.height_m;
+    if (k < 2) most_m = std::max(most_m, step_m);
+    if (crossed && other != no_label && ground_.is(other)) most_m = std::max(most_m, step_m < 0.0f ? -step_m : step_m);
   }
   return most_m;
 }
