@@ -4,10 +4,10 @@
 //     and a half, and its plane is what mixing both sides makes.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it is no wider than the shadow of a step down, and falls there at least a
-//     quarter as far as the rays, as about an edge that is bent, or is so narrow that its slope is not known: what is
-//     seen beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair whose cells at
-//     both ends hold half of the next one falls by half a step where the rays fall by two.
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than ground, or
+//     falls there at least a quarter as far as the rays, as about an edge that is bent, or is so narrow that its slope
+//     is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a
+//     stair whose cells at both ends hold half of the next one falls by half a step where the rays fall by two.
 //   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle and the ground around it. One that falls away
 //     from the laser as its rays do is a veil before the obstacle.
@@ -106,15 +106,16 @@ class Ground {
       // each.
       return most(strip_cells) && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
     }
-    bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
+    bool veil(bool steep) const { return veil(shadow[0], steep) || veil(shadow[1], steep); }
     bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
     bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
 
    private:
     bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
     bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
-    bool veil(const Shadowed& in_shadow) const {
-      return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
+    bool veil(const Shadowed& in_shadow, bool steep) const {
+      return most(in_shadow.cells) &&
+             (steep || in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
     }
   };
   using Tallies = std::array<Tally, limits.planes>;
@@ -300,7 +301,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const Tally&
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
-  if (tally.veil() || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
+  if (tally.veil(plane.steeper_than_ground()) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
