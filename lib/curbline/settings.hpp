@@ -108,7 +108,7 @@ struct LabelSettings {
 };
 
 struct CurbSettings {
-  int link_reach = 5;       ///< cells, 1 to max_link_reach; a curb is not drawn in a wider gap
+  int link_reach = 5;       ///< cells, 1 to max_link_reach; of a wider gap that a step down hides a curb is told too
   float max_step_m = 0.3f;  ///< > 0; a step up that is higher is an obstacle, no curb: kerbs and steps of stairs stay
                             ///< below 0.2 m, and half as much again for the unusual. A step down is told however deep
                             ///< it is, but from what is as much higher than the ground nearest to the laser
