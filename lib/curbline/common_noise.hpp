@@ -56,8 +56,9 @@ class CommonNoise {
   /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
   /// as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(), of the middle one of
-  /// the patches, for no curb is missed for it; 0 as long as there is no plane.
+  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(), of the patches again
+  /// the one that a quarter lie below: near the laser that is small, and what ground is uneven makes it large. 0 as
+  /// long as there is no plane.
   float line_rad2() const;
 
  private:
@@ -76,7 +77,7 @@ class CommonNoise {
     float line_rad2 = 0.0f;     ///< that over Viewpoint::reach_m2()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
-  float quantile(float Patch::*of, float share) const;
+  float quarter(float Patch::*of) const;
 
   std::array<Patch, patch_rows * patches_in_row> patches_{};
   int first_row_ = 0;  ///< of those that are next
@@ -130,23 +131,23 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
     growth_m2_s2 += patch.growth_m2_s2;
   }
   if (!(cells > 0.0f)) return prior.common_m2();
-  const float common_m2 = quantile(&Patch::common_m2, 0.25f) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
+  const float common_m2 = quarter(&Patch::common_m2) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
   const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
   return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
 }
 
 template <Limits limits>
 float CommonNoise<limits>::line_rad2() const {
-  return quantile(&Patch::line_rad2, 0.5f);
+  return quarter(&Patch::line_rad2);
 }
 
-/// Of what patches show, each weighed by its cells, what a share of them lie below; 0 if there is none.
+/// Of what patches show, each weighed by its cells, what a quarter of them lie below; 0 if there is none.
 template <Limits limits>
-float CommonNoise<limits>::quantile(float Patch::*of, float share) const {
+float CommonNoise<limits>::quarter(float Patch::*of) const {
   std::array<float, patch_rows * patches_in_row> left{};  // cells
   float cells = 0.0f, found = 0.0f;
   for (std::size_t k = 0; k < left.size(); ++k) cells += left[k] = patches_[k].cells;
-  for (float passed = 0.0f; passed < share * cells;) {  // the least first, each once
+  for (float passed = 0.0f; passed < 0.25f * cells;) {  // the least first, each once
     std::size_t least = left.size();
     for (std::size_t k = 0; k < left.size(); ++k) {
       if (left[k] > 0.0f && (least == left.size() || patches_[k].*of < patches_[least].*of)) least = k;

@@ -179,6 +179,16 @@ TEST_CASE("common noise: what grows with the distance is found as that, not as w
   CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * there_m2);
 }
 
+TEST_CASE("common noise: ground that is uneven alike everywhere is not taken for what grows with the distance") {
+  const Unevenness even(0.001, 0.0, 0.0);
+  Stages<limits> stages(map_settings());
+  stages.view = {0.0f, 2.0f, 1.2f};
+  test::fill(stages.dem, even);
+  stages.infer(true);
+  const float there_m2 = noise_of(stages).line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
+  CHECK(there_m2 < 1.5f * 1e-6f);  // by the middle one of the patches twice as much
+}
+
 TEST_CASE("common noise: cells err by the less, the more points they hold, of a robot that drives at any distance") {
   Viewpoint view{0.0f, 2.0f, 1.2f};
   CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == Approx(9.0 / 4));
