@@ -64,6 +64,13 @@ class Dem {
   float origin_x_m() const { return static_cast<float>(first_row_) * settings_.cell_x_m + anchor_x_m_; }
   float origin_y_m() const { return static_cast<float>(first_col_) * settings_.cell_y_m + anchor_y_m_; }
 
+  /// The window and a cell around it: what lies outside that lies outside the window, however places are rounded.
+  Bounds surroundings(float ceiling_m) const {
+    const float x_m = origin_x_m(), y_m = origin_y_m();
+    return {x_m - cell_x_m(), y_m - cell_y_m(), x_m + static_cast<float>(rows() + 1) * cell_x_m(),
+            y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m};
+  }
+
   int slot(int i, int j) const {
     i += row_shift_;
     j += col_shift_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
@@ -139,7 +140,9 @@ template <Limits limits>
 bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                                  Counters& counters) {
   const LineMotion& motion = work.motion;
-  line_projection_.project(line, work.tilt, motion, counters, work.projected);
+  // As long as it is not decided who has jumped, heights may be set back, to below the ceiling too.
+  const float ceiling_m = pose_offset_.undecided() ? std::numeric_limits<float>::infinity() : map.ceiling_m();
+  line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
   if (!motion.jumps.any()) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
   } else if (!pose_track_.climbs() && map.lies_off(work.projected, motion.jumps, tilt_latency_, pose_offset_)) {

@@ -22,6 +22,8 @@ class MapComparison {
                 float ceiling_m, int reach)
       : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m), reach_(reach) {}
 
+  float ceiling_m() const { return ceiling_m_; }
+
   /// While it is not decided who has jumped: tells `offset` how the line lies against cells without a mark, and sets
   /// the line back by what is known then.
   void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;

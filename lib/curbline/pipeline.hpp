@@ -72,8 +72,8 @@ class Pipeline {
   /// Beams to points, points to cells. About 170 operations a beam.
   Status observe(const ScanLine& line);
 
-  /// The points of a line, in the map frame, to take(const Point&): what observe() puts into cells, and instead of it:
-  /// the line is taken. The window follows.
+  /// The points of a line that lie in the window or beside it, in the map frame, to take(const Point&): what observe()
+  /// puts into cells, and instead of it: the line is taken. The window follows.
   template <typename Take>
   Status project(const ScanLine& line, Take&& take);
 
@@ -226,6 +226,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
     ++counters_.lines_off_map;
     return Status::ok;
   }
+  counters_.outside += work.projected.outside();
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }

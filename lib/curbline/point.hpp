@@ -23,6 +23,16 @@ struct Point {
   float place_y_m() const { return y_m + shift_y_m; }
 };
 
+/// A part of the map, as high as its ceiling.
+struct Bounds {
+  float low_x_m, low_y_m, high_x_m, high_y_m, ceiling_m;
+
+  /// False of what is not finite.
+  bool hold(float x_m, float y_m, float z_m) const {
+    return x_m >= low_x_m && x_m <= high_x_m && y_m >= low_y_m && y_m <= high_y_m && z_m <= ceiling_m;
+  }
+};
+
 /// Where the laser looks from, the tilt axis: x and y in the window's frame, z of the map frame.
 struct Viewpoint {
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -29,8 +30,9 @@ struct Bench {
     std::vector<Point> points;
     track.snapshot(snapshot, 0.0f, INT64_MAX);
     ProjectedLine<limits> line;
-    projection.project({time_ns, ranges}, snapshot, motion, counters, line);
+    projection.project({time_ns, ranges}, snapshot, motion, bounds, counters, line);
     for (const Point& p : line.points()) points.push_back(p);
+    outside = line.outside();
     return points;
   }
 
@@ -39,7 +41,9 @@ struct Bench {
   TiltTrack<limits> track{};
   TiltSnapshot<limits> snapshot{};
   LineMotion motion{};
+  Bounds bounds{-1e3f, -1e3f, 1e3f, 1e3f, 1e3f};
   Counters counters{};
+  std::uint32_t outside = 0;  ///< of the last line
 };
 
 Settings base_settings() {
@@ -331,6 +335,29 @@ TEST_CASE("line projection: within a jump of the poses heights are off by a part
     CHECK(p.z_m == calm[i].z_m);
     CHECK(p.variance_m2 - calm[i].variance_m2 == Approx((0.04 * 0.04 + 0.03 * 0.03 * away_m2) / 6).epsilon(1e-3));
   }
+}
+
+TEST_CASE("line projection: of the points those within the bounds are kept as they were, the others counted") {
+  Settings settings = with_errors(6);
+  settings.tilt.fixed = true;
+  settings.tilt.fixed_tilt_rad = -0.2f;
+  Bench bench(settings);
+  Noise noise;
+  std::vector<float> ranges(361);
+  for (float& r : ranges) r = static_cast<float>(0.2 + 9.0 * noise.uniform());
+  const std::vector<Point> all = bench.project(ranges);
+  REQUIRE(all.size() == ranges.size());
+  CHECK(bench.outside == 0);
+  bench.bounds = {-1.0f, -4.0f, 5.0f, 3.0f, 1.0f};
+  const std::vector<Point> kept = bench.project(ranges);
+  std::vector<Point> expected;
+  for (const Point& p : all) {
+    if (bench.bounds.hold(p.place_x_m(), p.place_y_m(), p.z_m)) expected.push_back(p);
+  }
+  REQUIRE(kept.size() == expected.size());
+  CHECK(kept.size() > 20);
+  CHECK(bench.outside == all.size() - kept.size());
+  CHECK(std::memcmp(kept.data(), expected.data(), kept.size() * sizeof(Point)) == 0);
 }
 
 }  // namespace
