@@ -60,11 +60,19 @@ void write_bits(const Bits& b, std::uint64_t raw, Frame& frame) {
   }
 }
 
+/// high 2^32 + low, rounded once. To convert 64 bits at once, a core with an FPU for double would call soft-float all
+/// the same, which brings its sums along: 800 bytes of flash.
+double joined(double high, std::uint64_t low) {
+  return high * 0x1p32 + static_cast<double>(static_cast<std::uint32_t>(low));
+}
+
 double raw_to_number(const Signal& s, std::uint64_t raw) {
   if (s.is_float) return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
-  if (!s.is_signed) return static_cast<double>(raw);
+  if (!s.is_signed) return joined(static_cast<double>(static_cast<std::uint32_t>(raw >> 32)), raw);
   const int unused = 64 - s.length;
-  return static_cast<double>(static_cast<std::int64_t>(raw << unused) >> unused);  // C++20: >> keeps the sign
+  const auto value =
+      static_cast<std::uint64_t>(static_cast<std::int64_t>(raw << unused) >> unused);  // C++20: >> keeps the sign
+  return joined(static_cast<double>(static_cast<std::int32_t>(value >> 32)), value);
 }
 
 /// Nearest integer, halves away from 0. |x| < 2^63 or 0 <= x < 2^64 by the type.

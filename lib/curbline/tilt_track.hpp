@@ -41,9 +41,9 @@ class TiltSnapshot {
   friend class TiltTrack;
   TiltAngle find(std::int64_t time_ns);
   TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
-  static float seconds(std::int64_t ns) { return static_cast<float>(ns) * 1e-9f; }
+  static float seconds(std::int64_t ns) { return to_float(ns) * 1e-9f; }
   static float slope_rad_s(const TiltReading& a, const TiltReading& b) {
-    return (b.angle_rad - a.angle_rad) * 1e9f / static_cast<float>(b.time_ns - a.time_ns);
+    return (b.angle_rad - a.angle_rad) * 1e9f / to_float(b.time_ns - a.time_ns);
   }
   static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
   float rate_about(int before, int after, float own_rad_s) const;

@@ -52,7 +52,7 @@ bool near_origin(const Pose& pose) {
 }
 
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
-  const float s = static_cast<float>(time_ns - a.time_ns) / static_cast<float>(b.time_ns - a.time_ns);
+  const float s = to_float(time_ns - a.time_ns) / to_float(b.time_ns - a.time_ns);
   const float sign = nearer_sign(a, b);
   const auto mix = [s](float from, float to) { return from + s * (to - from); };
   return {time_ns,
@@ -68,7 +68,7 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
 /// The variance of an independent error of each of the three poses comes in by 1, (1 + f)^2 and f^2.
 PoseStep step_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
                  const PoseSettings& settings) {
-  const float f = static_cast<float>(now.time_ns - before.time_ns) / static_cast<float>(last.time_ns - first.time_ns);
+  const float f = to_float(now.time_ns - before.time_ns) / to_float(last.time_ns - first.time_ns);
   const float noise = gate * (1.0f + (1.0f + f) * (1.0f + f) + f * f);
   const Turn led = turn(first, last), went = turn(before, now);
   PoseStep step{now.z_m - before.z_m - f * (last.z_m - first.z_m), went.roll_rad - f * led.roll_rad,

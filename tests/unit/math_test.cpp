@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace curbline {
 namespace {
@@ -81,6 +82,22 @@ TEST_CASE("math: floor goes down on both sides of zero") {
   CHECK(floor_to_int(-2.0f) == -2);
   CHECK(floor_to_int(-2.1f) == -3);
   CHECK(floor_to_int(-1e-20f) == -1);
+}
+
+TEST_CASE("math: 64 bits become the float that a conversion makes of them") {
+  std::vector<std::int64_t> values{0, 1, -1, INT32_MAX, INT32_MIN, INT64_MAX, INT64_MIN};
+  std::uint64_t bits = 1;
+  for (int n = 0; n < 100'000; ++n) {
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    values.push_back(static_cast<std::int64_t>(bits) >> n % 64);
+  }
+  for (int n = 24; n < 63; ++n) {  // halfway between two floats, and one more or less
+    const std::int64_t half = (std::int64_t{1} << n) + (std::int64_t{1} << (n - 24));
+    for (const std::int64_t x : {half - 1, half, half + 1, 3 * (half / 3)}) values.push_back(x), values.push_back(-x);
+  }
+  for (const std::int64_t x : values) {
+    if (to_float(x) != static_cast<float>(x)) FAIL(x);
+  }
 }
 
 TEST_CASE("math: NaN and infinities are not finite, everything else is") {
