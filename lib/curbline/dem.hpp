@@ -26,7 +26,7 @@ class Dem {
   static constexpr int capacity = limits.rows * limits.cols;
 
   /// Empties the map and places the window. Settings are valid.
-  void init(const WindowSettings& settings, const PlanePrior& prior);
+  [[gnu::cold]] void init(const WindowSettings& settings, const PlanePrior& prior);
 
   /// Makes the window follow (x, y), in steps of a block and half a cell late, so that a pose that trembles does not
   /// move it to and fro; a fixed window stays. Cells that leave are cleared; calls left(slot) for each valid one first.

@@ -48,7 +48,7 @@ class LabelField {
     int size;
   };
 
-  void init(const LabelSettings& settings);
+  [[gnu::cold]] void init(const LabelSettings& settings);
 
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = LabelSite{}; }

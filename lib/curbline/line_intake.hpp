@@ -37,7 +37,7 @@ class LineIntake {
   };
 
   /// With the interrupt that calls add_tilt() masked, and not beside that of another thread. Settings are valid.
-  void init(const Settings& settings);
+  [[gnu::cold]] void init(const Settings& settings);
 
   /// A reading of the tilt servo; false if dropped. Wait-free: TiltTrack::push().
   bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }

@@ -59,7 +59,7 @@ class ProjectedLine {
 template <Limits limits>
 class LineProjection {
  public:
-  void init(const Settings& settings);
+  [[gnu::cold]] void init(const Settings& settings);
 
   /// Adds a point to `out` for each beam that returned from within bounds. `tilt` is not read with a fixed tilt.
   /// The line has at most limits.beams.

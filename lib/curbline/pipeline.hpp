@@ -50,8 +50,8 @@ class Pipeline {
   /// Checks the settings and empties everything. Any other Status than ok tells in which part one was refused, and
   /// bad_setting(settings, limits) which; the pipeline then takes nothing and knows of no curb, label or ground to
   /// drive on. May be called again to start afresh, with the interrupt that calls add_tilt() masked, and not beside
-  /// that of another thread.
-  Status init(const Settings& settings);
+  /// that of another thread. Cold, as all it calls: small, not fast.
+  [[gnu::cold]] Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
   /// dropped: not finite, beyond TiltReading::furthest_rad, not later than the one before. init() forgets those before

@@ -128,9 +128,9 @@ struct Settings {
 
 /// The first setting that is out of its range, or beyond what a pipeline of these limits holds, as it is written here:
 /// "tilt.max_gap_s". Null if all are good. Static storage.
-const char* bad_setting(const Settings& settings, const Limits& limits);
+[[gnu::cold]] const char* bad_setting(const Settings& settings, const Limits& limits);
 
 /// In which part of the settings that is, ok if all are good: what Pipeline::init() answers.
-Status check(const Settings& settings, const Limits& limits);
+[[gnu::cold]] Status check(const Settings& settings, const Limits& limits);
 
 }  // namespace curbline
