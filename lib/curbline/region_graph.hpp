@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <type_traits>
 
 #include "curbline/limits.hpp"
@@ -22,6 +23,8 @@ class RegionGraph {
   /// Node and link numbers, 16 bits where they suffice.
   using Index = std::conditional_t<(limits.regions < 65535 && limits.links < 32767), std::uint16_t, std::uint32_t>;
   static constexpr Index none = static_cast<Index>(-1);
+
+  RegionGraph() {}
 
   /// Empties it; the sides of a cell.
   void clear(float cell_x_m, float cell_y_m) {
@@ -116,7 +119,9 @@ class RegionGraph {
     link_[link].place = place;
   }
 
-  std::array<Node, limits.regions> node_;
+  union {
+    std::array<Node, limits.regions> node_;  ///< begun as they are added
+  };
   std::array<End, 2 * limits.links> end_;
   std::array<Link, limits.links> link_;
   std::array<Index, limits.links> heap_;
@@ -131,7 +136,7 @@ template <Limits limits>
 auto RegionGraph<limits>::add_node() -> Index {
   if (nodes_ == limits.regions) return none;
   const auto node = static_cast<Index>(nodes_++);
-  node_[node] = Node{{}, 0.0f, node, none};
+  ::new (static_cast<void*>(node_.data() + node)) Node{{}, 0.0f, node, none};
   return node;
 }
 
