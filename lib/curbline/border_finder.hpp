@@ -107,10 +107,10 @@ class BorderFinder {
     return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
   }
   int cells_of(const Line& line) const { return line.axis == 0 ? dem_.rows() : dem_.cols(); }
-  float pitch_m(const Line& line) const { return line.axis == 0 ? dem_.cell_x_m() : dem_.cell_y_m(); }
+  float pitch_m(const Line& line) const { return dem_.cell_m(line.axis); }
   /// Of the middle of the line.
   float across_m(const Line& line) const {
-    return (static_cast<float>(line.across) + 0.5f) * (line.axis == 0 ? dem_.cell_y_m() : dem_.cell_x_m());
+    return (static_cast<float>(line.across) + 0.5f) * dem_.cell_m(1 - line.axis);
   }
   /// Of the cell's centroid from its middle, in cells along the line.
   float offset(const Line& line, const Cell& cell) const {

@@ -115,7 +115,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
-    told += weight(border) / border.half_gap_m * (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m());
+    told += weight(border) / border.half_gap_m * dem.cell_m(border.axis);
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
@@ -136,7 +136,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
     const float across = each * (cosine < 0.0f ? -cosine : cosine);
     piece.gap_m += 2.0f * border.half_gap_m * across;
-    piece.cell_m += (border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m()) * across;
+    piece.cell_m += dem.cell_m(border.axis) * across;
   }
   return piece;
 }
@@ -194,7 +194,7 @@ Viewpoint CurbPiece<limits>::seen_from(const Stages& stages, const Borders<limit
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const int d = direction(border.axis, lower == border.high ? border.sign : -border.sign);
-    const float pitch_m = border.axis == 0 ? dem.cell_x_m() : dem.cell_y_m();
+    const float pitch_m = dem.cell_m(border.axis);
     const int reach = link_reach + static_cast<int>(border.half_gap_m / pitch_m);
     int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
     for (int g = 0; g <= reach && i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols(); ++g) {

@@ -60,6 +60,7 @@ class Dem {
   int cols() const { return settings_.cols; }
   float cell_x_m() const { return settings_.cell_x_m; }
   float cell_y_m() const { return settings_.cell_y_m; }
+  float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
   /// Lowest corner of the window in the map frame.
   float origin_x_m() const { return static_cast<float>(first_row_) * settings_.cell_x_m + anchor_x_m_; }
   float origin_y_m() const { return static_cast<float>(first_col_) * settings_.cell_y_m + anchor_y_m_; }

@@ -159,7 +159,7 @@ template <Limits limits>
 template <typename SameRegion>
 bool Obstacles<limits>::thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
                              SameRegion&& same_region) {
-  const float cell_m = axis == 0 ? dem.cell_x_m() : dem.cell_y_m(), eye_m = axis == 0 ? view.x_m : view.y_m;
+  const float cell_m = dem.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view.x_m : view.y_m;
   const int count = axis == 0 ? dem.rows() : dem.cols(), at = axis == 0 ? i : j;
   const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
   int length = 1;

@@ -213,12 +213,13 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     of_plane.cells += 1.0f;
     of_plane.points += cell.points;
     if (dem.mixed(cell, of_plane.slope_m2)) return;
-    if (of_plane.wide && crossed.contains(s)) return;
+    const bool is_crossed = crossed.contains(s);
+    if (of_plane.wide && is_crossed) return;
     const Label borne = label_of(s);
     if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
     PlaneMoments moments = dem.moments(i, j, cell);
     if (!of_plane.steep) moments.zz = 0.0f;
-    const float step_m = of_plane.wide ? 0.0f : step_beside_m(dem, view, i, j, s, crossed.contains(s));
+    const float step_m = of_plane.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed);
     if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
     of_plane.beside.add_cell(moments);
     of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
