@@ -380,11 +380,9 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
   const bool near = square(point.z_m) <= square(Pose::furthest_m);  // not of no number
-  if (!is_finite(point.x_m) || !is_finite(point.y_m) || !near || !is_finite(point.variance_m2)) return false;
-  const float variance_m2 = point.variance_m2 + prior_.texture_m2;
-  if (!(point.variance_m2 >= 0.0f) || !(variance_m2 > 0.0f)) return false;
-  const float weight = prior_.noise_m2 / variance_m2;
-  if (!(weight >= least_weight && weight <= most_weight)) return false;
+  if (!near || !(point.variance_m2 >= 0.0f)) return false;
+  const float weight = prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2);
+  if (!(weight >= least_weight && weight <= most_weight)) return false;  // nor has an infinite variance one
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
