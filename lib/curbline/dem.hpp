@@ -79,6 +79,8 @@ class Dem {
     if (j >= settings_.cols) j -= settings_.cols;
     return i * limits.cols + j;
   }
+  /// Of the k-th cell of a block, row by row, by the slot of its first: no block lies across the ends of the ring.
+  static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
   const Cell& cell(int slot) const { return cells_[static_cast<std::size_t>(slot)]; }
 
   /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
@@ -148,11 +150,19 @@ class Dem {
   }
   template <typename Visit>
   void for_each_valid_in_row(int i, Visit&& visit) const {
-    int s = slot(i, 0);
-    const int row_end = s - col_shift_ + settings_.cols;
-    for (int j = 0; j < settings_.cols; ++j) {
-      if (cell(s).valid()) visit(i, j, s);
-      if (++s == row_end) s -= settings_.cols;
+    for_each_valid_along(1, i, [&](int j, int s) { visit(i, j, s); });
+  }
+  /// Calls visit(k, slot) for each valid cell k of a column, along x (axis 0), or of a row, along y (1).
+  template <typename Visit>
+  void for_each_valid_along(int axis, int line, Visit&& visit) const {
+    const bool along_x = axis == 0;
+    const int count = along_x ? settings_.rows : settings_.cols, step = along_x ? limits.cols : 1;
+    int s = along_x ? slot(0, line) : slot(line, 0);
+    const int end = s + (count - (along_x ? row_shift_ : col_shift_)) * step;
+    for (int k = 0; k < count; ++k) {
+      if (cell(s).valid()) visit(k, s);
+      s += step;
+      if (s == end) s -= count * step;
     }
   }
 

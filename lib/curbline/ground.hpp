@@ -208,7 +208,7 @@ class Ground {
                      : Sight{view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m};
   }
   template <typename LabelOf, typename EndRun>
-  static void walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run);
+  static void walk(const Dem<limits>& dem, int axis, LabelOf&& label_of, EndRun&& end_run);
   template <typename LabelOf>
   static void tally_runs(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                          LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
@@ -224,24 +224,22 @@ class Ground {
 /// run that is not there is no_label.
 template <Limits limits>
 template <typename LabelOf, typename EndRun>
-void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& label_of, EndRun&& end_run) {
-  const bool along_x = axis == 0;
-  const int line_count = along_x ? dem.cols() : dem.rows(), length = along_x ? dem.rows() : dem.cols();
+void Ground<limits>::walk(const Dem<limits>& dem, int axis, LabelOf&& label_of, EndRun&& end_run) {
+  const int lines = axis == 0 ? dem.cols() : dem.rows();
   const Run nothing{no_label, 0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  for (int line = 0; line < line_count; ++line) {
+  for (int line = 0; line < lines; ++line) {
     Run before = nothing, run = nothing;
-    for (int k = 0; k < length; ++k) {
-      const int s = along_x ? dem.slot(k, line) : dem.slot(line, k);
+    dem.for_each_valid_along(axis, line, [&](int k, int s) {
+      const Label label = label_of(s);
+      if (label == no_label) return;
       const Cell& cell = dem.cell(s);
-      const Label label = cell.valid() ? label_of(s) : no_label;
-      if (label == no_label) continue;
       const float h = cell.height_m;
       if (label != run.label) {
         const Run next{label, k, k, h, h, h, h, cell.scatter_m2, cell.weight};
         end_run(before, run, next, line);
         before = run;
         run = next;
-        continue;
+        return;
       }
       run.last = k;
       run.last_height_m = h;
@@ -249,7 +247,7 @@ void Ground<limits>::walk(const Dem<limits>& dem, std::size_t axis, LabelOf&& la
       if (h > run.highest_m) run.highest_m = h;
       run.scatter_m2 += cell.scatter_m2;
       run.weight += cell.weight;
-    }
+    });
     end_run(before, run, nothing, line);
   }
 }
@@ -262,7 +260,7 @@ void Ground<limits>::tally_runs(const Dem<limits>& dem, std::span<const Plane> p
                                 LabelOf&& label_of, const Obstacles<limits>& obstacles, const PlaneFlags& drops,
                                 Tallies& tallies) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    walk(dem, axis, label_of, [&](const Run& before, const Run& run, const Run& next, int line) {
+    walk(dem, static_cast<int>(axis), label_of, [&](const Run& before, const Run& run, const Run& next, int line) {
       if (run.label == no_label) return;
       Tally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());

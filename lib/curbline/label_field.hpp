@@ -201,16 +201,18 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
   near_by_y_m_ = dem.origin_y_m();
   near_by_.fill({});
   for (int i = 0; i < dem.rows(); i += block_side) {
-    for (int j = 0; j < dem.cols(); j += block_side) {
-      Planes here;
-      for (int k = 0; k < block_side * block_side; ++k) {
-        const int s = dem.slot(i + k / block_side, j + k % block_side);
+    std::array<Planes, limits.cols / block_side> here{};  // of the blocks of these rows
+    for (int row = i; row < i + block_side; ++row) {
+      dem.for_each_valid_in_row(row, [&](int, int j, int s) {
         const Label label = mixture.region_label(s);
-        if (dem.cell(s).valid() && label != no_label) here.insert(label);
-      }
+        if (label != no_label) here[static_cast<std::size_t>(j / block_side)].insert(label);
+      });
+    }
+    for (int j = 0; j < dem.cols(); j += block_side) {
       for (int a = i - block_side; a <= i + block_side; a += block_side) {
         for (int b = j - block_side; b <= j + block_side; b += block_side) {
-          if (a >= 0 && b >= 0 && a < dem.rows() && b < dem.cols()) near_by_[block_of(dem, a, b)].insert(here);
+          if (a < 0 || b < 0 || a >= dem.rows() || b >= dem.cols()) continue;
+          near_by_[block_of(dem, a, b)].insert(here[static_cast<std::size_t>(j / block_side)]);
         }
       }
     }

@@ -126,27 +126,26 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
   }
   for (int bi = 0; bi < dem.rows(); bi += block_side) {
     for (int bj = 0; bj < dem.cols(); bj += block_side) {
-      std::array<BlockCell, block_side * block_side> cells{};
-      std::array<int, block_side * block_side> slots{};
+      constexpr int size = block_side * block_side;
+      const int first = dem.slot(bi, bj);
       bool touched = false;
-      for (int k = 0; k < block_side * block_side; ++k) {
-        const auto n = static_cast<std::size_t>(k);
-        slots[n] = dem.slot(bi + k / block_side, bj + k % block_side);
-        touched = touched || dem.touched(slots[n]);
-      }
+      for (int k = 0; k < size; ++k) touched = touched || dem.touched(dem.slot_in_block(first, k));
       if (!touched) continue;
-      for (std::size_t n = 0; n < cells.size(); ++n) {
-        const Cell& cell = dem.cell(slots[n]);
-        const int k = static_cast<int>(n);
+      std::array<BlockCell, size> cells;
+      for (int k = 0; k < size; ++k) {
+        const int s = dem.slot_in_block(first, k);
+        const Cell& cell = dem.cell(s);
         const float height_m =
             leans ? dem.above_m(bi + k / block_side, bj + k % block_side, cell, lean) : cell.height_m;
-        cells[n] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
-        const auto s = static_cast<std::size_t>(slots[n]);
-        if (region_[s] != none) dissolved_.insert(region_[s]);
+        cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
+        const Region region = region_[static_cast<std::size_t>(s)];
+        if (region != none) dissolved_.insert(region);
       }
       const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
-      for (std::size_t n = 0; n < cells.size(); ++n) {
-        leaf_[static_cast<std::size_t>(slots[n])] = leaves[n] == 255 ? none : static_cast<Region>(slots[leaves[n]]);
+      for (int k = 0; k < size; ++k) {
+        const std::uint8_t leaf = leaves[static_cast<std::size_t>(k)];
+        leaf_[static_cast<std::size_t>(dem.slot_in_block(first, k))] =
+            leaf == 255 ? none : static_cast<Region>(dem.slot_in_block(first, leaf));
       }
     }
   }
