@@ -64,7 +64,8 @@ class LineQueue {
 
   ScanLine take_oldest();
 
-  LaserSettings laser_{};
+  // All of it begins as zeros: in static memory it takes no flash.
+  std::int64_t beam_interval_ns_ = 0;
   float latency_s_ = 0.0f;
   std::int64_t max_wait_ns_ = 0;
   bool fixed_ = false;
@@ -76,7 +77,7 @@ class LineQueue {
 
 template <Limits limits, int capacity>
 void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
-  laser_ = laser;
+  beam_interval_ns_ = laser.beam_interval_ns();
   latency_s_ = tilt.latency_s;
   max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
   fixed_ = tilt.fixed;
@@ -101,7 +102,8 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
     ++counters_.dropped;
   }
   const auto slot = static_cast<std::size_t>((oldest_ + size_++) % capacity);
-  entries_[slot] = {line.time_ns, line.time_ns + laser_.duration_ns(beams), now_ns, beams};
+  const auto beams_after_first = static_cast<std::int64_t>(beams > 1 ? beams - 1 : 0);
+  entries_[slot] = {line.time_ns, line.time_ns + beams_after_first * beam_interval_ns_, now_ns, beams};
   std::copy(line.ranges_m.begin(), line.ranges_m.end(), ranges_m_[slot].begin());
   return true;
 }

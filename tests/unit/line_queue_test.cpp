@@ -2,9 +2,12 @@
 // no room.
 #include "curbline/line_queue.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstddef>
 #include <limits>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace curbline {
@@ -192,6 +195,12 @@ TEST_CASE("line queue: under any traffic lines stay in order, whole, and every o
   CHECK(c.crowded > 100);
   CHECK(c.dropped > 100);
   CHECK(c.too_long > 100);
+}
+
+TEST_CASE("line queue: one in static memory begins as zeros, and takes no flash") {
+  static constinit Queue q;
+  const auto bytes = std::as_bytes(std::span(&q, 1));
+  CHECK(std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; }));
 }
 
 }  // namespace
