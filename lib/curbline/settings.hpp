@@ -18,14 +18,15 @@ namespace curbline {
 /// its corner and max_height_m are of the base frame of a robot that heads along the map's x axis, else of the map
 /// frame.
 struct WindowSettings {
-  int rows = 40;              ///< cells along x, a multiple of 4, at most Limits::rows
-  int cols = 40;              ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;      ///< [0.001, 10]
-  float cell_y_m = 0.1f;      ///< [0.001, 10]
-  float origin_x_m = 0.0f;    ///< lowest corner, [-1e5, 1e5]
-  float origin_y_m = -2.0f;   ///< the same along y
-  bool fixed = false;         ///< true: the window never moves
-  float max_height_m = 1e9f;  ///< points above it are ignored; finite
+  static constexpr float furthest_m = 1e5f;  ///< of the corner along each axis: float tells a centimetre there
+  int rows = 40;                             ///< cells along x, a multiple of 4, at most Limits::rows
+  int cols = 40;                             ///< cells along y, a multiple of 4, at most Limits::cols
+  float cell_x_m = 0.1f;                     ///< [0.001, 10]
+  float cell_y_m = 0.1f;                     ///< [0.001, 10]
+  float origin_x_m = 0.0f;                   ///< lowest corner, [-furthest_m, furthest_m]
+  float origin_y_m = -2.0f;                  ///< the same along y
+  bool fixed = false;                        ///< true: the window never moves
+  float max_height_m = 1e9f;                 ///< points above it are ignored; finite
 };
 
 /// The range-finder, from its data sheet.

@@ -29,6 +29,9 @@ bool reach(int cells) {
 bool bearing(float rad) {
   return within(rad, -2.0f * pi, 2.0f * pi);
 }
+bool corner(float m) {
+  return within(m, -WindowSettings::furthest_m, WindowSettings::furthest_m);
+}
 bool good(const MountSettings& m) {
   return within(m.x_m, -100.0f, 100.0f) && within(m.y_m, -100.0f, 100.0f) && within(m.z_m, -100.0f, 100.0f) &&
          bearing(m.roll_rad) && bearing(m.pitch_rad) && bearing(m.yaw_rad);
@@ -42,8 +45,8 @@ Bad first_bad(const WindowSettings& w, const Limits& limits) {
   if (!whole_blocks(w.cols, limits.cols)) return "window.cols";
   if (!within(w.cell_x_m, 0.001f, 10.0f)) return "window.cell_x_m";
   if (!within(w.cell_y_m, 0.001f, 10.0f)) return "window.cell_y_m";
-  if (!within(w.origin_x_m, -1e5f, 1e5f)) return "window.origin_x_m";
-  if (!within(w.origin_y_m, -1e5f, 1e5f)) return "window.origin_y_m";
+  if (!corner(w.origin_x_m)) return "window.origin_x_m";
+  if (!corner(w.origin_y_m)) return "window.origin_y_m";
   return is_finite(w.max_height_m) ? nullptr : "window.max_height_m";
 }
 

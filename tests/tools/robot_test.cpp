@@ -203,6 +203,8 @@ TEST_CASE("robot: values out of range are refused with the range") {
   CHECK(error_in("[laser]\nrange_sd_m = nan\n").starts_with("r.toml:2: laser.range_sd_m is nan; expected"));
   CHECK(error_in("[window]\nrows = 42\n") == "r.toml:2: window.rows is 42; expected a multiple of 4");
   CHECK(error_in("[window]\ncell_x_m = -0.1\n").starts_with("r.toml:2: window.cell_x_m is -0.1; expected"));
+  CHECK(error_in("[window]\norigin_x_m = 0\norigin_y_m = 2e5\n")
+            .starts_with("r.toml:3: window.origin_y_m is 2e+05; expected a number from "));
   CHECK(error_in("[laser]\nmodel = \"lidar\"\n") ==
         "r.toml:2: laser.model is \"lidar\"; expected utm-30lx, lms-151 or lms-200");
   CHECK(error_in("[laser]\nbearing_step_rad = 0\n").starts_with("r.toml:2: laser.bearing_step_rad is 0"));

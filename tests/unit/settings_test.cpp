@@ -42,7 +42,7 @@ TEST_CASE("settings: the defaults are good") {
 
 TEST_CASE("settings: the bounds themselves are good") {
   Settings low;
-  low.window = {4, 4, 0.001f, 0.001f, -1e5f, -1e5f};
+  low.window = {4, 4, 0.001f, 0.001f, -WindowSettings::furthest_m, -WindowSettings::furthest_m};
   low.laser.beams = 1;
   low.laser.first_bearing_rad = -2.0f * pi;
   low.laser.bearing_step_rad = -1.0f;
@@ -63,7 +63,7 @@ TEST_CASE("settings: the bounds themselves are good") {
   CHECK(std::string(named(low)) == "none");
 
   Settings high;
-  high.window = {40, 40, 10.0f, 10.0f, 1e5f, 1e5f};
+  high.window = {40, 40, 10.0f, 10.0f, WindowSettings::furthest_m, WindowSettings::furthest_m};
   high.laser.beams = 1;
   high.laser.first_bearing_rad = 2.0f * pi;
   high.laser.bearing_step_rad = high.laser.beam_interval_s = high.laser.bearing_sd_rad = 1.0f;

@@ -56,8 +56,9 @@ void read_window(TomlTable table, WindowSettings& window) {
   }
   table.read("cell_x_m", window.cell_x_m, {0.001, 10.0});
   table.read("cell_y_m", window.cell_y_m, {0.001, 10.0});
-  table.read("origin_x_m", window.origin_x_m, {-1e6, 1e6});
-  table.read("origin_y_m", window.origin_y_m, {-1e6, 1e6});
+  constexpr Range corner{-WindowSettings::furthest_m, WindowSettings::furthest_m};
+  table.read("origin_x_m", window.origin_x_m, corner);
+  table.read("origin_y_m", window.origin_y_m, corner);
   table.read("fixed", window.fixed);
   table.read("max_height_m", window.max_height_m, {-1e9, 1e9});
   table.done();
