@@ -234,6 +234,26 @@ TEST_CASE("robot: line ends and other control characters of a string or a key le
   CHECK(error_in("\"a\\nb\" = 1\n").starts_with("r.toml:1: unknown key a\\nb; expected one of "));
 }
 
+TEST_CASE("robot: a key or a word of any length leaves the message short, and one of any depth is refused") {
+  const std::string huge(900'000, 'k');
+  for (const std::string& text :
+       {huge + " = 1\n", huge + " = 1\n" + huge + " = 2\n", "[laser]\nmodel = \"" + huge + "\"\n",
+        "[tilt.signal]\nservo = \"" + huge + "\"\n", "[" + huge}) {
+    const std::string error = error_in(text);
+    CHECK(error.starts_with("r.toml:"));
+    CHECK(error.size() < 400);
+  }
+  std::string deep = "k";
+  for (int i = 0; i < 200'000; ++i) deep += ".k";
+  for (const std::string& text : {deep + " = 1\n", "\n[" + deep + "]\n", "a = {" + deep + " = 1}\n"}) {
+    const std::string error = error_in(text);
+    INFO(error);
+    CHECK(error.find("deep") != std::string::npos);
+    CHECK(error.starts_with(text[0] == '\n' ? "r.toml:2: " : "r.toml:1: "));
+  }
+  CHECK(parsed("# " + std::string(300, '.') + "\nname = \"" + std::string(300, '.') + "\"\n").name.size() == 300);
+}
+
 TEST_CASE("robot: what is no TOML, or cannot be read, is refused") {
   const TemporaryDirectory dir;
   CHECK(error_in("[laser\n").starts_with("r.toml:1: "));

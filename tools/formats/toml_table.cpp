@@ -22,12 +22,15 @@ std::string shown_number(const toml::node& node) {
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-/// What a string of the file may hold, in one line.
+/// What a string of the file may hold, in one line that a terminal has room for.
 std::string in_one_line(std::string_view text) {
   constexpr std::string_view digits = "0123456789abcdef";
+  constexpr std::size_t most = 200;
   std::string out;
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);
+    const bool within_utf8 = (code & 0xC0) == 0x80;
+    if (out.size() >= most && !within_utf8) return out + "...";
     if (c == '\n') {
       out += "\\n";
     } else if (code < ' ' || code == 0x7F) {
@@ -52,6 +55,32 @@ std::string shown(const toml::node& node) {
   return in_one_line(text.str());
 }
 
+/// toml++ calls itself for each part of a dotted key, and the stack ends. Values it counts itself, to 256 too.
+void refuse_deep_keys(std::string_view text, const std::string& path) {
+  constexpr int most = 256;
+  long line = 1;
+  int dots = 0;  // of what may be a key
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++line;
+      dots = quote = 0;
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+      if (c == '\\' && quote == '"' && text.substr(i + 1, 1) != "\n") ++i;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      quote = '\n';  // a comment ends with its line
+    } else if (c == '.') {
+      if (++dots >= most) throw BadInput(path, line, "a key is too deep; expected at most 256 parts");
+    } else if (std::string_view("=,[]{}").find(c) != std::string_view::npos) {
+      dots = 0;
+    }
+  }
+}
+
 }  // namespace
 
 std::string read_toml_text(const std::string& path, const std::string& kind) {
@@ -59,12 +88,12 @@ std::string read_toml_text(const std::string& path, const std::string& kind) {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& path) {
+  refuse_deep_keys(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
-    std::string what(error.description());
-    for (char& c : what) c = c == '\n' ? ' ' : c;
-    throw BadInput(path, static_cast<long>(error.source().begin.line), what + "; expected TOML");
+    throw BadInput(path, static_cast<long>(error.source().begin.line),
+                   in_one_line(error.description()) + "; expected TOML");
   }
 }
 
