@@ -78,11 +78,18 @@ def whole_file(path):
         raise
 
 
+def failed(error, status, words):
+    """Ends the script: curbline has failed, and said why."""
+    why = error.strip()
+    sys.exit(f"{why}{': ' if why else ''}exit status {status} of curbline {' '.join(words)}")
+
+
 def run(*words):
     """Runs curbline to its end; its standard output. Ends the script where it fails."""
-    done = subprocess.run([CURBLINE, *words], stdout=subprocess.PIPE, text=True)
+    done = subprocess.run([CURBLINE, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
-        sys.exit(f"curbline {' '.join(words)}: exit status {done.returncode}")
+        failed(done.stderr, done.returncode, words)
+    print(end=done.stderr, file=sys.stderr, flush=True)
     return done.stdout
 
 

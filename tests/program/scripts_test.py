@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools")
 
@@ -89,6 +90,19 @@ class Scripts(unittest.TestCase):
         for script in ["streets", "paper", "long-drive"]:
             with tempfile.TemporaryDirectory() as folder:
                 self.assertRegex(self.stopped(script, folder, program="/bin/true"), "^/bin/true .*: no JSON .*; expected curbline\n$")
+
+    def test_a_program_that_fails(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = os.path.join(folder, "curbline")
+            with open(program, "w") as file:
+                file.write('#!/bin/sh\n[ "$1" = replay ] || [ -z "$ONLY_REPLAY" ] || exit 0\necho "scans.carmen: cannot be written: it rains; expected room for it" >&2\nexit 1\n')
+            os.chmod(program, 0o700)
+            for script in ["streets", "paper", "long-drive"]:
+                error = self.stopped(script, os.path.join(folder, script), program=program)
+                self.assertRegex(error, "^scans.carmen: cannot be written: it rains; expected room for it: exit status 1 of curbline [a-z]+ ")
+            with unittest.mock.patch.dict(os.environ, {"ONLY_REPLAY": "1"}):
+                error = self.stopped("long-drive", os.path.join(folder, "long-drive"), program=program)
+                self.assertIn("it rains; expected room for it: exit status 1 of curbline replay ", error)
 
     def test_a_file_or_a_directory_in_the_way(self):
         with tempfile.TemporaryDirectory() as folder:
