@@ -291,6 +291,8 @@ TEST_CASE("program: standard output that cannot be written is an error") {
     const Outcome outcome = curbline(Words{"map", cloud} + option, "/dev/full");
     check_refused(outcome, "standard output: ", "cannot be written");
   }
+  for (const Words& words : {Words{"--help"}, {"map", "--help"}, {"--version"}})
+    check_refused(curbline(words, "/dev/full"), "standard output: ", "cannot be written");
 }
 
 TEST_CASE("program: a cloud of an unknown kind is refused") {

@@ -33,7 +33,7 @@ int run_program(CLI::App& app, int argc, char** argv) {
     check_command(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (app.exit(error) != 0) return 2;  // else it is the help, or the version
   } catch (const BadInput& error) {
     std::cerr << error.what() << '\n';
     return 1;
