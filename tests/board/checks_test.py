@@ -89,6 +89,18 @@ class Budget(unittest.TestCase):
         rows = [("stack", "pipeline", 4097), ("ram", "pipeline", 100), ("", "dem", 90)]
         self.assertEqual(budget.print_table(board, rows, {"stack": {"pipeline": 4096}, "ram": {"pipeline": 100}}, {("stack", "pipeline"): 4000}), 1)
 
+    def test_every_budget_of_the_manual_is_there_and_a_whole_number(self):
+        good = {"flash": {"firmware": 1}, "ram": {"pipeline": 1}, "stack": {"pipeline": 1}, "instructions": {"worst": 1, "mean": 1}}
+        budget.check(good, "budget.toml")
+        for group, names in good.items():
+            for name in names:
+                for wrong, why in [({}, "is missing"), ({name: "1"}, "is '1'"), ({name: 1.5}, "is 1.5")]:
+                    others = {n: 1 for n in names if n != name}
+                    with self.assertRaisesRegex(SystemExit, f"^budget.toml: {group}.{name} {why}; expected a whole number$"):
+                        budget.check({**good, group: {**others, **wrong}}, "budget.toml")
+        with self.assertRaisesRegex(SystemExit, "^budget.toml: flash.firmware is missing"):
+            budget.check({}, "budget.toml")
+
     def test_the_mean_of_simulated_drives_alone_is_not_judged_by_the_budget_of_all(self):
         board = budget.boards.BOARDS["cortex-m7"]
         rows = [("instructions", "worst", 7), ("", "mean", 4)]

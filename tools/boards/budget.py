@@ -17,6 +17,7 @@ import run_drives
 import stack
 import stages
 
+BUDGETS = [("flash", "firmware"), ("ram", "pipeline"), ("stack", "pipeline"), ("instructions", "worst"), ("instructions", "mean")]
 PAINT_MARGIN = 160  # bytes of the frames above main(), which painting sees and the graph of main() does not
 
 
@@ -125,10 +126,27 @@ def keyed(rows):
         yield group, name, used
 
 
+def check(budget, path):
+    """Every budget is there: one that is not would never be exceeded."""
+    for group, name in BUDGETS:
+        allowed = budget.get(group, {}).get(name)
+        if type(allowed) is not int:
+            sys.exit(f"{path}: {group}.{name} is {'missing' if allowed is None else repr(allowed)}; expected a whole number")
+
+
+def read_budget(path):
+    try:
+        budget = tomllib.loads(path.read_text())
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        sys.exit(f"{path}: {error}; expected the budgets (TOML)")
+    check(budget, path)
+    return budget
+
+
 def main(build, name, keep):
     board = boards.BOARDS[name]
     folder = boards.ROOT / "board" / board.folder
-    budget = tomllib.loads((folder / "budget.toml").read_text())
+    budget = read_budget(folder / "budget.toml")
     kept_file = folder / "measured.csv"
     kept = {(g, n): int(u) for g, n, u in list(csv.reader(kept_file.open()))[1:]} if kept_file.exists() else {}
     rows = measure(build, board)
