@@ -21,12 +21,12 @@ constexpr Signal field(std::uint32_t id, int start_bit, int length, double scale
 
 constexpr double millimetre = 0.001;
 
-constexpr double farthest_m = 65.534;  // one count below all ones, which is that of nothing ahead
+constexpr double furthest_m = 65.534;  // one count below all ones, which is that of nothing ahead
 constexpr double widest_m = 32.767, highest_m = 32.767;
 
 constexpr std::array<CurbField, fields> layout{{
     {"CurbAhead", "Distance", "m", "Ahead of the robot to the nearest point of the curb; all ones: nothing ahead.",
-     field(curb_ahead_id, 0, 16, millimetre), 0, farthest_m},
+     field(curb_ahead_id, 0, 16, millimetre), 0, furthest_m},
     {"CurbAhead", "Lateral", "m", "Left of the robot to that point.", field(curb_ahead_id, 16, 16, millimetre, true),
      -widest_m, widest_m},
     {"CurbAhead", "Height", "m", "Far side less near side: above 0 is a step up.",
@@ -122,7 +122,7 @@ Frame curb_ahead_frame(const std::optional<CurbAhead>& curb) {
   put(height_sd, is_finite(c.height_sd_m) ? static_cast<double>(c.height_sd_m) : 1.0, frame);
   put(kind, ahead ? static_cast<double>(c.kind) + 1.0 : 0.0, frame);
   put(probability, static_cast<double>(c.probability), frame);
-  if (!ahead) encode(layout[distance].signal, 2 * farthest_m, frame);
+  if (!ahead) encode(layout[distance].signal, 2 * furthest_m, frame);
   return frame;
 }
 

@@ -89,6 +89,13 @@ std::string_view parse_frame(std::string_view text, can::Frame& frame) {
   return parse_data(text, frame);
 }
 
+/// Without -L candump writes for the screen: "  can0  181   [6]  37 06", with -t behind a time.
+bool is_for_the_screen(std::string_view line) {
+  const std::size_t length = line.find('[');
+  return length != std::string_view::npos && line.find('#') == std::string_view::npos && line.size() > length + 1 &&
+         is_digit(line[length + 1]);
+}
+
 bool writable(const can::Frame& frame, std::string_view interface_name) {
   if (interface_name.empty() || interface_name.size() > max_interface_name) return false;
   if (interface_name.find(' ') != std::string_view::npos || frame.time_ns < 0) return false;
@@ -139,13 +146,6 @@ std::optional<std::int64_t> parse_time(std::string_view seconds) {
     }
   }
   return whole * 1'000'000'000 + fraction_ns;
-}
-
-/// Without -L candump writes for the screen: "  can0  181   [6]  37 06", with -t behind a time.
-bool is_for_the_screen(std::string_view line) {
-  const std::size_t length = line.find('[');
-  return length != std::string_view::npos && line.find('#') == std::string_view::npos && line.size() > length + 1 &&
-         is_digit(line[length + 1]);
 }
 
 ParsedLine parse_line(std::string_view line) {

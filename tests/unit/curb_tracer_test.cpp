@@ -572,14 +572,14 @@ TEST_CASE("curb tracer: a curb goes on for two cells where one side is not seen,
     map({1.4, 2.4, 1.6, 2.4}, far);
     for (int pass = 0; pass < 3; ++pass) stages.infer(true);
     stages.trace(0.0f, 1.2f);
-    float farthest_m = 0.0f;
+    float furthest_m = 0.0f;
     for (const Curb& curb : stages.tracer.curbs()) {
       if (curb.kind != CurbKind::step_up || std::abs(curb.x1_m - curb.x0_m) > 0.1f) continue;  // another side
       CHECK(curb.x0_m == Approx(1.4).margin(0.02));
       CHECK(std::min(curb.y0_m, curb.y1_m) == Approx(0.0).margin(0.02));  // not beyond the window
-      farthest_m = std::max(curb.y0_m, curb.y1_m);
+      furthest_m = std::max(curb.y0_m, curb.y1_m);
     }
-    return farthest_m;
+    return furthest_m;
   };
   CHECK(end_m({}, unseen) == Approx(1.8).margin(0.02));
   CHECK(end_m({}, hedge) == Approx(1.8).margin(0.02));

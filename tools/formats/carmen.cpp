@@ -10,7 +10,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr std::int64_t most_beams = 100'000;
-constexpr double farthest_m = 1e6;
+constexpr double furthest_m = 1e6;
 
 /// CARMEN's message names are of capitals, digits and underscores.
 bool is_message_name(std::string_view word) {
@@ -37,7 +37,7 @@ CarmenLine parse_scan(Fields& fields) {
   scan.field_of_view_rad = fields.number("field_of_view");
   scan.angular_resolution_rad = fields.number("angular_resolution");
   scan.maximum_range_m = fields.number("maximum_range");
-  if (!(scan.maximum_range_m > 0.0 && scan.maximum_range_m <= farthest_m)) {
+  if (!(scan.maximum_range_m > 0.0 && scan.maximum_range_m <= furthest_m)) {
     fields.fail("maximum_range", readable(scan.maximum_range_m, 3), "metres above 0 and below a million");
   }
   scan.accuracy_m = fields.number("accuracy");

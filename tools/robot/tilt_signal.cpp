@@ -6,7 +6,7 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double farthest_rad = 1e6;
+constexpr double furthest_rad = 1e6;
 
 /// The preset of a servo, with the keys that only presets have.
 can::Signal read_servo(TomlTable& table) {
@@ -89,8 +89,8 @@ void read_tilt_signal(TomlTable table, Robot& robot) {
   signal.order = read_byte_order(table, signal.order);
   table.read("signed", signal.is_signed);
   table.read("float", signal.is_float);
-  table.read("scale", signal.scale, {-farthest_rad, farthest_rad});
-  table.read("offset", signal.offset, {-farthest_rad, farthest_rad});
+  table.read("scale", signal.scale, {-furthest_rad, furthest_rad});
+  table.read("offset", signal.offset, {-furthest_rad, furthest_rad});
   table.read_whole("min_bytes", signal.min_bytes, 0, 64);
   table.read_whole("max_bytes", signal.max_bytes, 1, 64);
   read_multiplexor(table, signal);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t status_well = 0x10, address = 0x80;
 constexpr double turn_ns = 1e9 / 75.0;
-constexpr int farthest_mm = 8182, no_return = 8183;
+constexpr int furthest_mm = 8182, no_return = 8183;
 constexpr std::uint16_t millimetres = 1 << 14;
 
 Bytes framed(Bytes content) {
@@ -26,7 +26,7 @@ Bytes framed(Bytes content) {
 std::uint16_t range_mm(float range_m) {
   if (!(range_m > 0.0f)) return no_return;
   const long mm = std::lround(static_cast<double>(range_m) * 1000.0);
-  return static_cast<std::uint16_t>(mm > farthest_mm ? no_return : mm);
+  return static_cast<std::uint16_t>(mm > furthest_mm ? no_return : mm);
 }
 
 class Lms200Device final : public Device {
