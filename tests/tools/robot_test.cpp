@@ -153,26 +153,66 @@ TEST_CASE("robot: an unknown key is refused by name and line, wherever it stands
   CHECK(error_in("[lazer]\n").starts_with("r.toml:1: unknown key lazer"));
 }
 
+const std::vector<std::string> tables_of_numbers{"laser",         "tilt",          "tilt.mount",  "pose",
+                                                 "window",        "sweep",         "simulated",   "tuning.segmentation",
+                                                 "tuning.planes", "tuning.labels", "tuning.curbs"};
+
+/// The keys that are read from a table, as the error about another one lists them.
+std::vector<std::string> keys_of(const std::string& table) {
+  const std::string error = error_in("[" + table + "]\nnone = 0\n"),
+                    listed = error.substr(error.find("expected one of") + 15) + ",";
+  const std::regex word("([a-z][a-z0-9_]*),");
+  std::vector<std::string> keys;
+  for (std::sregex_iterator key(listed.begin(), listed.end(), word); key != std::sregex_iterator(); ++key)
+    keys.push_back(key->str(1));
+  return keys;
+}
+
 TEST_CASE("robot: the manual lists the keys that are read, and no others") {
   const std::string manual = read_file(robots + "README.md");
-  for (const std::string table : {"laser", "tilt", "tilt.mount", "pose", "window", "sweep", "simulated",
-                                  "tuning.segmentation", "tuning.planes", "tuning.labels", "tuning.curbs"}) {
+  for (const std::string& table : tables_of_numbers) {
     const std::size_t from = manual.find("\n| `[" + table + "]` |");
     REQUIRE(from != std::string::npos);
     const std::string row = manual.substr(from + 1, manual.find('\n', from + 1) - from - 1);
-    const std::string error = error_in("[" + table + "]\nnone = 0\n");
-    const std::string listed = error.substr(error.find("expected one of") + 15) + ",";
-    const std::regex word("([a-z][a-z0-9_]*),"), quoted("`([a-z][a-z0-9_]*)`");
-    for (std::sregex_iterator key(listed.begin(), listed.end(), word); key != std::sregex_iterator(); ++key) {
-      INFO(table << " " << key->str(1));
-      CHECK((row.find("`" + key->str(1) + "`") != std::string::npos ||
-             manual.find("`[" + table + "." + key->str(1) + "]`") != std::string::npos));
+    const std::vector<std::string> keys = keys_of(table);
+    for (const std::string& key : keys) {
+      INFO(table << " " << key);
+      CHECK((row.find("`" + key + "`") != std::string::npos ||
+             manual.find("`[" + table + "." + key + "]`") != std::string::npos));
     }
+    const std::regex quoted("`([a-z][a-z0-9_]*)`");
     for (std::sregex_iterator key(row.begin(), row.end(), quoted); key != std::sregex_iterator(); ++key) {
       INFO(table << " " << key->str(1));
-      CHECK(listed.find(" " + key->str(1) + ",") != std::string::npos);
+      CHECK(std::find(keys.begin(), keys.end(), key->str(1)) != keys.end());
     }
   }
+}
+
+TEST_CASE("robot: what lies in a key's range the library takes, to its ends") {
+  int ends = 0;
+  for (const std::string& table : tables_of_numbers) {
+    for (const std::string& key : keys_of(table)) {
+      const std::string start = "[" + table + "]\n" + (key == "fixed_tilt_rad" ? "fixed = true\n" : "") + key + " = ";
+      const std::string error = error_in(start + "\"x\"\n");
+      std::smatch range;
+      if (!std::regex_search(error, range, std::regex("number from (\\S+) to (\\S+)$"))) continue;
+      for (const std::string& end : {range.str(1), range.str(2)}) {
+        INFO(start << end);
+        CHECK(error_in(start + end + "\n").find("settings.hpp") == std::string::npos);  // the library's own refusal
+        ++ends;
+      }
+    }
+  }
+  CHECK(ends > 100);
+}
+
+TEST_CASE("robot: a table without keys leaves what the library has") {
+  const Robot robot = parsed("[tuning.segmentation]\n[tuning.planes]\n[tuning.labels]\n[tuning.curbs]\n");
+  CHECK(robot.planes.update == PlaneSettings{}.update);
+  CHECK(robot.labels.coupling == LabelSettings{}.coupling);
+  CHECK_FALSE(robot.labels.max_messages);
+  CHECK(robot.curbs.max_step_m == CurbSettings{}.max_step_m);
+  CHECK(robot.segmentation.leaf_scale == SegmentationSettings{}.leaf_scale);
 }
 
 TEST_CASE("robot: a wrong type is refused with what was expected") {
