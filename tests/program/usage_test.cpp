@@ -143,6 +143,13 @@ TEST_CASE("program: an empty file name, as an unset variable of a shell gives, i
   refused({"evaluate"}, "--paper");
   refused({"dbc"}, "--robot");
   check_wrong_usage(curbline({"map", ""}), "empty; expected a file name");
+  check_wrong_usage(curbline({"simulate", "--scene", "", "--robot", "r", "--out", "o"}),
+                    "--scene: empty; expected a scene\n");
+  const Words scanner{"scip2", "--robot", "r"};
+  check_wrong_usage(run(CURBLINE_SCANNER, scanner + Words{"--scene", ""}), "--scene: empty; expected a scene\n");
+  check_wrong_usage(run(CURBLINE_SCANNER, scanner + Words{"--scans", ""}), "--scans: empty; expected a file name\n");
+  check_wrong_usage(run(CURBLINE_SCANNER, {"scip2", "--scene", "street", "--robot", ""}),
+                    "--robot: empty; expected a file name\n");
 }
 
 TEST_CASE("program: a seed that is no whole number of 64 bits is wrong usage") {

@@ -21,6 +21,7 @@ void add_simulate(CLI::App& app) {
       ->add_option("--scene", o->scene,
                    "a scene that ships, by its name below, a scene file (TOML), or streets drawn by lot: random:SEED, "
                    "random-drive:SEED")
+      ->check(not_empty("a scene"))
       ->required();
   command->add_option("--robot", o->robot, "robot description (TOML)")->check(file_name())->required();
   command

@@ -61,11 +61,12 @@ int main(int argc, char** argv) {
   app.add_option("protocol", o->protocol, "scip2 (UTM-30LX), cola (LMS151) or lms200")
       ->required()
       ->check(CLI::IsMember({"scip2", "cola", "lms200"}));
-  app.add_option("--scans", o->scans, "scan lines, CARMEN log");
+  app.add_option("--scans", o->scans, "scan lines, CARMEN log")->check(file_name());
   app.add_option(
-      "--scene", o->scene,
-      "a scene that ships, by its name, or a scene file (TOML): its lines are those that `curbline simulate` writes");
-  app.add_option("--robot", o->robot, "robot description (TOML), for --scene");
+         "--scene", o->scene,
+         "a scene that ships, by its name, or a scene file (TOML): its lines are those that `curbline simulate` writes")
+      ->check(not_empty("a scene"));
+  app.add_option("--robot", o->robot, "robot description (TOML), for --scene")->check(file_name());
   app.add_option("--port", o->port, "TCP port on the loopback interface; 0: any (10940 for scip2, 2112 for cola)")
       ->check(whole_number(0, 65535));
   app.add_option("--speed", o->speed, "times as fast as the lines' own time, or max: as fast as they are read")
