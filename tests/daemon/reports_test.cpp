@@ -90,5 +90,89 @@ TEST_CASE("reports: the fullest status fits") {
   CHECK(read.at("status").at("state") == "can_down");
 }
 
+TEST_CASE("reports: a status has each counter under its name") {
+  const LatencyHistogram none;
+  Report s;
+  s.scan_line_s = 0.025, s.work = &none;
+  s.lines = {.pushed = 1, .covered = 2, .overdue = 3, .crowded = 4, .dropped = 5, .too_long = 6, .bad_time = 7};
+  s.pipeline.lines = 11, s.pipeline.lines_dropped = 12;
+  s.pipeline.beams_without_tilt = 13, s.pipeline.beams_extrapolated = 14, s.pipeline.tilt_dropped = 15;
+  s.curbs = 16, s.curbs_left_out = 17;
+  s.clients = 21, s.server.accepted = 22, s.server.too_slow = 23, s.server.refused = 24;
+  s.heap_calls_before = 31, s.heap_calls_since = 32;
+  const TiltWatch watch;
+  const TiltLatency latency;
+  const can::TiltDecoderCounters frames{
+      .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
+  s.tilt = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency;
+  ScannerState scanner;
+  scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53;
+  s.scanner = &scanner;
+  const auto bus = std::make_unique<socketcan::SocketCan>();
+  s.bus = bus.get();
+  std::array<char, 8192> buffer{};
+  const nlohmann::json status = nlohmann::json::parse(status_line(s, buffer)).at("status");
+  const auto check = [&](const char* part, const nlohmann::json& wanted) {
+    for (const auto& [name, value] : wanted.items()) {
+      INFO(part << "." << name);
+      REQUIRE(status.at(part).contains(name));
+      CHECK(status.at(part).at(name) == value);
+    }
+  };
+  check("scans", {{"lines", 1},
+                  {"covered", 2},
+                  {"overdue", 3},
+                  {"crowded", 4},
+                  {"dropped", 5},
+                  {"too_long", 6},
+                  {"bad_time", 7},
+                  {"connected", false},
+                  {"connections", 51},
+                  {"damaged", 52},
+                  {"other_beams", 53}});
+  check("pipeline", {{"lines", 11},
+                     {"lines_dropped", 12},
+                     {"beams_without_tilt", 13},
+                     {"beams_extrapolated", 14},
+                     {"curbs", 16},
+                     {"curbs_left_out", 17}});
+  check("clients", {{"connected", 21}, {"accepted", 22}, {"too_slow", 23}, {"refused", 24}});
+  check("heap_calls", {{"before_start", 31}, {"since_start", 32}});
+  check("tilt", {{"frames", 41},
+                 {"readings", 42},
+                 {"others", 43},
+                 {"malformed", 45},
+                 {"without_sync", 46},
+                 {"dropped", 15},
+                 {"times_lost", 0}});
+  for (const char* counter :
+       {"frames", "frames_lost", "error_messages", "bus_errors", "controller_overruns", "times_passive",
+        "times_bus_off", "restarts", "times_down", "times_gone", "times_back", "sent", "not_sent"})
+    check("can", {{counter, 0}});
+  CHECK(status.at("microseconds").at("scan_line") == 25'000);
+}
+
+TEST_CASE("reports: the state is the worst that is the matter") {
+  Report s;
+  CHECK(state_of(s) == "ok");
+  ScannerState scanner;
+  s.scanner = &scanner;
+  CHECK(state_of(s) == "scanner_lost");
+  TiltWatch watch;
+  watch.init(0.5f, false);
+  s.tilt = &watch;
+  CHECK(state_of(s) == "tilt_missing");
+  watch.update(0, 0);
+  CHECK(state_of(s) == "scanner_lost");
+  watch.update(0, 1'000'000'000);
+  CHECK(state_of(s) == "tilt_stale");
+  watch.update(1'000'000'000, 1'000'000'000);
+  scanner.connected = true;
+  CHECK(state_of(s) == "ok");
+  const auto closed = std::make_unique<socketcan::SocketCan>();
+  s.bus = closed.get();
+  CHECK(state_of(s) == "can_down");
+}
+
 }  // namespace
 }  // namespace curbline::daemon
