@@ -59,7 +59,6 @@ class Ground {
   /// beam is on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
-  static constexpr int widest_gap = 2;      ///< between a strip and the planes beside it, in cells
   static constexpr float narrow = 1.5f;     ///< cells: a wider strip has cells of its own
 
   /// How far something falls from its end near the laser to the far one, and how far the rays there do.

@@ -20,6 +20,7 @@
 namespace curbline {
 
 inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
+inline constexpr int widest_gap = 2;           ///< between planes that lie beside each other, in cells: a face
 
 template <Limits limits>
 class Obstacles {
@@ -44,7 +45,6 @@ class Obstacles {
   static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
   static constexpr float way_m = 1.0f;         ///< a square of ground that lies higher is no smaller: stairs lead on
   static constexpr float shoulders_m = 0.5f;   ///< nor is it narrower: it would be a wall
-  static constexpr int widest_gap = 2;         ///< between planes that lie beside each other, in cells: a face
 
   /// Of a plane's region.
   struct Extent {
