@@ -6,7 +6,8 @@
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
 //     follow the ground, away from the laser, and lie below it. They fall as far as is seen of the step.
 // Planes that lie farther apart than the reach of links are asked whether a step down hides what is between them.
-// Cost: a pass over the window and a look at each cell of a gap, a face and a veil.
+// Cost: a pass over the window, a look at each cell of a gap, a face and a veil, and at those before a gap without
+// points.
 #pragma once
 
 #include <array>
@@ -90,7 +91,13 @@ class BorderFinder {
   Border border_at(const Line& line, float along_m) const;
   Border border_at(const End& end, float along_m) const;
   Beside beside(const Line& line, float border_m, int toward, Label label) const;
-  float middle_m(const Gap& gap) const;
+  /// Of what parts the planes.
+  struct Middle {
+    float along_m;
+    bool open;  ///< no cells tell it
+  };
+  Middle middle(const Gap& gap) const;
+  bool behind_obstacle(const Gap& gap, int along) const;
   float same_plane(const Gap& gap) const;
   bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
   bool bears_ground(int slot) const;
@@ -248,13 +255,14 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first.label < gap.second.label;
   const LabelledCell& low = rising ? gap.first : gap.second;
   const LabelledCell& high = rising ? gap.second : gap.first;
-  const float along_m = middle_m(gap);
+  const auto [along_m, open] = middle(gap);
   Border border = border_at(gap.line, along_m);
   border.probability = 1.0f - same_plane(gap);
   border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap.line);
   border.low = low.label;
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
+  border.open = open;
   border.beside_low = beside(gap.line, along_m, -border.sign, low.label);
   border.beside_high = beside(gap.line, along_m, border.sign, high.label);
   return border;
@@ -351,30 +359,62 @@ auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
 }
 
 /// Along the line, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
-/// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell.
+/// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell. What
+/// stands on the ground, and what it hides, tells nothing: the edge lies anywhere in the gap then.
 template <Limits limits>
-float BorderFinder<limits>::middle_m(const Gap& gap) const {
+auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   const Line& line = gap.line;
   const float cell_m = pitch_m(line);
-  const float halfway_m = 0.5f * static_cast<float>(gap.first.along + gap.second.along + 1) * cell_m;
+  const auto cells = static_cast<float>(gap.second.along - gap.first.along + 1);
+  const float halfway_m = (static_cast<float>(gap.first.along) + 0.5f * cells) * cell_m;
   const Border halfway = border_at(line, halfway_m);
   const Plane& first = mixture_.plane(gap.first.label);
   const Plane& second = mixture_.plane(gap.second.label);
   const float step_m = second.height_m(halfway.x_m, halfway.y_m) - first.height_m(halfway.x_m, halfway.y_m);
-  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return halfway_m;
-
   float before = 0.0f;  // in cells, from the first one's near side
+  bool covered = false;
+  int empty = -1;  // one of them
   for (int along = gap.first.along; along <= gap.second.along; ++along) {
-    const Cell& cell = dem_.cell(slot(line, along));
+    const int s = slot(line, along);
+    const Cell& cell = dem_.cell(s);
     if (!cell.valid()) {
+      empty = along;
       before += 0.5f;
-      continue;
+    } else if (mixture_.covered(s)) {
+      covered = true;
+      before += 0.5f;
+    } else {
+      before += before_middle({above_m(line, along, first) / step_m, 0.5f + offset(line, cell)});
     }
-    before += before_middle({above_m(line, along, first) / step_m, 0.5f + offset(line, cell)});
   }
-  const auto cells = static_cast<float>(gap.second.along - gap.first.along + 1);
+  const bool open = covered || (empty >= 0 && behind_obstacle(gap, empty));
+  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open};
   before = before < 0.0f ? 0.0f : before > cells ? cells : before;
-  return (static_cast<float>(gap.first.along) + before) * cell_m;
+  return {(static_cast<float>(gap.first.along) + before) * cell_m, open};
+}
+
+/// Does something that stands on the ground hide a cell of a gap, from where the gap's far side was seen? On the way
+/// there a cell that bears no ground lies above the plane of the near side.
+template <Limits limits>
+bool BorderFinder<limits>::behind_obstacle(const Gap& gap, int along) const {
+  const bool ahead = away(gap.line, gap.first.along) > 0;
+  const Plane& near = mixture_.plane((ahead ? gap.first : gap.second).label);
+  const Viewpoint from = dem_.seen_from(slot(gap.line, (ahead ? gap.second : gap.first).along), view_);
+  const Border middle = border_at(gap.line, (static_cast<float>(along) + 0.5f) * pitch_m(gap.line));
+  const float dx = (from.x_m - middle.x_m) / dem_.cell_x_m(), dy = (from.y_m - middle.y_m) / dem_.cell_y_m();
+  const float cells = square_root(dx * dx + dy * dy);
+  float x = middle.x_m / dem_.cell_x_m(), y = middle.y_m / dem_.cell_y_m();
+  for (float passed = 1.0f; passed < cells; passed += 1.0f) {
+    x += dx / cells;
+    y += dy / cells;
+    const int i = static_cast<int>(x), j = static_cast<int>(y);
+    if (!(x >= 0.0f) || !(y >= 0.0f) || i >= dem_.rows() || j >= dem_.cols()) return false;
+    const int s = dem_.slot(i, j);
+    const Cell& cell = dem_.cell(s);
+    if (!cell.valid() || bears_ground(s)) continue;
+    if (dem_.above_m(i, j, cell, near) > 0.0f && !lies_on(i, j, cell, near)) return true;
+  }
+  return false;
 }
 
 }  // namespace curbline

@@ -26,6 +26,7 @@ class Borders {
     Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;  ///< 0: found along x, 1: along y
     std::int8_t sign;  ///< +1 if `high` lies in the positive direction of the axis
+    bool open;         ///< the edge lies anywhere in the gap: something stands there, or hides it
     bool chained;
     Index next_in_cell;  ///< another border in the same cell
   };

@@ -50,7 +50,7 @@ struct CurbPiece {
   float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
-  float borders = 0.0f;                ///< how many
+  float borders = 0.0f;                ///< how many, those that are open as one
   float place_variance_m2 = 0.0f;      ///< of a border, across the line
   float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
   float told_variance_m2 = 0.0f;       ///< the same of a step, whose cells tell where in the gap it lies
@@ -60,6 +60,9 @@ struct CurbPiece {
 
   /// Fits a line to the borders and takes the mean of what they tell.
   static CurbPiece of(const Stages& stages, const Borders<limits>& borders, int first, int last);
+  /// What an open border weighs beside the others. Those of one shadow err alike: all together they weigh as one,
+  /// unless there are no others.
+  static float open_share(const Borders<limits>& borders, int first, int last);
   /// Of a border in the line.
   static float weight(const Border& border) { return 1.0f / (border.half_gap_m * border.half_gap_m); }
   /// Is a border's step one height from one place to another, (dx, dy) from it?
@@ -98,16 +101,18 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   const Border& b = borders.at(last);
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = stages.beyond(a);
+  const float open_share = CurbPiece::open_share(borders, first, last);
+  const auto share_of = [&](const Border& border) { return border.open ? open_share : 1.0f; };
   CurbPiece piece;
-  piece.borders = static_cast<float>(last - first + 1);
-  const float n = piece.borders, each = 1.0f / n;
+  for (int k = first; k <= last; ++k) piece.borders += share_of(borders.at(k));
+  const float n = piece.borders;
   LineFit fit;
   float told = 0.0f;
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
-    const float x_m = border.x_m, y_m = border.y_m;
-    fit.add(x_m, y_m, weight(border));
+    const float x_m = border.x_m, y_m = border.y_m, share = share_of(border), each = share / n;
+    fit.add(x_m, y_m, weight(border) * share);
     piece.drop_m += each * border.drop_m;
     piece.variance_m2 += each * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += each * border.probability;
@@ -115,30 +120,44 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
-    told += weight(border) / border.half_gap_m * dem.cell_m(border.axis);
+    const float own_m =
+        border.open ? 2.0f * border.half_gap_m : dem.cell_m(border.axis);  // how much of a gap tells alike
+    told += share * weight(border) / border.half_gap_m * own_m;
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
   // Each lies anywhere in its gap, on its own; those without a far plane as little known as one of them.
   piece.borders_variance_m2 = (1.0f / 3) * (a.high == no_label ? n : 1.0f) / fit.weight();
-  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own.
+  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. One that is
+  // open lies anywhere in its gap.
   piece.told_variance_m2 = (1.0f / 6) * told / square(fit.weight());
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   piece.line = first == last ? LineFit::across(a.x_m, a.y_m, a.axis, half_cell_m)
                              : fit.segment(a.x_m, a.y_m, b.x_m, b.y_m, half_cell_m);
+  const float grown = fit.grown(0.5f * (piece.line.x0_m + piece.line.x1_m), 0.5f * (piece.line.y0_m + piece.line.y1_m));
+  piece.borders_variance_m2 *= grown;
+  piece.told_variance_m2 *= grown;
   const float dx_m = piece.line.x1_m - piece.line.x0_m, dy_m = piece.line.y1_m - piece.line.y0_m;
   piece.low_is_right = dx_m * toward_y - dy_m * toward_x >= 0.0f;
   piece.low_is_near = a.high == no_label || piece.low_is_right == piece.has_right(stages.view);
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
-    const float across = each * (cosine < 0.0f ? -cosine : cosine);
+    const float across = share_of(border) / n * (cosine < 0.0f ? -cosine : cosine);
     piece.gap_m += 2.0f * border.half_gap_m * across;
     piece.cell_m += dem.cell_m(border.axis) * across;
   }
   return piece;
+}
+
+template <Limits limits>
+float CurbPiece<limits>::open_share(const Borders<limits>& borders, int first, int last) {
+  int open = 0;
+  for (int k = first; k <= last; ++k) open += borders.at(k).open;
+  if (open == 0 || open > last - first) return 1.0f;
+  return 1.0f / static_cast<float>(open);
 }
 
 template <Limits limits>

@@ -176,19 +176,26 @@ void CurbTracer<limits>::cut(const Stages& stages, int length, Work& work, Count
 
 /// The last border of the first of two lines that follow the others better than one does, -1 if one is enough: by the
 /// evidence of how far they lie off, in half gaps, normal noise of unknown variance, before it is seen with the weight
-/// of four as if each lay anywhere within its gap. Another line has two parameters and a place to begin, each of which
-/// costs half the logarithm of the number of borders (Schwarz 1978). Two borders always lie on a line: it takes three
-/// to follow one.
+/// of four as if each lay anywhere within its gap. All open borders are one observation together. Another line has two
+/// parameters and a place to begin, each of which costs half the logarithm of the number of borders (Schwarz 1978). Two
+/// borders always lie on a line: it takes three to follow one.
 template <Limits limits>
 int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last) {
   LineFit before, after;
-  for (int k = first; k <= last; ++k) after.add(borders.at(k).x_m, borders.at(k).y_m, Piece::weight(borders.at(k)));
+  const float open_share = Piece::open_share(borders, first, last);
+  const auto weight = [&](const Border& border) { return Piece::weight(border) * (border.open ? open_share : 1.0f); };
+  float n = 0.0f;
+  for (int k = first; k <= last; ++k) {
+    const Border& border = borders.at(k);
+    after.add(border.x_m, border.y_m, weight(border));
+    n += border.open ? open_share : 1.0f;
+  }
   const float one = after.squares();
   float two = one;
   int found = -1;
   for (int k = first; k <= last - 3; ++k) {
     const Border& border = borders.at(k);
-    const float border_weight = Piece::weight(border);
+    const float border_weight = weight(border);
     before.add(border.x_m, border.y_m, border_weight);
     after.remove(border.x_m, border.y_m, border_weight);
     if (k < first + 2) continue;
@@ -198,7 +205,6 @@ int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last
     found = k;
   }
   if (found < 0) return -1;
-  const auto n = static_cast<float>(last - first + 1);
   const float gain =
       (Piece::place_a0 + 0.5f * n) * log((Piece::place_prior + one) / (Piece::place_prior + two)) - 1.5f * log(n);
   return gain > 0.0f ? found : -1;

@@ -24,6 +24,8 @@ class LineFit {
   float weight() const { return weight_; }
   /// Sum of the points' squared distances from the line, by weight.
   float squares() const;
+  /// By how much the variance of where the line lies grows from the mean of its points to another place on it.
+  float grown(float x_m, float y_m) const;
   /// Mean of the points.
   float x_m() const { return x_; }
   float y_m() const { return y_; }

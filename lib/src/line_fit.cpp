@@ -10,6 +10,11 @@ float LineFit::squares() const {
   return squares > 0.0f ? squares : 0.0f;
 }
 
+float LineFit::grown(float x_m, float y_m) const {
+  const float dx_m = x_m - x_, dy_m = y_m - y_, along = xx_ + yy_ - squares();
+  return along > 0.0f ? 1.0f + weight_ * (dx_m * dx_m + dy_m * dy_m) / along : 1.0f;
+}
+
 LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const {
   // Eigenvector of the larger eigenvalue of the scatter, from whichever row keeps more digits.
   const float half_difference = 0.5f * (xx_ - yy_);

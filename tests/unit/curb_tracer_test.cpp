@@ -262,6 +262,48 @@ TEST_CASE("curb tracer: where a shadow hides one of its sides a curb stays where
   CHECK(length_m(curb) == Approx(2.4).margin(0.02));
 }
 
+//  y  near  |  |   a box and what it hides, three quarters of it on the near side of the edge
+//  |  near  |__|
+//  |  near       |   12 cm higher
+constexpr double box_m = 0.4;
+auto behind_box(double from_y) {
+  return [from_y](double x, double y) {
+    if (y > from_y && y < 2.2 && x > 1.1 && x < 1.2) return box_m;
+    return y > from_y && x > 1.1 && x < 1.5 ? std::nan("") : up(x, y);
+  };
+}
+
+TEST_CASE("curb tracer: behind what stands before it a curb goes on straight, wherever in what is hidden it lies") {
+  const auto stages = traced(behind_box(1.6), 0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.x0_m == Approx(1.4).margin(0.02));
+  CHECK(curb.x1_m == Approx(1.4).margin(0.02));
+  CHECK(length_m(curb) == Approx(2.4).margin(0.05));
+}
+
+TEST_CASE("curb tracer: a corner behind what hides it is one all the same") {
+  // The edge turns away by 45 degrees where the box begins: a straight one would lie far outside what is hidden.
+  const auto stages = traced(
+      [](double x, double y) {
+        const double edge = y < 1.2 ? 1.0 : 1.0 + (y - 1.2), beyond = x - edge;
+        if (y > 1.2 && beyond > -0.25 && beyond < -0.15) return box_m;
+        return y > 1.2 && beyond > -0.25 && beyond < 0.1 ? std::nan("") : beyond < 0.0 ? 0.0 : 0.12;
+      },
+      0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 2);
+  for (const Curb& curb : stages->tracer.curbs())
+    CHECK(std::fabs(curb.x1_m - curb.x0_m) == Approx(curb.y1_m > 1.5f || curb.y0_m > 1.5f ? 1.2 : 0.0).margin(0.25));
+}
+
+TEST_CASE("curb tracer: the place of a curb of which an obstacle hides most is known less well") {
+  const auto sd_m = [](double from_y) {
+    return traced(behind_box(from_y), 0.0f, 1.2f)->tracer.curbs()[0].position_sd_m;
+  };
+  CHECK(traced(behind_box(0.6), 0.0f, 1.2f)->tracer.curbs().size() == 1);
+  CHECK(sd_m(0.6) > 2.0f * sd_m(1.8));
+}
+
 TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of which the height holds") {
   const auto step_m = [](double y) { return 0.03 + 0.05 * y; };
   const auto stages = traced([&](double x, double y) { return x < 1.4 ? 0.0 : step_m(y); });

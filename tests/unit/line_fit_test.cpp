@@ -38,6 +38,13 @@ TEST_CASE("line fit: points count by their weight, and no more once they are rem
   CHECK(before == Approx(4 * 0.01 * 0.01 * 0.2).epsilon(0.01));  // (1, 1, -1, -1) about its slope: a fifth is left
 }
 
+TEST_CASE("line fit: a line is known the less, the farther from its points") {
+  LineFit fit;
+  for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) fit.add(x, 0.0f);
+  CHECK(fit.grown(1.5f, 0.0f) == Approx(1.0));
+  CHECK(fit.grown(4.5f, 0.0f) == Approx(1 + 4 * 9 / 5.0));  // n d^2 over the scatter
+}
+
 TEST_CASE("line fit: points in one place have no direction and stay that place") {
   LineFit fit;
   for (int k = 0; k < 3; ++k) fit.add(1.0f, 2.0f);
