@@ -360,7 +360,8 @@ auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
 
 /// Along the line, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
 /// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell. What
-/// stands on the ground, and what it hides, tells nothing: the edge lies anywhere in the gap then.
+/// stands on the ground, and what it hides, tells nothing. What cells tell is off by anything within each, on its own;
+/// in what stands there the edge lies anywhere: if that is the larger, the border is open.
 template <Limits limits>
 auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   const Line& line = gap.line;
@@ -372,7 +373,7 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   const Plane& second = mixture_.plane(gap.second.label);
   const float step_m = second.height_m(halfway.x_m, halfway.y_m) - first.height_m(halfway.x_m, halfway.y_m);
   float before = 0.0f;  // in cells, from the first one's near side
-  bool covered = false;
+  float covered = 0.0f;
   int empty = -1;  // one of them
   for (int along = gap.first.along; along <= gap.second.along; ++along) {
     const int s = slot(line, along);
@@ -381,13 +382,13 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
       empty = along;
       before += 0.5f;
     } else if (mixture_.covered(s)) {
-      covered = true;
+      covered += 1.0f;
       before += 0.5f;
     } else {
       before += before_middle({above_m(line, along, first) / step_m, 0.5f + offset(line, cell)});
     }
   }
-  const bool open = covered || (empty >= 0 && behind_obstacle(gap, empty));
+  const bool open = covered * covered > cells - covered || (empty >= 0 && behind_obstacle(gap, empty));
   if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open};
   before = before < 0.0f ? 0.0f : before > cells ? cells : before;
   return {(static_cast<float>(gap.first.along) + before) * cell_m, open};

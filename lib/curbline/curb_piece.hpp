@@ -120,9 +120,8 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
-    const float own_m =
-        border.open ? 2.0f * border.half_gap_m : dem.cell_m(border.axis);  // how much of a gap tells alike
-    told += share * weight(border) / border.half_gap_m * own_m;
+    told +=
+        share * weight(border) / border.half_gap_m * (border.open ? 2.0f * border.half_gap_m : dem.cell_m(border.axis));
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
