@@ -259,16 +259,14 @@ float CurbTracer<limits>::height_variance_m2(const Stages& stages, const Border&
          square(slope) * piece.place_variance_m2 + square(hidden_m) * (1.0f / 3);
 }
 
-/// Of a piece's middle, across it. What the points of a place share of their errors, tilt, mount and pose of the lines
-/// that saw it, shifts all borders of a step alike.
+/// Of a piece's middle, across it.
 template <Limits limits>
 float CurbTracer<limits>::place_variance_m2(const Stages& stages, const Border& border, const Piece& piece,
                                             const Curb& curb, float height_variance_m2) {
   if (!is_step(curb) || border.high == no_label) return piece.borders_variance_m2;
   const float cell_variance_m2 =
       0.5f * (stages.mixture.plane(border.low).fit_variance_m2 + stages.mixture.plane(border.high).fit_variance_m2);
-  return piece.told_variance_m2 + stages.dem.prior().common_m2() +
-         piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
+  return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
 }
 
 /// By how much more a plane errs beside a piece than its fit says, which takes what cells share for the same wherever

@@ -460,16 +460,15 @@ TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its ed
 }
 
 /// Variance of a step's place, of 24 borders in gaps of a cell of 10 cm, but for what its height leaves open: each
-/// anywhere within half a cell, off by a cell's own error as a share of the step, and all by what points share.
+/// anywhere within half a cell, off by a cell's own error as a share of the step.
 double place_variance_m2(const Stages<>& stages, const Curb& curb) {
   const double cells_m2 = 0.5 * static_cast<double>(stages.mixture.plane(curb.near_label).fit_variance_m2 +
                                                     stages.mixture.plane(curb.far_label).fit_variance_m2);
   const double step_m2 = static_cast<double>(curb.height_m * curb.height_m);
-  return 0.05 * 0.05 / (3.0 * 24.0) + 0.2 * 0.1 * cells_m2 / step_m2 / 24.0 +
-         static_cast<double>(stages.dem.prior().common_m2());
+  return 0.05 * 0.05 / (3.0 * 24.0) + 0.2 * 0.1 * cells_m2 / step_m2 / 24.0;
 }
 
-TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number, and what they share") {
+TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of their number") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
