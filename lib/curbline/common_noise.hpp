@@ -56,9 +56,10 @@ class CommonNoise {
   /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
   /// as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(), of the patches again
-  /// the one that a quarter lie below: near the laser that is small, and what ground is uneven makes it large. 0 as
-  /// long as there is no plane.
+  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(). Near the laser that is
+  /// small, and what ground is uneven makes its share large; so each patch is weighed by it, too, as where the sum of
+  /// the one is divided by that of the other. Of these the middle one, for no curb is missed for it; 0 as long as there
+  /// is no plane.
   float line_rad2() const;
 
  private:
@@ -74,12 +75,17 @@ class CommonNoise {
   struct Patch {
     float cells = 0.0f;  ///< 0: too few to tell
     float common_m2 = 0.0f;
-    float line_rad2 = 0.0f;     ///< that over Viewpoint::reach_m2()
+    float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
-  float quarter(float Patch::*of) const;
+  using Patches = std::array<Patch, patch_rows * patches_in_row>;
+  struct Shown {
+    float value = 0.0f, weight = 0.0f;
+  };
+  template <typename Show>
+  float quantile(float share, Show&& show) const;
 
-  std::array<Patch, patch_rows * patches_in_row> patches_{};
+  Patches patches_{};
   int first_row_ = 0;  ///< of those that are next
 };
 
@@ -116,8 +122,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
     const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
     const float cells = residuals[k].cells, common_m2 = residuals[k].common_m2();
-    const float reach_m2 = view.reach_m2(x_m, y_m, 0.0f, points[k] / cells);
-    *patch = {cells, common_m2, reach_m2 > 0.0f ? common_m2 / reach_m2 : 0.0f, growth_m2_s2[k]};
+    *patch = {cells, common_m2, view.reach_m2(x_m, y_m, 0.0f, points[k] / cells), growth_m2_s2[k]};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -131,30 +136,40 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
     growth_m2_s2 += patch.growth_m2_s2;
   }
   if (!(cells > 0.0f)) return prior.common_m2();
-  const float common_m2 = quarter(&Patch::common_m2) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
+  const float common_m2 = quantile(0.25f,
+                                   [](const Patch& patch) {
+                                     return Shown{patch.common_m2, patch.cells};
+                                   }) +
+                          latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
   const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
   return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
 }
 
 template <Limits limits>
 float CommonNoise<limits>::line_rad2() const {
-  return quarter(&Patch::line_rad2);
+  return quantile(0.5f, [](const Patch& patch) {
+    return patch.reach_m2 > 0.0f ? Shown{patch.common_m2 / patch.reach_m2, patch.cells * patch.reach_m2} : Shown{};
+  });
 }
 
-/// Of what patches show, each weighed by its cells, what a quarter of them lie below; 0 if there is none.
+/// Of what patches show, each of its weight, what a share of the weight lies below; 0 if there is none.
 template <Limits limits>
-float CommonNoise<limits>::quarter(float Patch::*of) const {
-  std::array<float, patch_rows * patches_in_row> left{};  // cells
-  float cells = 0.0f, found = 0.0f;
-  for (std::size_t k = 0; k < left.size(); ++k) cells += left[k] = patches_[k].cells;
-  for (float passed = 0.0f; passed < 0.25f * cells;) {  // the least first, each once
-    std::size_t least = left.size();
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      if (left[k] > 0.0f && (least == left.size() || patches_[k].*of < patches_[least].*of)) least = k;
+template <typename Show>
+float CommonNoise<limits>::quantile(float share, Show&& show) const {
+  std::array<Shown, std::tuple_size_v<Patches>> left;
+  float all = 0.0f, found = 0.0f;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    left[k] = show(patches_[k]);
+    all += left[k].weight;
+  }
+  for (float passed = 0.0f; passed < share * all;) {  // the least first, each once
+    Shown* least = nullptr;
+    for (Shown& shown : left) {
+      if (shown.weight > 0.0f && (least == nullptr || shown.value < least->value)) least = &shown;
     }
-    found = patches_[least].*of;
-    passed += left[least];
-    left[least] = 0.0f;
+    found = least->value;
+    passed += least->weight;
+    least->weight = 0.0f;
   }
   return found;
 }

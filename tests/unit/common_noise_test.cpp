@@ -186,7 +186,7 @@ TEST_CASE("common noise: ground that is uneven alike everywhere is not taken for
   test::fill(stages.dem, even);
   stages.infer(true);
   const float there_m2 = noise_of(stages).line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
-  CHECK(there_m2 < 1.5f * 1e-6f);  // by the middle one of the patches twice as much
+  CHECK(there_m2 < 1.5f * 1e-6f);  // as the middle one of patches that weigh alike has it, twice as much
 }
 
 TEST_CASE("common noise: cells err by the less, the more points they hold, of a robot that drives at any distance") {
