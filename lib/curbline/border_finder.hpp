@@ -94,7 +94,7 @@ class BorderFinder {
   /// Of what parts the planes.
   struct Middle {
     float along_m;
-    bool open;  ///< no cells tell it
+    bool open;  ///< Borders::Border::open
   };
   Middle middle(const Gap& gap) const;
   bool behind_obstacle(const Gap& gap, int along) const;
@@ -361,7 +361,7 @@ auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
 /// Along the line, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
 /// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell. What
 /// stands on the ground, and what it hides, tells nothing. What cells tell is off by anything within each, on its own;
-/// in what stands there the edge lies anywhere: if that is the larger, the border is open.
+/// in what stands there the edge lies anywhere: if that is the larger, or a cell is hidden, the border is open.
 template <Limits limits>
 auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   const Line& line = gap.line;
@@ -395,11 +395,15 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
 }
 
 /// Does something that stands on the ground hide a cell of a gap, from where the gap's far side was seen? On the way
-/// there a cell that bears no ground lies above the plane of the near side.
+/// there a cell that bears no ground lies above the planes of both sides: the face of a step up lies between them.
 template <Limits limits>
 bool BorderFinder<limits>::behind_obstacle(const Gap& gap, int along) const {
   const bool ahead = away(gap.line, gap.first.along) > 0;
   const Plane& near = mixture_.plane((ahead ? gap.first : gap.second).label);
+  const Plane& far = mixture_.plane((ahead ? gap.second : gap.first).label);
+  const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
+    return dem_.above_m(i, j, cell, plane) > 0.0f && !lies_on(i, j, cell, plane);
+  };
   const Viewpoint from = dem_.seen_from(slot(gap.line, (ahead ? gap.second : gap.first).along), view_);
   const Border middle = border_at(gap.line, (static_cast<float>(along) + 0.5f) * pitch_m(gap.line));
   const float dx = (from.x_m - middle.x_m) / dem_.cell_x_m(), dy = (from.y_m - middle.y_m) / dem_.cell_y_m();
@@ -413,7 +417,7 @@ bool BorderFinder<limits>::behind_obstacle(const Gap& gap, int along) const {
     const int s = dem_.slot(i, j);
     const Cell& cell = dem_.cell(s);
     if (!cell.valid() || bears_ground(s)) continue;
-    if (dem_.above_m(i, j, cell, near) > 0.0f && !lies_on(i, j, cell, near)) return true;
+    if (above(i, j, cell, near) && above(i, j, cell, far)) return true;
   }
   return false;
 }

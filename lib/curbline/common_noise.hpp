@@ -65,7 +65,7 @@ class CommonNoise {
  private:
   static constexpr int side = PatchResiduals::side;
   static constexpr std::size_t patches_in_row = (limits.cols + side - 1) / side;
-  static constexpr std::size_t patch_rows = (limits.rows + side - 1) / side;
+  static constexpr std::size_t patches = (limits.rows + side - 1) / side * patches_in_row;
 
   struct Seen {
     Label label = no_label;
@@ -78,14 +78,13 @@ class CommonNoise {
     float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
-  using Patches = std::array<Patch, patch_rows * patches_in_row>;
+  /// What a patch shows, and what it weighs.
   struct Shown {
-    float value = 0.0f, weight = 0.0f;
+    float value, weight;
   };
-  template <typename Show>
-  float quantile(float share, Show&& show) const;
+  static float quantile(std::array<Shown, patches> left, float share);
 
-  Patches patches_{};
+  std::array<Patch, patches> patches_{};
   int first_row_ = 0;  ///< of those that are next
 };
 
@@ -130,38 +129,34 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
 
 template <Limits limits>
 float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s) const {
+  std::array<Shown, patches> shown;
   float cells = 0.0f, growth_m2_s2 = 0.0f;
-  for (const Patch& patch : patches_) {
-    cells += patch.cells;
-    growth_m2_s2 += patch.growth_m2_s2;
+  for (std::size_t k = 0; k < patches; ++k) {
+    shown[k] = {patches_[k].common_m2, patches_[k].cells};
+    cells += patches_[k].cells;
+    growth_m2_s2 += patches_[k].growth_m2_s2;
   }
   if (!(cells > 0.0f)) return prior.common_m2();
-  const float common_m2 = quantile(0.25f,
-                                   [](const Patch& patch) {
-                                     return Shown{patch.common_m2, patch.cells};
-                                   }) +
-                          latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
+  const float common_m2 = quantile(shown, 0.25f) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
   const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
   return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
 }
 
 template <Limits limits>
 float CommonNoise<limits>::line_rad2() const {
-  return quantile(0.5f, [](const Patch& patch) {
-    return patch.reach_m2 > 0.0f ? Shown{patch.common_m2 / patch.reach_m2, patch.cells * patch.reach_m2} : Shown{};
-  });
+  std::array<Shown, patches> shown;
+  for (std::size_t k = 0; k < patches; ++k) {
+    const float reach_m2 = patches_[k].reach_m2;
+    shown[k] = {reach_m2 > 0.0f ? patches_[k].common_m2 / reach_m2 : 0.0f, patches_[k].cells * reach_m2};
+  }
+  return quantile(shown, 0.5f);
 }
 
-/// Of what patches show, each of its weight, what a share of the weight lies below; 0 if there is none.
+/// What a share of the weight lies below; 0 if there is none.
 template <Limits limits>
-template <typename Show>
-float CommonNoise<limits>::quantile(float share, Show&& show) const {
-  std::array<Shown, std::tuple_size_v<Patches>> left;
+float CommonNoise<limits>::quantile(std::array<Shown, patches> left, float share) {
   float all = 0.0f, found = 0.0f;
-  for (std::size_t k = 0; k < left.size(); ++k) {
-    left[k] = show(patches_[k]);
-    all += left[k].weight;
-  }
+  for (const Shown& shown : left) all += shown.weight;
   for (float passed = 0.0f; passed < share * all;) {  // the least first, each once
     Shown* least = nullptr;
     for (Shown& shown : left) {

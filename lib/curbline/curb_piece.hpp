@@ -50,7 +50,8 @@ struct CurbPiece {
   float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
-  float borders = 0.0f;                ///< how many, those that are open as one
+  float borders = 0.0f;                ///< how many
+  float observations = 0.0f;           ///< as how many they weigh, see share()
   float place_variance_m2 = 0.0f;      ///< of a border, across the line
   float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
   float told_variance_m2 = 0.0f;       ///< the same of a step, whose cells tell where in the gap it lies
@@ -63,6 +64,7 @@ struct CurbPiece {
   /// What an open border weighs beside the others. Those of one shadow err alike: all together they weigh as one,
   /// unless there are no others.
   static float open_share(const Borders<limits>& borders, int first, int last);
+  static float share(const Border& border, float open_share) { return border.open ? open_share : 1.0f; }
   /// Of a border in the line.
   static float weight(const Border& border) { return 1.0f / (border.half_gap_m * border.half_gap_m); }
   /// Is a border's step one height from one place to another, (dx, dy) from it?
@@ -79,7 +81,7 @@ struct CurbPiece {
     const float each = 1.0f / square(step_m);
     const float all = height_variance_m2 * each, own = cell_variance_m2 * each;
     return square(0.5f * gap_m) * (all < 1.0f ? all : 1.0f) +
-           (gap_m + cell_m) * cell_m * (own < 1.0f ? own : 1.0f) / borders;
+           (gap_m + cell_m) * cell_m * (own < 1.0f ? own : 1.0f) / observations;
   }
   /// Does it look from the right of the line?
   bool has_right(const Viewpoint& view) const {
@@ -102,17 +104,18 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   const Plane& low = stages.mixture.plane(a.low);
   const Plane& high = stages.beyond(a);
   const float open_share = CurbPiece::open_share(borders, first, last);
-  const auto share_of = [&](const Border& border) { return border.open ? open_share : 1.0f; };
   CurbPiece piece;
-  for (int k = first; k <= last; ++k) piece.borders += share_of(borders.at(k));
-  const float n = piece.borders;
+  piece.borders = static_cast<float>(last - first + 1);
+  for (int k = first; k <= last; ++k) piece.observations += share(borders.at(k), open_share);
+  const float n = piece.observations;
   LineFit fit;
-  float told = 0.0f;
+  float told = 0.0f, open = 0.0f;
+  bool alike = true;                       // do they err: each is open, or has no far plane
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
-    const float x_m = border.x_m, y_m = border.y_m, share = share_of(border), each = share / n;
-    fit.add(x_m, y_m, weight(border) * share);
+    const float x_m = border.x_m, y_m = border.y_m, own = share(border, open_share), each = own / n;
+    fit.add(x_m, y_m, weight(border) * own);
     piece.drop_m += each * border.drop_m;
     piece.variance_m2 += each * (high.height_variance_m2(x_m, y_m) + low.height_variance_m2(x_m, y_m));
     piece.probability += each * border.probability;
@@ -120,16 +123,20 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
     piece.beside_low.add(border.beside_low);
     piece.beside_high.add(border.beside_high);
     (border.axis == 0 ? toward_x : toward_y) += border.sign;
-    told +=
-        share * weight(border) / border.half_gap_m * (border.open ? 2.0f * border.half_gap_m : dem.cell_m(border.axis));
+    if (border.open) {
+      open += own / border.half_gap_m;
+    } else {
+      told += weight(border) / border.half_gap_m * dem.cell_m(border.axis);
+    }
+    alike = alike && (border.open || a.high == no_label);
   }
   // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
   piece.place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
-  // Each lies anywhere in its gap, on its own; those without a far plane as little known as one of them.
-  piece.borders_variance_m2 = (1.0f / 3) * (a.high == no_label ? n : 1.0f) / fit.weight();
-  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. One that is
-  // open lies anywhere in its gap.
-  piece.told_variance_m2 = (1.0f / 6) * told / square(fit.weight());
+  // Each lies anywhere in its gap, on its own; those that err alike are as little known as one of them.
+  piece.borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight();
+  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. Open ones lie
+  // anywhere in their gaps, all alike.
+  piece.told_variance_m2 = ((1.0f / 6) * told + (1.0f / 3) * square(open)) / square(fit.weight());
   piece.x_m = fit.x_m();
   piece.y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
@@ -144,7 +151,7 @@ auto CurbPiece<limits>::of(const Stages& stages, const Borders<limits>& borders,
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     const float cosine = border.axis == 0 ? piece.line.normal_x : piece.line.normal_y;
-    const float across = share_of(border) / n * (cosine < 0.0f ? -cosine : cosine);
+    const float across = share(border, open_share) / n * (cosine < 0.0f ? -cosine : cosine);
     piece.gap_m += 2.0f * border.half_gap_m * across;
     piece.cell_m += dem.cell_m(border.axis) * across;
   }

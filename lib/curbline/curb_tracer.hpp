@@ -1,8 +1,9 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height.
 // Each tells how much higher the far plane is, and keeps its number from call to call. Cost: two passes over the
-// window, a third where there is a deep drop, 50 look-ups a border point, 60 operations for each border of what is left
-// of a chain and each of its pieces, and 20 for each pair of curbs, and of one and one of the call before.
+// window, a third where there is a deep drop, 50 look-ups a border point, as many again for one with an empty cell in
+// its gap, 60 operations for each border of what is left of a chain and each of its pieces, and 20 for each pair of
+// curbs, and of one and one of the call before.
 #pragma once
 
 #include <algorithm>
@@ -183,12 +184,12 @@ template <Limits limits>
 int CurbTracer<limits>::bend(const Borders<limits>& borders, int first, int last) {
   LineFit before, after;
   const float open_share = Piece::open_share(borders, first, last);
-  const auto weight = [&](const Border& border) { return Piece::weight(border) * (border.open ? open_share : 1.0f); };
+  const auto weight = [&](const Border& border) { return Piece::weight(border) * Piece::share(border, open_share); };
   float n = 0.0f;
   for (int k = first; k <= last; ++k) {
     const Border& border = borders.at(k);
     after.add(border.x_m, border.y_m, weight(border));
-    n += border.open ? open_share : 1.0f;
+    n += Piece::share(border, open_share);
   }
   const float one = after.squares();
   float two = one;

@@ -102,8 +102,8 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
     ++counters_.dropped;
   }
   const auto slot = static_cast<std::size_t>((oldest_ + size_++) % capacity);
-  const auto beams_after_first = static_cast<std::int64_t>(beams > 1 ? beams - 1 : 0);
-  entries_[slot] = {line.time_ns, line.time_ns + beams_after_first * beam_interval_ns_, now_ns, beams};
+  const std::int64_t last_beam_ns = line.time_ns + LaserSettings::duration_ns(beams, beam_interval_ns_);
+  entries_[slot] = {line.time_ns, last_beam_ns, now_ns, beams};
   std::copy(line.ranges_m.begin(), line.ranges_m.end(), ranges_m_[slot].begin());
   return true;
 }

@@ -36,7 +36,7 @@ constexpr bool is_finite(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u;
 }
 
-/// The nearest float, as a conversion makes it. Of 64 bits no core has an instruction for that, and the compiler's own
+/// The nearest float, as a conversion makes it. A core of 32 bits has no instruction for that, and the compiler's own
 /// function brings the sums of soft-float with it: 500 bytes of flash.
 float to_float(std::int64_t x);
 

@@ -43,8 +43,9 @@ struct LaserSettings {
   /// Between two beams, in whole nanoseconds.
   std::int64_t beam_interval_ns() const { return static_cast<std::int64_t>(beam_interval_s * 1e9f + 0.5f); }
   /// From the first beam of a line to the last of so many.
-  std::int64_t duration_ns(std::size_t count) const {
-    return count > 1 ? static_cast<std::int64_t>(count - 1) * beam_interval_ns() : 0;
+  std::int64_t duration_ns(std::size_t count) const { return duration_ns(count, beam_interval_ns()); }
+  static std::int64_t duration_ns(std::size_t count, std::int64_t interval_ns) {
+    return count > 1 ? static_cast<std::int64_t>(count - 1) * interval_ns : 0;
   }
 };
 

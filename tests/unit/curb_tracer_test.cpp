@@ -266,9 +266,9 @@ TEST_CASE("curb tracer: where a shadow hides one of its sides a curb stays where
 //  |  near  |__|
 //  |  near       |   12 cm higher
 constexpr double box_m = 0.4;
-auto behind_box(double from_y) {
-  return [from_y](double x, double y) {
-    if (y > from_y && y < 2.2 && x > 1.1 && x < 1.2) return box_m;
+auto behind_box(double from_y, double to_y = 2.2) {
+  return [=](double x, double y) {
+    if (y > from_y && y < to_y && x > 1.1 && x < 1.2) return box_m;
     return y > from_y && x > 1.1 && x < 1.5 ? std::nan("") : up(x, y);
   };
 }
@@ -297,11 +297,25 @@ TEST_CASE("curb tracer: a corner behind what hides it is one all the same") {
 }
 
 TEST_CASE("curb tracer: the place of a curb of which an obstacle hides most is known less well") {
-  const auto sd_m = [](double from_y) {
-    return traced(behind_box(from_y), 0.0f, 1.2f)->tracer.curbs()[0].position_sd_m;
+  const auto sd_m = [](double from_y, double to_y = 2.2) {
+    return traced(behind_box(from_y, to_y), 0.0f, 1.2f)->tracer.curbs()[0].position_sd_m;
   };
   CHECK(traced(behind_box(0.6), 0.0f, 1.2f)->tracer.curbs().size() == 1);
   CHECK(sd_m(0.6) > 2.0f * sd_m(1.8));
+  CHECK(sd_m(-1.0, 9.0) > sd_m(0.6));  // all of it
+}
+
+TEST_CASE("curb tracer: a kerb's face is no obstacle before what lies behind it") {
+  const auto stages = traced(
+      [](double x, double y) {
+        if (x > 1.1 && x < 1.2 && static_cast<int>(10.0 * y) % 4 == 1) return std::nan("");
+        return x < 1.0 ? 0.0 : x < 1.05 ? 0.03 : x < 1.1 ? 0.11 : 0.14;
+      },
+      0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const auto& borders = stages->work.curbs().borders;  // one chain
+  REQUIRE(borders.size() == 24);
+  for (int k = 0; k < borders.size(); ++k) CHECK(!borders.at(k).open);
 }
 
 TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of which the height holds") {
