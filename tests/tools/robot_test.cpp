@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <regex>
+#include <vector>
 
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
@@ -291,7 +292,37 @@ TEST_CASE("robot: a key or a word of any length leaves the message short, and on
     CHECK(error.find("deep") != std::string::npos);
     CHECK(error.starts_with(text[0] == '\n' ? "r.toml:2: " : "r.toml:1: "));
   }
-  CHECK(parsed("# " + std::string(300, '.') + "\nname = \"" + std::string(300, '.') + "\"\n").name.size() == 300);
+  const std::string dots(300, '.');
+  CHECK(parsed("# " + dots + "\nname = \"" + dots + "\"\n").name.size() == 300);
+}
+
+TEST_CASE("robot: a key is as deep behind a string of any kind, and what is in the string is none") {
+  std::string deep = "k";
+  for (int i = 0; i < 200'000; ++i) deep += ".k";
+  const std::vector<std::string> strings{R"("")",       R"("\\")",     R"("\"#")",        R"("'")",
+                                         "''",          R"('\')",      R"('"')",  // of one line, and of several
+                                         R"("""""")",   R"(""""""")",  R"("""""""")",     R"("""" "" """)",
+                                         R"("""\"""")", R"("""\\""")", "\"\"\"\nx\"\"\"", "\"\"\"\\\n#\"\"\"",
+                                         "''''''",      "'''''''",     "''''''''",        R"('''\''')",
+                                         "'''\n\"\n'''"};
+  for (const std::string& before : strings) {
+    const std::string error = error_in("a = {b = " + before + ", " + deep + " = 1}\n");
+    INFO(before << "\n" << error);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    CHECK(error.starts_with("r.toml:" + std::to_string(line) + ": a key is too deep"));
+  }
+  CHECK(error_in("a = {\"\"." + deep + " = 1}\n").starts_with("r.toml:1: a key is too deep"));
+  CHECK(error_in("# it's \"\"\"\n" + deep + " = 1\n").starts_with("r.toml:2: a key is too deep"));
+  const std::string dots(300, '.');
+  for (const std::string quotes : {"\"\"\"", "'''"}) {
+    CHECK(parsed("name = " + quotes + "\n" + dots + "\n" + quotes + "\n").name == dots + "\n");
+    CHECK(parsed("name = " + quotes + quotes[0] + dots + quotes + quotes[0] + "  # " + dots + "\n").name ==
+          quotes[0] + dots + quotes[0]);
+    CHECK(error_in("name = " + quotes + "\n" + dots + "\n" + quotes + "\nbeams = 1\n")
+              .starts_with("r.toml:4: unknown key"));
+    CHECK(error_in("name = " + quotes + dots).starts_with("r.toml:1: "));
+  }
+  CHECK(error_in("name = \"" + dots + "\nbeams = 1\n").starts_with("r.toml:1: "));
 }
 
 TEST_CASE("robot: what is no TOML, or cannot be read, is refused") {

@@ -1,5 +1,6 @@
 #include "formats/toml_table.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "formats/bad_input.hpp"
@@ -55,27 +56,46 @@ std::string shown(const toml::node& node) {
   return in_one_line(text.str());
 }
 
+/// Position behind a string that begins at text[i]. One of a single line ends with it if nothing closes it.
+std::size_t behind_string(std::string_view text, std::size_t i) {
+  const char quote = text[i];
+  const bool multi_line = text.substr(i, 3) == std::string(3, quote);
+  for (i += multi_line ? 3 : 1; i < text.size(); ++i) {
+    if (text[i] == '\n' && !multi_line) return i;
+    if (text[i] == '\\' && quote == '"' && (multi_line || text.substr(i + 1, 1) != "\n")) {
+      ++i;
+    } else if (text[i] == quote) {
+      if (!multi_line) return i + 1;
+      const std::size_t quotes = std::min(text.find_first_not_of(quote, i), text.size()) - i;
+      if (quotes >= 3) return i + std::min<std::size_t>(quotes, 5);  // two may be the string's own
+    }
+  }
+  return text.size();
+}
+
 /// toml++ calls itself for each part of a dotted key, and the stack ends. Values it counts itself, to 256 too.
 void refuse_deep_keys(std::string_view text, const std::string& path) {
   constexpr int most = 256;
   long line = 1;
   int dots = 0;  // of what may be a key
-  char quote = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
-    if (c == '\n') {
-      ++line;
-      dots = quote = 0;
-    } else if (quote != 0) {
-      if (c == quote) quote = 0;
-      if (c == '\\' && quote == '"' && text.substr(i + 1, 1) != "\n") ++i;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '#') {
-      quote = '\n';  // a comment ends with its line
-    } else if (c == '.') {
+    if (c == '"' || c == '\'') {
+      const std::size_t end = behind_string(text, i);
+      const std::string_view string = text.substr(i, end - i);
+      line += static_cast<long>(std::count(string.begin(), string.end(), '\n'));
+      i = end;
+      continue;
+    }
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    ++i;
+    line += c == '\n';
+    if (c == '.') {
       if (++dots >= most) throw BadInput(path, line, "a key is too deep; expected at most 256 parts");
-    } else if (std::string_view("=,[]{}").find(c) != std::string_view::npos) {
+    } else if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) {
       dots = 0;
     }
   }
