@@ -100,6 +100,10 @@ class Budget(unittest.TestCase):
                         budget.check({**good, group: {**others, **wrong}}, "budget.toml")
         with self.assertRaisesRegex(SystemExit, "^budget.toml: flash.firmware is missing"):
             budget.check({}, "budget.toml")
+        for wrong, what in [(3, "3"), (True, "True"), ([1], r"\[1\]")]:
+            for group in ("flash", "clock"):
+                with self.assertRaisesRegex(SystemExit, f"^budget.toml: {group} is {what}; expected a table$"):
+                    budget.check({**good, group: wrong}, "budget.toml")
 
     def test_the_mean_of_simulated_drives_alone_is_not_judged_by_the_budget_of_all(self):
         board = budget.boards.BOARDS["cortex-m7"]

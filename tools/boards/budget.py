@@ -128,6 +128,9 @@ def keyed(rows):
 
 def check(budget, path):
     """Every budget is there: one that is not would never be exceeded."""
+    for group, names in budget.items():
+        if not isinstance(names, dict):
+            sys.exit(f"{path}: {group} is {names!r}; expected a table")
     for group, name in BUDGETS:
         allowed = budget.get(group, {}).get(name)
         if type(allowed) is not int:
