@@ -430,18 +430,29 @@ TEST_CASE("pipeline: observing alone changes no curb, inferring does") {
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
 }
 
-TEST_CASE("pipeline: project gives out the points that observe would take, and takes none") {
-  const auto pipeline = started();
-  add_tilts(*pipeline, 150);
+TEST_CASE("pipeline: project gives out the points that lie in the window or beside it, and takes none") {
+  const auto projects = started(), observes = started();
+  add_tilts(*projects, 150);
+  add_tilts(*observes, 150);
   NoddingLaser laser;
-  int points = 0;
   const auto ranges = laser.ranges({}, 150, [](double) { return 0.0; });
-  CHECK(pipeline->project({NoddingLaser::ns(NoddingLaser::line_time_s(150)), ranges}, [&](const Point& p) {
+  const ScanLine line{NoddingLaser::ns(NoddingLaser::line_time_s(150)), ranges};
+  const Dem<Limits{}>& dem = projects->dem();
+  std::uint32_t points = 0, in_window = 0;
+  CHECK(projects->project(line, [&](const Point& p) {
     ++points;
     CHECK(p.variance_m2 > 0.0f);
+    const float x_m = p.place_x_m(), y_m = p.place_y_m();
+    in_window += dem.place_at(x_m, y_m).inside();
+    CHECK(dem.surroundings(infinity).hold(x_m, y_m, p.z_m));
   }) == Status::ok);
-  CHECK(points > 200);
-  CHECK(pipeline->counters().points == 0);
+  CHECK(projects->counters().points == 0);
+  REQUIRE(observes->observe(line) == Status::ok);
+  const Counters& told = observes->counters();
+  CHECK(told.points > 200);
+  CHECK(told.points == in_window);
+  CHECK(points >= told.points);
+  CHECK(told.points + told.outside == points + projects->counters().outside);
 }
 
 TEST_CASE("pipeline: a line that begins in a gap of the tilt readings loses only the beams in it") {
