@@ -536,5 +536,91 @@ TEST_CASE("dem: a window smaller than its limits uses the rows and columns it wa
   CHECK(picture(dem) == "####\n####\n####\n####\n....\n....\n....\n....\n");
 }
 
+/// Calls visit(dem) for windows as large as the limits and smaller ones, wherever their rings begin. About every second
+/// cell is valid.
+template <typename Visit>
+void for_each_ring(Visit&& visit) {
+  test::Noise noise(5);
+  for (const auto& [rows, cols] : {std::pair{12, 16}, {8, 12}, {4, 4}}) {
+    for (int blocks_x = -3; blocks_x <= 3; ++blocks_x) {
+      for (int blocks_y = -4; blocks_y <= 4; ++blocks_y) {
+        Map dem = make_map({.rows = rows, .cols = cols, .origin_x_m = 0.0f, .origin_y_m = -0.8f});
+        dem.follow(0.4f * static_cast<float>(blocks_x), 0.4f * static_cast<float>(blocks_y), [](int) {});
+        for (int n = 0; n < rows * cols; ++n) {
+          const double i = rows * noise.uniform(), j = cols * noise.uniform();
+          dem.add(at(static_cast<double>(dem.origin_x_m()) + 0.1 * i, static_cast<double>(dem.origin_y_m()) + 0.1 * j));
+        }
+        INFO(rows << " x " << cols << " moved by " << blocks_x << ", " << blocks_y);
+        visit(std::as_const(dem));
+      }
+    }
+  }
+}
+
+TEST_CASE("dem: along a row or a column the valid cells are visited in order, wherever the ring begins") {
+  for_each_ring([](const Map& dem) {
+    for (const int axis : {0, 1}) {
+      const bool along_x = axis == 0;
+      for (int line = 0; line < (along_x ? dem.cols() : dem.rows()); ++line) {
+        std::vector<std::pair<int, int>> expected, visited;
+        for (int k = 0; k < (along_x ? dem.rows() : dem.cols()); ++k) {
+          const int slot = along_x ? dem.slot(k, line) : dem.slot(line, k);
+          if (dem.cell(slot).valid()) expected.emplace_back(k, slot);
+        }
+        dem.for_each_valid_along(axis, line, [&](int k, int slot) { visited.emplace_back(k, slot); });
+        REQUIRE(visited == expected);
+      }
+    }
+  });
+}
+
+TEST_CASE("dem: the cells of a block are found from its first, wherever the ring begins") {
+  for_each_ring([](const Map& dem) {
+    for (int i = 0; i < dem.rows(); i += block_side) {
+      for (int j = 0; j < dem.cols(); j += block_side) {
+        for (int k = 0; k < block_side * block_side; ++k)
+          REQUIRE(Map::slot_in_block(dem.slot(i, j), k) == dem.slot(i + k / block_side, j + k % block_side));
+      }
+    }
+  });
+}
+
+TEST_CASE("dem: every point that is taken lies in the surroundings, of the smallest cells far away too") {
+  const auto [origin_m, cell_m] =
+      GENERATE(table<float, float>({{0.0f, 0.1f}, {-0.8f, 0.1f}, {1e5f, 0.001f}, {-1e5f, 0.001f}, {1e5f, 0.03f}}));
+  const auto [rows, cols] = GENERATE(table<int, int>({{12, 16}, {8, 12}}));
+  const float moved = GENERATE(0.0f, 1.0f, -2.0f);
+  Map dem = make_map(
+      {.rows = rows, .cols = cols, .cell_x_m = cell_m, .cell_y_m = cell_m, .origin_x_m = origin_m, .origin_y_m = 0.0f});
+  dem.follow(moved * block_side * cell_m, -moved * block_side * cell_m, [](int) {});
+  const Bounds around = dem.surroundings(1e9f);
+  // About both ends of the window, and between.
+  const auto places_m = [](float low_m, float high_m) {
+    std::vector<float> out;
+    for (const float end_m : {low_m, high_m}) {
+      float below_m = end_m, above_m = end_m;
+      for (int n = 0; n < 6; ++n) {
+        out.insert(out.end(), {below_m, above_m});
+        below_m = std::nextafter(below_m, -infinity), above_m = std::nextafter(above_m, infinity);
+      }
+    }
+    for (int n = 1; n < 8; ++n) out.push_back(low_m + 0.125f * static_cast<float>(n) * (high_m - low_m));
+    return out;
+  };
+  int taken = 0;
+  for (const float x_m : places_m(dem.origin_x_m(), dem.origin_x_m() + static_cast<float>(rows) * cell_m)) {
+    for (const float y_m : places_m(dem.origin_y_m(), dem.origin_y_m() + static_cast<float>(cols) * cell_m)) {
+      for (const float shift_m : {0.0f, 0.6f * cell_m, -0.6f * cell_m}) {
+        Point point{x_m, y_m, 0.0f, 1e-4f};
+        point.shift_x_m = shift_m, point.shift_y_m = -shift_m;
+        if (!dem.add(point)) continue;
+        ++taken;
+        REQUIRE(around.hold(point.place_x_m(), point.place_y_m(), point.z_m));
+      }
+    }
+  }
+  CHECK(taken > 100);
+}
+
 }  // namespace
 }  // namespace curbline
