@@ -99,7 +99,7 @@ class BorderFinder {
   Middle middle(const Gap& gap) const;
   bool behind_obstacle(const Gap& gap, int along) const;
   float same_plane(const Gap& gap) const;
-  bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;
+  [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;  // as slot()
   bool bears_ground(int slot) const;
   bool is_veil(int slot) const;
 

@@ -82,7 +82,7 @@ class CommonNoise {
   struct Shown {
     float value, weight;
   };
-  static float quantile(std::array<Shown, patches> left, float share);
+  [[gnu::noinline]] static float quantile(std::array<Shown, patches>& left, float share);  ///< takes weights off them
 
   std::array<Patch, patches> patches_{};
   int first_row_ = 0;  ///< of those that are next
@@ -154,7 +154,7 @@ float CommonNoise<limits>::line_rad2() const {
 
 /// What a share of the weight lies below; 0 if there is none.
 template <Limits limits>
-float CommonNoise<limits>::quantile(std::array<Shown, patches> left, float share) {
+float CommonNoise<limits>::quantile(std::array<Shown, patches>& left, float share) {
   float all = 0.0f, found = 0.0f;
   for (const Shown& shown : left) all += shown.weight;
   for (float passed = 0.0f; passed < share * all;) {  // the least first, each once
