@@ -35,7 +35,7 @@ TEST_CASE("scene: every scene that ships can be read and stood on") {
   const std::vector<std::string> names = shipped_scenes();
   for (const char* name : {"straight_curb", "t_junction", "roundabout", "inclined_planes", "lowered_curb",
                            "curb_above_below", "unfavourable_viewpoint", "steps", "stairs_down", "platform", "hill",
-                           "low_walls", "low_curb", "gutter", "ramp", "city", "street"}) {
+                           "bollards", "low_walls", "low_curb", "gutter", "ramp", "city", "street"}) {
     INFO(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);
     const Scene scene = in_map_frame(find_scene(name));
