@@ -14,6 +14,15 @@ import unittest.mock
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools")
 
 
+def program_in(folder, commands):
+    """A program of the shell's commands that stands for curbline."""
+    program = os.path.join(folder, "curbline")
+    with open(program, "w") as file:
+        file.write("#!/bin/sh\n" + commands)
+    os.chmod(program, 0o700)
+    return program
+
+
 class Scripts(unittest.TestCase):
     def refuses(self, what, script, *words, program=sys.argv[1], out="out"):
         with tempfile.TemporaryDirectory() as folder:
@@ -93,10 +102,8 @@ class Scripts(unittest.TestCase):
 
     def test_a_program_that_fails(self):
         with tempfile.TemporaryDirectory() as folder:
-            program = os.path.join(folder, "curbline")
-            with open(program, "w") as file:
-                file.write('#!/bin/sh\n[ "$1" = replay ] || [ -z "$ONLY_REPLAY" ] || exit 0\necho "scans.carmen: cannot be written: it rains; expected room for it" >&2\nexit 1\n')
-            os.chmod(program, 0o700)
+            program = program_in(folder, '[ "$1" = replay ] || [ -z "$ONLY_REPLAY" ] || exit 0\n'
+                                 'echo "scans.carmen: cannot be written: it rains; expected room for it" >&2\nexit 1\n')
             for script in ["streets", "paper", "long-drive"]:
                 error = self.stopped(script, os.path.join(folder, script), program=program)
                 self.assertRegex(error, "^scans.carmen: cannot be written: it rains; expected room for it: exit status 1 of curbline [a-z]+ ")
@@ -135,10 +142,7 @@ class Scripts(unittest.TestCase):
 
     def test_an_interrupt(self):
         with tempfile.TemporaryDirectory() as folder:
-            program = os.path.join(folder, "curbline")
-            with open(program, "w") as file:
-                file.write('#!/bin/sh\n: >"$0.began"\nexec sleep 60\n')
-            os.chmod(program, 0o700)
+            program = program_in(folder, ': >"$0.began"\nexec sleep 60\n')
             for script in ["streets", "paper", "long-drive"]:
                 error = self.stopped(script, os.path.join(folder, script), 130, program, interrupted_at=program + ".began")
                 self.assertEqual(error, f"{script}: interrupted\n")
