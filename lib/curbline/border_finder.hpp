@@ -81,6 +81,13 @@ class BorderFinder {
     int last_of_veil;  ///< place along the line
   };
 
+  /// The cells beside a gap, as the laser sees them.
+  struct Sides {
+    const LabelledCell &near, &far;
+  };
+  Sides sides(const Gap& gap) const {
+    return away(gap.line, gap.first.along) > 0 ? Sides{gap.first, gap.second} : Sides{gap.second, gap.first};
+  }
   bool wide(const Gap& gap) const { return gap.second.along - gap.first.along > settings_.link_reach; }
   [[gnu::noinline]] bool hidden(const Gap& gap) const;  // seldom: inlined twice it would not fit the flash's budget
   Border border_of(const Gap& gap) const;
@@ -194,9 +201,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
 /// the plane that ends at its near one: where it met that plane, or a blur before, lie cells that bear it.
 template <Limits limits>
 bool BorderFinder<limits>::hidden(const Gap& gap) const {
-  const bool ahead = away(gap.line, gap.first.along) > 0;
-  const LabelledCell& near = ahead ? gap.first : gap.second;
-  const LabelledCell& far = ahead ? gap.second : gap.first;
+  const auto [near, far] = sides(gap);
   const int i = row(gap.line, far.along), j = col(gap.line, far.along), far_slot = dem_.slot(i, j);
   const Viewpoint from = dem_.seen_from(far_slot, view_);
   const Plane& plane = mixture_.plane(near.label);
@@ -398,13 +403,13 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
 /// there a cell that bears no ground lies above the planes of both sides: the face of a step up lies between them.
 template <Limits limits>
 bool BorderFinder<limits>::behind_obstacle(const Gap& gap, int along) const {
-  const bool ahead = away(gap.line, gap.first.along) > 0;
-  const Plane& near = mixture_.plane((ahead ? gap.first : gap.second).label);
-  const Plane& far = mixture_.plane((ahead ? gap.second : gap.first).label);
+  const Sides cells_beside = sides(gap);
+  const Plane& near = mixture_.plane(cells_beside.near.label);
+  const Plane& far = mixture_.plane(cells_beside.far.label);
   const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
     return dem_.above_m(i, j, cell, plane) > 0.0f && !lies_on(i, j, cell, plane);
   };
-  const Viewpoint from = dem_.seen_from(slot(gap.line, (ahead ? gap.second : gap.first).along), view_);
+  const Viewpoint from = dem_.seen_from(slot(gap.line, cells_beside.far.along), view_);
   const Border middle = border_at(gap.line, (static_cast<float>(along) + 0.5f) * pitch_m(gap.line));
   const float dx = (from.x_m - middle.x_m) / dem_.cell_x_m(), dy = (from.y_m - middle.y_m) / dem_.cell_y_m();
   const float cells = square_root(dx * dx + dy * dy);
