@@ -31,6 +31,8 @@
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/common_noise.hpp"     // what their cells err alike
 #include "curbline/obstacles.hpp"        // which planes are of what stands on the ground
+#include "curbline/run.hpp"              // cells of one plane in line, as the laser sees them
+#include "curbline/strip_tally.hpp"      // what they tell of a plane
 #include "curbline/ground.hpp"           // which planes are ground
 #include "curbline/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/label_field.hpp"      // belief propagation

@@ -32,4 +32,7 @@ constexpr int direction(int axis, int toward) {
 /// Cells further apart than this know nothing of each other: what four bits hold.
 inline constexpr int max_link_reach = 15;
 
+/// Planes lie beside each other as long as no more cells are between them: a face.
+inline constexpr int widest_gap = 2;
+
 }  // namespace curbline

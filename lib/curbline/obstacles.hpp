@@ -20,7 +20,6 @@
 namespace curbline {
 
 inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
-inline constexpr int widest_gap = 2;           ///< between planes that lie beside each other, in cells: a face
 
 template <Limits limits>
 class Obstacles {
