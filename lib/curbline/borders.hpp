@@ -8,6 +8,7 @@
 
 #include "curbline/beside.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane_mixture.hpp"
 
 namespace curbline {
@@ -62,7 +63,7 @@ class Borders {
   }
 
   std::array<Border, limits.borders> border_;
-  std::array<Index, Dem<limits>::capacity> in_cell_;
+  PerCell<Index, limits> in_cell_;
   std::array<Index, limits.borders> chain_;  ///< of the polyline in hand, in order
   int size_;
 };
@@ -70,7 +71,7 @@ class Borders {
 template <Limits limits>
 bool Borders<limits>::add(const Dem<limits>& dem, Border border) {
   if (size_ == limits.borders) return false;
-  Index& head = in_cell_[static_cast<std::size_t>(cell_of(dem, border))];
+  Index& head = in_cell_[cell_of(dem, border)];
   border.next_in_cell = head;
   head = static_cast<Index>(size_);
   border_[static_cast<std::size_t>(size_++)] = border;
@@ -107,7 +108,7 @@ auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int re
   float best_m2 = 1e30f;
   for (int i = first_i; i <= last_i; ++i) {
     for (int j = first_j; j <= last_j; ++j) {
-      for (Index b = in_cell_[static_cast<std::size_t>(dem.slot(i, j))]; b != none; b = border_[b].next_in_cell) {
+      for (Index b = in_cell_[dem.slot(i, j)]; b != none; b = border_[b].next_in_cell) {
         const Border& border = border_[b];
         if (border.chained || border.low != from.low || border.high != from.high) continue;
         const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;

@@ -9,8 +9,8 @@
 #include "curbline/curb.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
-#include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 
 namespace curbline {
 
@@ -32,8 +32,8 @@ void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&&
 
 /// Of steps of which both sides are seen.
 template <Limits limits>
-IndexSet<Dem<limits>::capacity> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curbs) {
-  IndexSet<Dem<limits>::capacity> crossed;
+CellSet<limits> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curbs) {
+  CellSet<limits> crossed;
   const float cells_x = 1.0f / dem.cell_x_m(), cells_y = 1.0f / dem.cell_y_m();
   const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // or the window has leapt away
   const auto insert = [&](int i, int j) {

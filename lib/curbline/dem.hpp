@@ -11,6 +11,7 @@
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 #include "curbline/pose.hpp"
@@ -22,7 +23,6 @@ namespace curbline {
 template <Limits limits>
 class Dem {
  public:
-  using SlotType = Slot<limits>;
   static constexpr int capacity = limits.rows * limits.cols;
 
   /// Empties the map and places the window. Settings are valid.
@@ -81,7 +81,7 @@ class Dem {
   }
   /// Of the k-th cell of a block, row by row, by the slot of its first: no block lies across the ends of the ring.
   static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
-  const Cell& cell(int slot) const { return cells_[static_cast<std::size_t>(slot)]; }
+  const Cell& cell(int slot) const { return cells_[slot]; }
 
   /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
   /// points that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design
@@ -135,7 +135,7 @@ class Dem {
   }
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
-  bool touched(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & touched_bit) != 0; }
+  bool touched(int slot) const { return (touched_[slot] & touched_bit) != 0; }
   void clear_touched() {
     if (any_touched_) clear_all(touched_bit);
     any_touched_ = false;
@@ -169,12 +169,10 @@ class Dem {
   /// The laser sweeps over the ground anew. A pass over the window.
   void begin_sweep() { clear_all(sweep_bit); }
   /// Has an earlier sweep seen the cell, and this one not yet?
-  bool mapped_before(int slot) const {
-    return cell(slot).valid() && (touched_[static_cast<std::size_t>(slot)] & sweep_bit) == 0;
-  }
+  bool mapped_before(int slot) const { return cell(slot).valid() && (touched_[slot] & sweep_bit) == 0; }
   /// From now on cells that are seen bear a mark. A pass over the window.
   void begin_marking() { clear_all(marked_bit); }
-  bool marked(int slot) const { return (touched_[static_cast<std::size_t>(slot)] & marked_bit) != 0; }
+  bool marked(int slot) const { return (touched_[slot] & marked_bit) != 0; }
   /// The laser is there, in the map frame: what is seen from now on is seen from there.
   void look_from(float x_m, float y_m) {
     viewpoints_.look_from({x_m, y_m});
@@ -183,15 +181,13 @@ class Dem {
   /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
-    const Viewpoints::Position& from = viewpoints_.at(touched_[static_cast<std::size_t>(slot)] / a_viewpoint);
+    const Viewpoints::Position& from = viewpoints_.at(touched_[slot] / a_viewpoint);
     return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
   }
   /// If not, all has been seen from one place.
   bool seen_from_several() const { return viewpoints_.moved(); }
   /// Mean of its points' growth by the tilt's latency.
-  float growth_m_s(int slot) const {
-    return static_cast<float>(growth_[static_cast<std::size_t>(slot)]) * (1.0f / growth_scale);
-  }
+  float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
   /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
   /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
@@ -217,7 +213,7 @@ class Dem {
   /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
   /// at most max_link_reach. O(1).
   int next_valid(int slot, int direction, int reach) const {
-    const int g = distances_[static_cast<std::size_t>(slot)] >> (4 * direction) & 15;
+    const int g = distances_[slot] >> (4 * direction) & 15;
     return g <= reach ? g : 0;
   }
 
@@ -245,10 +241,10 @@ class Dem {
   }
   static std::int32_t nearest_block(float blocks, std::int32_t before);
   void set_distance(int slot, int direction, int distance) {
-    auto& distances = distances_[static_cast<std::size_t>(slot)];
+    auto& distances = distances_[slot];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
   }
-  void add_growth(std::size_t s, const Point& point, float weight);
+  void add_growth(int s, const Point& point, float weight);
   void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
@@ -258,13 +254,13 @@ class Dem {
   float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
   std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
   int row_shift_ = 0, col_shift_ = 0;
-  std::array<Cell, capacity> cells_{};
+  PerCell<Cell, limits> cells_{};
   Viewpoints viewpoints_{};
   /// The bits, of this sweep the third; above them the number of the viewpoint that the cell was seen from last.
-  std::array<std::uint8_t, capacity> touched_{};
-  std::uint8_t flags_ = seen_bits;                   ///< of a cell that is seen now
-  std::array<std::int16_t, capacity> growth_{};      ///< in 1 / growth_scale m/s
-  std::array<std::uint16_t, capacity> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
+  PerCell<std::uint8_t, limits> touched_{};
+  std::uint8_t flags_ = seen_bits;              ///< of a cell that is seen now
+  PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
+  PerCell<std::uint16_t, limits> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
   float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Behind the cells: before them it costs the worst line of a
                             ///< Cortex-R5F 9,000 instructions (tools/budget)
   bool any_touched_ = false;
@@ -357,10 +353,10 @@ void Dem<limits>::leave(int i, int j) {
     const int g = next_valid(s, d, max_link_reach);
     if (g > 0) set_distance(slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
   }
-  cells_[static_cast<std::size_t>(s)] = Cell{};
-  growth_[static_cast<std::size_t>(s)] = 0;
-  distances_[static_cast<std::size_t>(s)] = 0;
-  touched_[static_cast<std::size_t>(s)] = flags_;
+  cells_[s] = Cell{};
+  growth_[s] = 0;
+  distances_[s] = 0;
+  touched_[s] = flags_;
   any_touched_ = true;
 }
 
@@ -396,9 +392,9 @@ bool Dem<limits>::add(const Point& point) {
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
-  const auto s = static_cast<std::size_t>(slot(i, j));
+  const int s = slot(i, j);
   if (!cells_[s].valid()) meet_neighbours(i, j);
-  if (mapped_before(static_cast<int>(s)) && several_surfaces(cells_[s])) cells_[s].fade(memory);
+  if (mapped_before(s) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
                 (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
   add_growth(s, point, weight);
@@ -411,7 +407,7 @@ bool Dem<limits>::add(const Point& point) {
 /// After the point has been added. A mean of many points changes by less than what is stored: it is rounded up as often
 /// as its fraction says, by the lot that the last bits of the point's height draw.
 template <Limits limits>
-void Dem<limits>::add_growth(std::size_t s, const Point& point, float weight) {
+void Dem<limits>::add_growth(int s, const Point& point, float weight) {
   const float before = static_cast<float>(growth_[s]);
   const float now = before + weight / cells_[s].weight * (point.growth_m_s * growth_scale - before);
   const float lot = static_cast<float>((std::bit_cast<std::uint32_t>(point.z_m) * 2654435769u) >> 8) * 0x1p-24f;
@@ -421,9 +417,8 @@ void Dem<limits>::add_growth(std::size_t s, const Point& point, float weight) {
 
 template <Limits limits>
 void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
-  for_each_valid([&](int, int, int s) {
-    cells_[static_cast<std::size_t>(s)].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s);
-  });
+  for_each_valid(
+      [&](int, int, int s) { cells_[s].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s); });
 }
 
 }  // namespace curbline

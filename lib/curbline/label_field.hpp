@@ -16,6 +16,7 @@
 #include "curbline/index_set.hpp"
 #include "curbline/label_site.hpp"
 #include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane_mixture.hpp"
 #include "curbline/settings.hpp"
 
@@ -43,15 +44,15 @@ class LabelField {
   };
   /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
   struct Visits {
-    std::array<Visit, Dem<limits>::capacity> visit;
-    std::array<Slot<limits>, Dem<limits>::capacity> index;
+    std::array<Visit, capacity> visit;
+    PerCell<Slot<limits>, limits> index;
     int size;
   };
 
   [[gnu::cold]] void init(const LabelSettings& settings);
 
   /// Forgets a cell that leaves the window.
-  void forget(int slot) { sites_[static_cast<std::size_t>(slot)] = LabelSite{}; }
+  void forget(int slot) { sites_[slot] = LabelSite{}; }
 
   /// The cells that were touched are to be looked at by the next update().
   void note_touched(const Dem<limits>& dem);
@@ -63,7 +64,7 @@ class LabelField {
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
-  Label label(int slot) const { return sites_[static_cast<std::size_t>(slot)].best; }
+  Label label(int slot) const { return sites_[slot].best; }
   /// Posterior of a valid cell. O(label_candidates^2).
   Belief belief(const Dem<limits>& dem, int i, int j) const;
 
@@ -95,8 +96,8 @@ class LabelField {
   int band_ = 0;                                                        ///< first row to refresh in the next update()
   int first_row_ = 0;                                                   ///< whose cells may send first in it
   std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};      ///< by distance
-  std::array<LabelSite, Dem<limits>::capacity> sites_{};
-  std::array<std::uint8_t, Dem<limits>::capacity> flag_{};
+  PerCell<LabelSite, limits> sites_{};
+  PerCell<std::uint8_t, limits> flag_{};
 };
 
 template <Limits limits>
@@ -129,7 +130,7 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
 template <Limits limits>
 void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   dem.for_each_valid([&](int, int, int s) {
-    if (dem.touched(s)) flag_[static_cast<std::size_t>(s)] |= renew;
+    if (dem.touched(s)) flag_[s] |= renew;
   });
 }
 
@@ -147,14 +148,14 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   int left = scope == FieldScope::line ? messages / directions : capacity;
   /// `visited`, with `renew` or without, or `quiet`.
   const auto wanted = [&](int s) -> std::uint8_t {
-    const std::uint8_t before = flag_[static_cast<std::size_t>(s)];
+    const std::uint8_t before = flag_[s];
     if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, s)) return visited | renew;
     if ((before & (heard | deferred)) == 0) return quiet;
     return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
   };
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
-      auto& flag = flag_[static_cast<std::size_t>(s)];
+      auto& flag = flag_[s];
       flag = wanted(s);
       if (flag == quiet) return;
       if (left > 0) {
@@ -167,7 +168,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   }
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
-    auto& flag = flag_[static_cast<std::size_t>(s)];
+    auto& flag = flag_[s];
     if (flag == quiet && i >= band && i < band_ && left > 0) {
       flag = visited | renew;
       --left;
@@ -175,7 +176,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
     if ((flag & visited) == 0) return;
     if ((flag & renew) != 0) choose_candidates(dem, mixture, i, j, s);
     flag = visited;
-    visits.index[static_cast<std::size_t>(s)] = static_cast<Slot<limits>>(visits.size);
+    visits.index[s] = static_cast<Slot<limits>>(visits.size);
     visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
   });
 }
@@ -183,7 +184,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
 template <Limits limits>
 bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
   if (mixture.relabelled(slot)) return true;
-  const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
+  const LabelSite& site = sites_[slot];
   if (mixture.any_fresh()) {
     if (mixture.region_label(slot) != no_label && mixture.fresh(mixture.region_label(slot))) return true;
     for (const Label label : site.label) {
@@ -253,7 +254,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   if (label[0] == no_label) {
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
-  LabelSite& site = sites_[static_cast<std::size_t>(slot)];
+  LabelSite& site = sites_[slot];
   site.set_labels(label);
   site.node.fill(0);
   if (mixture.covered(slot)) return;
@@ -328,7 +329,7 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
   int changed = 0;
   for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
   dem.for_each_valid([&](int i, int j, int s) {
-    if ((flag_[static_cast<std::size_t>(s)] & (visited | heard)) != heard) return;
+    if ((flag_[s] & (visited | heard)) != heard) return;
     Visit heard_only = visit_to(dem, i, j, s);
     hear_neighbours(heard_only);
     changed += follow_belief(heard_only);
@@ -349,7 +350,7 @@ int LabelField<limits>::follow_belief(const Visit& visit) {
 template <Limits limits>
 auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
   const int slot = dem.slot(i, j);
-  const LabelSite& site = sites_[static_cast<std::size_t>(slot)];
+  const LabelSite& site = sites_[slot];
   if (site.decided()) return {site.label, {site.label[0] == no_label ? 0.0f : 1.0f, 0.0f, 0.0f}};
   Visit here = visit_to(dem, i, j, slot);
   hear_neighbours(here);

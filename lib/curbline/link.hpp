@@ -2,8 +2,6 @@
 // leave rows between them empty. A pass over the window.
 #pragma once
 
-#include <cstddef>
-
 #include "curbline/dem.hpp"
 #include "curbline/limits.hpp"
 
@@ -11,21 +9,18 @@ namespace curbline {
 
 /// Two valid cells with no valid cell between them on a row or column.
 struct Link {
-  std::size_t from, to;  ///< slots
-  int distance;          ///< in cells
-  int axis;              ///< 0: along +x, 1: along +y
-  int i, j;              ///< row and column of `from`
+  int from, to;  ///< slots
+  int distance;  ///< in cells
+  int axis;      ///< 0: along +x, 1: along +y
+  int i, j;      ///< row and column of `from`
 };
 
 /// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   dem.for_each_valid([&](int i, int j, int s) {
-    const auto from = static_cast<std::size_t>(s);
-    if (const int g = dem.next_valid(s, 0, reach); g > 0)
-      visit(Link{from, static_cast<std::size_t>(dem.slot(i + g, j)), g, 0, i, j});
-    if (const int g = dem.next_valid(s, 2, reach); g > 0)
-      visit(Link{from, static_cast<std::size_t>(dem.slot(i, j + g)), g, 1, i, j});
+    if (const int g = dem.next_valid(s, 0, reach); g > 0) visit(Link{s, dem.slot(i + g, j), g, 0, i, j});
+    if (const int g = dem.next_valid(s, 2, reach); g > 0) visit(Link{s, dem.slot(i, j + g), g, 1, i, j});
   });
 }
 
@@ -33,7 +28,7 @@ void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
 /// `reach` cells from link.from.
 template <Limits limits, typename Obstructed>
 int beyond_obstacle(const Dem<limits>& dem, const Link& link, int reach, Obstructed&& obstructed) {
-  auto slot = static_cast<int>(link.to);
+  int slot = link.to;
   for (int distance = link.distance; obstructed(slot);) {
     const int g = dem.next_valid(slot, direction(link.axis, 1), reach - distance);
     if (g == 0) return -1;

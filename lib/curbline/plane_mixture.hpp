@@ -13,7 +13,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/ground.hpp"
-#include "curbline/index_set.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
@@ -24,7 +24,6 @@ template <Limits limits>
 class PlaneMixture {
  public:
   static constexpr int capacity = limits.planes;
-  using Cells = IndexSet<Dem<limits>::capacity>;
 
   void init(const PlaneSettings& settings) {
     settings_ = settings;
@@ -40,7 +39,7 @@ class PlaneMixture {
   /// label_of(slot) is the cell's label up to now, none if it has none yet; `crossed` are those that steps cross.
   template <typename LabelOf>
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
-              const Cells& crossed, LabelOf&& label_of, Counters& counters);
+              const CellSet<limits>& crossed, LabelOf&& label_of, Counters& counters);
 
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
   /// responsibility) for each label that a cell may bear.
@@ -51,7 +50,7 @@ class PlaneMixture {
   void forget_changes();
 
   /// Forgets a cell that leaves the window.
-  void forget(int slot) { region_label_[static_cast<std::size_t>(slot)] = no_label; }
+  void forget(int slot) { region_label_[slot] = no_label; }
 
   /// The window's lowest corner moved by (dx, dy): planes are kept in its frame.
   void shift(float dx_m, float dy_m) {
@@ -65,7 +64,7 @@ class PlaneMixture {
   /// True if the label was born, died, or became ground or none since forget_changes().
   bool fresh(int label) const { return fresh_[static_cast<std::size_t>(label)]; }
   /// The plane of a cell's region; none if the region is too small for one.
-  Label region_label(int slot) const { return region_label_[static_cast<std::size_t>(slot)]; }
+  Label region_label(int slot) const { return region_label_[slot]; }
   /// True if that changed since forget_changes().
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
   /// Is the plane ground, which cells may bear? ground.hpp
@@ -121,7 +120,7 @@ class PlaneMixture {
   void match(Ranking& ranking);
   Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
   template <typename LabelOf>
-  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const Cells& crossed,
+  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const CellSet<limits>& crossed,
               LabelOf&& label_of);
   void fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const;
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
@@ -132,26 +131,27 @@ class PlaneMixture {
   std::array<bool, limits.planes> fresh_{};
   bool any_fresh_ = false, any_relabelled_ = false;
   Ground<limits> ground_{};
-  std::array<Label, Dem<limits>::capacity> region_label_{};
-  IndexSet<Dem<limits>::capacity> relabelled_{};
+  PerCell<Label, limits> region_label_{};
+  CellSet<limits> relabelled_{};
 };
 
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
-                                  const Viewpoint& view, const Cells& crossed, LabelOf&& label_of, Counters& counters) {
+                                  const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of,
+                                  Counters& counters) {
   if (!dem.any_touched()) return;
   Ranking ranking;
   rank_regions(work, ranking, counters);
   const auto rank_of = [&](int slot) {
-    const Node node = work.node_of_cell[static_cast<std::size_t>(slot)];
+    const Node node = work.node_of_cell[slot];
     return node == RegionGraph<limits>::none ? no_label : ranking.of_node[work.graph.root(node)];
   };
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = rank_of(s);
     if (rank == no_label) return;
     // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
-    const Label before = region_label_[static_cast<std::size_t>(s)];
+    const Label before = region_label_[s];
     const Label old = before != no_label ? before : label_of(s);
     if (old != no_label) ++ranking.overlap[rank][old];
   });
@@ -160,7 +160,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = rank_of(s);
     const Label label = rank == no_label ? no_label : ranking.label[rank];
-    Label& now = region_label_[static_cast<std::size_t>(s)];
+    Label& now = region_label_[s];
     if (now == label) return;
     now = label;
     relabelled_.insert(s);
@@ -197,7 +197,7 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
-                                  const Cells& crossed, LabelOf&& label_of) {
+                                  const CellSet<limits>& crossed, LabelOf&& label_of) {
   std::array<Clean, limits.planes> clean{};
   for (std::size_t l = 0; l < clean.size(); ++l) {
     clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));

@@ -11,9 +11,9 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
-#include "curbline/index_set.hpp"
 #include "curbline/link.hpp"
 #include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/region_graph.hpp"
 #include "curbline/settings.hpp"
@@ -47,15 +47,14 @@ class Segmentation {
 
   /// A cell is about to leave the window: its region will be cut anew.
   void forget(int slot) {
-    const auto s = static_cast<std::size_t>(slot);
-    if (region_[s] != none) dissolved_.insert(region_[s]);
-    region_[s] = none;
+    if (region_[slot] != none) dissolved_.insert(region_[slot]);
+    region_[slot] = none;
   }
 
   /// Working memory of one update(), for the mixture to read right after it.
   struct Work {
     RegionGraph<limits> graph;
-    std::array<typename RegionGraph<limits>::Index, Dem<limits>::capacity> node_of_cell;
+    PerCell<typename RegionGraph<limits>::Index, limits> node_of_cell;
     std::array<Region, limits.regions> region_of_node;
   };
 
@@ -66,7 +65,7 @@ class Segmentation {
   void update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed, Counters& counters);
 
   /// Of a valid cell; `none` if the store of regions was full when it came to its leaf.
-  Region region(int slot) const { return region_[static_cast<std::size_t>(slot)]; }
+  Region region(int slot) const { return region_[slot]; }
 
   /// Calls visit(node, moments) for the node of each region, right after an update() that had something to do.
   template <typename Visit>
@@ -87,15 +86,15 @@ class Segmentation {
   void build_graph(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) const;
   void name_regions(const Dem<limits>& dem, Work& work);
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
-  Region representative(std::size_t s) const {
-    return region_[s] == none || dissolved_.contains(region_[s]) ? leaf_[s] : region_[s];
+  Region representative(int slot) const {
+    return region_[slot] == none || dissolved_.contains(region_[slot]) ? leaf_[slot] : region_[slot];
   }
 
   SegmentationSettings settings_{};
   PlaneEvidence evidence_{};
-  std::array<Region, Dem<limits>::capacity> leaf_{};  ///< slot of the first cell of a cell's leaf
-  std::array<Region, Dem<limits>::capacity> region_{};
-  IndexSet<Dem<limits>::capacity> dissolved_{};  ///< regions to be cut into leaves and merged anew, by name
+  PerCell<Region, limits> leaf_{};  ///< slot of the first cell of a cell's leaf
+  PerCell<Region, limits> region_{};
+  CellSet<limits> dissolved_{};  ///< regions to be cut into leaves and merged anew, by name
 };
 
 template <Limits limits>
@@ -138,14 +137,13 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
         const float height_m =
             leans ? dem.above_m(bi + k / block_side, bj + k % block_side, cell, lean) : cell.height_m;
         cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
-        const Region region = region_[static_cast<std::size_t>(s)];
+        const Region region = region_[s];
         if (region != none) dissolved_.insert(region);
       }
       const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
       for (int k = 0; k < size; ++k) {
         const std::uint8_t leaf = leaves[static_cast<std::size_t>(k)];
-        leaf_[static_cast<std::size_t>(dem.slot_in_block(first, k))] =
-            leaf == 255 ? none : static_cast<Region>(dem.slot_in_block(first, leaf));
+        leaf_[dem.slot_in_block(first, k)] = leaf == 255 ? none : static_cast<Region>(dem.slot_in_block(first, leaf));
       }
     }
   }
@@ -153,7 +151,7 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
 
 template <Limits limits>
 void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
-  IndexSet<Dem<limits>::capacity> neighbours;
+  CellSet<limits> neighbours;
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Region a = region_[link.from], b = region_[link.to];
     // Asked apart, since most are: 25,000 instructions less in the worst line of a Cortex-R5F (tools/budget).
@@ -173,7 +171,7 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   graph.clear(dem.cell_x_m(), dem.cell_y_m());
   work.node_of_cell.fill(no_node);
   dem.for_each_valid([&](int i, int j, int s) {
-    const Region name = representative(static_cast<std::size_t>(s));  // a cell that bears it
+    const Region name = representative(s);  // a cell that bears it
     Node& node = work.node_of_cell[name];
     if (node == no_node) node = graph.add_node();
     if (node == no_node) {
@@ -181,7 +179,7 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
       return;
     }
     graph.moments(node).add_cell(dem.moments(i, j, dem.cell(s)));
-    work.node_of_cell[static_cast<std::size_t>(s)] = node;
+    work.node_of_cell[s] = node;
   });
   const auto join = [&](Node a, Node b) {
     const Node end = graph.link(a, b);
@@ -192,14 +190,14 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
     if (a == b) return;
     if (a == no_node || b == no_node) return;  // asked apart, since most are one
-    const Cell& from = dem.cell(static_cast<int>(link.from));
-    const Cell& to = dem.cell(static_cast<int>(link.to));
+    const Cell& from = dem.cell(link.from);
+    const Cell& to = dem.cell(link.to);
     const Node end = join(a, b);
     if (end != no_node && link.distance == 1) graph.add_pair(end, link.axis, to.height_m - from.height_m);
-    if (!obstructed(static_cast<int>(link.to)) || obstructed(static_cast<int>(link.from))) return;
+    if (!obstructed(link.to) || obstructed(link.from)) return;
     const int beyond = beyond_obstacle(dem, link, settings_.link_reach, obstructed);
     if (beyond < 0) return;
-    const Node c = work.node_of_cell[static_cast<std::size_t>(beyond)];
+    const Node c = work.node_of_cell[beyond];
     if (c != a && c != no_node) join(a, c);
   });
 }
@@ -208,8 +206,7 @@ template <Limits limits>
 void Segmentation<limits>::name_regions(const Dem<limits>& dem, Work& work) {
   const RegionGraph<limits>& graph = work.graph;
   work.region_of_node.fill(none);
-  dem.for_each_valid([&](int, int, int slot) {
-    const auto s = static_cast<std::size_t>(slot);
+  dem.for_each_valid([&](int, int, int s) {
     region_[s] = none;
     if (work.node_of_cell[s] == no_node) return;
     Region& region = work.region_of_node[graph.root(work.node_of_cell[s])];

@@ -1,0 +1,33 @@
+// What a stage keeps for the window's cells, by their slots (dem.hpp).
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+
+#include "curbline/index_set.hpp"
+#include "curbline/limits.hpp"
+
+namespace curbline {
+
+/// One T for each cell. What it holds at first is what an array would.
+template <typename T, Limits limits>
+class PerCell {
+ public:
+  void fill(const T& value) { all_.fill(value); }
+
+  T& operator[](std::integral auto slot) { return all_[static_cast<std::size_t>(slot)]; }
+  const T& operator[](std::integral auto slot) const { return all_[static_cast<std::size_t>(slot)]; }
+
+  auto begin() { return all_.begin(); }
+  auto end() { return all_.end(); }
+
+ private:
+  std::array<T, static_cast<std::size_t>(limits.rows* limits.cols)> all_;
+};
+
+/// Some of the cells.
+template <Limits limits>
+using CellSet = IndexSet<limits.rows * limits.cols>;
+
+}  // namespace curbline
