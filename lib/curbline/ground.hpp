@@ -28,6 +28,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/obstacles.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 #include "curbline/strip_tally.hpp"
@@ -39,11 +40,11 @@ class Ground {
  public:
   void clear() { kind_.fill(Kind::ground); }
 
-  /// Asks each plane anew. label_of(slot) is the plane of a valid cell's region, no_label if it has none;
-  /// changed(label) is called for each that is to be borne otherwise than before.
-  template <typename LabelOf, typename Changed>
-  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of,
-              Changed&& changed);
+  /// Asks each plane anew, by the cells of its region; changed(label) is called for each that is to be borne otherwise
+  /// than before.
+  template <typename Changed>
+  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+              const CellLabels<limits>& region_label, Changed&& changed);
 
   bool is(int label) const { return borne(kind(label)); }
   /// May it, of planes that are ground, be a veil?
@@ -96,11 +97,11 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
 }
 
 template <Limits limits>
-template <typename LabelOf, typename Changed>
+template <typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                            LabelOf&& label_of, Changed&& changed) {
-  const Obstacles<limits> obstacles(dem, planes, view, label_of);
-  const StripTallies<limits> tallies = tally_strips(dem, planes, view, label_of, obstacles);
+                            const CellLabels<limits>& region_label, Changed&& changed) {
+  const Obstacles<limits> obstacles(dem, planes, view, region_label);
+  const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
     const Kind before = kind_[l];

@@ -14,6 +14,7 @@
 #include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
@@ -24,9 +25,9 @@ inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
 template <Limits limits>
 class Obstacles {
  public:
-  /// label_of(slot) is the plane of a valid cell's region, no_label if it has none.
-  template <typename LabelOf>
-  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of);
+  /// `region_label`: of a valid cell, the plane of its region.
+  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+            const CellLabels<limits>& region_label);
 
   bool is(std::size_t label) const { return is_[label]; }
   /// Is it one that is higher than a step?
@@ -54,75 +55,81 @@ class Obstacles {
   };
   using Extents = std::array<Extent, limits.planes>;
 
-  template <typename LabelOf>
-  void add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view, LabelOf&& label_of);
-  template <typename LabelOf>
-  static Extents extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of, const PlaneFlags& asked);
-  template <typename SameRegion>
-  static bool thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
-                   SameRegion&& same_region);
-  template <typename LabelOf>
-  static Neighbours neighbours(const Dem<limits>& dem, LabelOf&& label_of, const PlaneFlags& asked);
+  void add_tops();
+  void take_ways_from(PlaneFlags& top, const Neighbours& beside);
+  Extents extents_of(const PlaneFlags& asked) const;
+  bool thin(int i, int j, std::size_t axis, Label label) const;
+  Neighbours neighbours(const PlaneFlags& asked) const;
 
+  const Dem<limits>& dem_;
+  const std::span<const Plane> planes_;
+  const Viewpoint& view_;
+  const CellLabels<limits>& region_label_;
   PlaneFlags is_{}, high_{}, way_{};
   std::array<float, limits.planes> cells_{};
   const Plane* ground_ = nullptr;
 };
 
 template <Limits limits>
-template <typename LabelOf>
 Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                             LabelOf&& label_of) {
+                             const CellLabels<limits>& region_label)
+    : dem_(dem), planes_(planes), view_(view), region_label_(region_label) {
   std::array<float, limits.planes> spread{}, weight{};
-  dem.for_each_valid([&](int, int, int s) {
-    const Label label = label_of(s);
+  dem_.for_each_valid([&](int, int, int s) {
+    const Label label = region_label_[s];
     if (label == no_label) return;
     cells_[label] += 1.0f;
-    spread[label] += dem.spread_m2(dem.cell(s));
-    weight[label] += dem.cell(s).weight;
+    spread[label] += dem_.spread_m2(dem_.cell(s));
+    weight[label] += dem_.cell(s).weight;
   });
-  for (std::size_t l = 0; l < planes.size(); ++l) {
-    is_[l] = dem.steep(spread[l], weight[l]);
-    high_[l] = is_[l] && planes[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
-    if (!planes[l].alive() || is_[l]) continue;
-    if (ground_ == nullptr || planes[l].cells > ground_->cells) ground_ = &planes[l];
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
+    is_[l] = dem_.steep(spread[l], weight[l]);
+    high_[l] = is_[l] && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+    if (!planes_[l].alive() || is_[l]) continue;
+    if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
   }
-  if (ground_ != nullptr) add_tops(dem, planes, view, label_of);
+  if (ground_ != nullptr) add_tops();
 }
 
 template <Limits limits>
-template <typename LabelOf>
-void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                 LabelOf&& label_of) {
+void Obstacles<limits>::add_tops() {
   PlaneFlags level{}, asked{};  // and above the ground by more than a step; and no larger than a wall may be
   const float longest_m =
-      static_cast<float>(dem.rows()) * dem.cell_x_m() + static_cast<float>(dem.cols()) * dem.cell_y_m();
-  const float cell_m2 = dem.cell_x_m() * dem.cell_y_m();
+      static_cast<float>(dem_.rows()) * dem_.cell_x_m() + static_cast<float>(dem_.cols()) * dem_.cell_y_m();
+  const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
   bool any = false;
-  for (std::size_t l = 0; l < planes.size(); ++l) {
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
     level[l] =
-        planes[l].alive() && !is_[l] && !planes[l].steeper_than_ramp() && planes[l].above_m(*ground_) > usual_step_m;
+        planes_[l].alive() && !is_[l] && !planes_[l].steeper_than_ramp() && planes_[l].above_m(*ground_) > usual_step_m;
     asked[l] = level[l] && cells_[l] * cell_m2 < shoulders_m * longest_m;
     any = any || asked[l];
   }
   if (!any) return;
-  const Extents extents = extents_of(dem, view, label_of, asked);
-  const Neighbours beside = neighbours(dem, label_of, level);
+  const Extents extents = extents_of(asked);
   PlaneFlags top{};
   for (std::size_t l = 0; l < top.size(); ++l) {
     const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
     top[l] = asked[l] && (small || extents[l].narrow(cells_[l]));
   }
+  take_ways_from(top, neighbours(level));
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    if (top[l]) is_[l] = high_[l] = true;
+  }
+}
+
+/// Tops that lead on are ways. One that is found may make one of what lies beside it.
+template <Limits limits>
+void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside) {
   const auto leads_on = [&](std::size_t l) {
     bool found = false;
     beside[l].for_each([&](int m) {
       const auto other = static_cast<std::size_t>(m);
-      const float apart_m = planes[other].above_m(*ground_) - planes[l].above_m(*ground_);
+      const float apart_m = planes_[other].above_m(*ground_) - planes_[l].above_m(*ground_);
       found = found || !top[other] || square(apart_m) > square(0.5f * usual_step_m);
     });
     return found;
   };
-  for (bool changed = true; changed;) {  // a way that is found may make one of what lies beside it
+  for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t l = 0; l < top.size(); ++l) {
       if (!top[l] || !leads_on(l)) continue;
@@ -130,45 +137,36 @@ void Obstacles<limits>::add_tops(const Dem<limits>& dem, std::span<const Plane> 
       way_[l] = changed = true;
     }
   }
-  for (std::size_t l = 0; l < top.size(); ++l) {
-    if (top[l]) is_[l] = high_[l] = true;
-  }
 }
 
 template <Limits limits>
-template <typename LabelOf>
-auto Obstacles<limits>::extents_of(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of,
-                                   const PlaneFlags& asked) -> Extents {
+auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
   Extents found{};
-  dem.for_each_valid([&](int i, int j, int s) {
-    const Label label = label_of(s);
+  dem_.for_each_valid([&](int i, int j, int s) {
+    const Label label = region_label_[s];
     if (label == no_label || !asked[label]) return;
     Extent& extent = found[label];
-    if (i == 0 || j == 0 || i == dem.rows() - 1 || j == dem.cols() - 1) extent.reaches_end = true;
-    const auto same = [&](int slot) { return label_of(slot) == label; };
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      extent.thin_cells[axis] += thin(dem, view, i, j, axis, same) ? 1.0f : 0.0f;
+    if (i == 0 || j == 0 || i == dem_.rows() - 1 || j == dem_.cols() - 1) extent.reaches_end = true;
+    for (std::size_t axis = 0; axis < 2; ++axis) extent.thin_cells[axis] += thin(i, j, axis, label) ? 1.0f : 0.0f;
   });
   return found;
 }
 
-/// Is the run of cells of one region through (i, j), along x or y, shorter than shoulders? Not one that goes on beyond
-/// the window's end, or perhaps toward the laser, where nothing is seen.
+/// Is the run of cells through (i, j) whose regions bear `label`, along x or y, shorter than shoulders? Not one that
+/// goes on beyond the window's end, or perhaps toward the laser, where nothing is seen.
 template <Limits limits>
-template <typename SameRegion>
-bool Obstacles<limits>::thin(const Dem<limits>& dem, const Viewpoint& view, int i, int j, std::size_t axis,
-                             SameRegion&& same_region) {
-  const float cell_m = dem.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view.x_m : view.y_m;
-  const int count = axis == 0 ? dem.rows() : dem.cols(), at = axis == 0 ? i : j;
+bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
+  const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
+  const int count = axis == 0 ? dem_.rows() : dem_.cols(), at = axis == 0 ? i : j;
   const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
   int length = 1;
   for (const int step : {toward, -toward}) {
     for (int k = at + step;; k += step) {
       if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= count) return false;
-      const int slot = axis == 0 ? dem.slot(k, j) : dem.slot(i, k);
-      const bool seen = dem.cell(slot).valid();
+      const int slot = axis == 0 ? dem_.slot(k, j) : dem_.slot(i, k);
+      const bool seen = dem_.cell(slot).valid();
       if (!seen && step == toward) return false;
-      if (!seen || !same_region(slot)) break;
+      if (!seen || region_label_[slot] != label) break;
       ++length;
     }
   }
@@ -177,16 +175,15 @@ bool Obstacles<limits>::thin(const Dem<limits>& dem, const Viewpoint& view, int 
 
 /// Of the planes that are asked for, which lie beside which, on a row or a column.
 template <Limits limits>
-template <typename LabelOf>
-auto Obstacles<limits>::neighbours(const Dem<limits>& dem, LabelOf&& label_of, const PlaneFlags& asked) -> Neighbours {
+auto Obstacles<limits>::neighbours(const PlaneFlags& asked) const -> Neighbours {
   Neighbours found{};
-  dem.for_each_valid([&](int i, int j, int s) {
-    const Label label = label_of(s);
+  dem_.for_each_valid([&](int i, int j, int s) {
+    const Label label = region_label_[s];
     if (label == no_label || !asked[label]) return;
     const auto meet = [&](int p, int q) {
-      if (p >= dem.rows() || q >= dem.cols()) return;
-      const int slot = dem.slot(p, q);
-      const Label other = dem.cell(slot).valid() ? label_of(slot) : no_label;
+      if (p >= dem_.rows() || q >= dem_.cols()) return;
+      const int slot = dem_.slot(p, q);
+      const Label other = dem_.cell(slot).valid() ? region_label_[slot] : no_label;
       if (other == no_label || other == label || !asked[other]) return;
       found[label].insert(other);
       found[other].insert(label);

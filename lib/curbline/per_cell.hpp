@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 
+#include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/limits.hpp"
 
@@ -25,6 +26,10 @@ class PerCell {
  private:
   std::array<T, static_cast<std::size_t>(limits.rows* limits.cols)> all_;
 };
+
+/// A plane of each; no_label of a cell that has none.
+template <Limits limits>
+using CellLabels = PerCell<Label, limits>;
 
 /// Some of the cells.
 template <Limits limits>

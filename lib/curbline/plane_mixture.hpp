@@ -131,7 +131,7 @@ class PlaneMixture {
   std::array<bool, limits.planes> fresh_{};
   bool any_fresh_ = false, any_relabelled_ = false;
   Ground<limits> ground_{};
-  PerCell<Label, limits> region_label_{};
+  CellLabels<limits> region_label_{};
   CellSet<limits> relabelled_{};
 };
 
@@ -168,9 +168,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   });
 
   const Fitted fitted = fit(dem, ranking);
-  ground_.update(
-      dem, planes_, view, [this](int s) { return region_label(s); },
-      [this](Label label) { fresh_[label] = any_fresh_ = true; });
+  ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_[label] = any_fresh_ = true; });
   refine(dem, view, fitted, crossed, label_of);
 }
 

@@ -9,6 +9,7 @@
 #include "curbline/cell.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
@@ -125,9 +126,8 @@ struct Strip {
 };
 
 /// Calls visit(strip, line) for each run of cells along x (axis 0) or along y (1), in the order of lines and cells.
-/// label_of(slot) is the plane of a valid cell's region, no_label if it has none.
-template <Limits limits, typename LabelOf, typename Visit>
-void for_each_run(const Dem<limits>& dem, int axis, LabelOf&& label_of, Visit&& visit) {
+template <Limits limits, typename Visit>
+void for_each_run(const Dem<limits>& dem, int axis, const CellLabels<limits>& region_label, Visit&& visit) {
   const int lines = axis == 0 ? dem.cols() : dem.rows();
   for (int line = 0; line < lines; ++line) {
     Run before, run;
@@ -137,7 +137,7 @@ void for_each_run(const Dem<limits>& dem, int axis, LabelOf&& label_of, Visit&& 
       run = next;
     };
     dem.for_each_valid_along(axis, line, [&](int k, int s) {
-      const Label label = label_of(s);
+      const Label label = region_label[s];
       if (label == no_label) return;
       const Cell& cell = dem.cell(s);
       if (label == run.label) {

@@ -11,6 +11,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/obstacles.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 #include "curbline/run.hpp"
@@ -91,9 +92,9 @@ inline bool drops_off(const Plane& plane, const Viewpoint& view) {
 }
 
 /// Of all planes. Shadows fall as the laser saw the strips last.
-template <Limits limits, typename LabelOf>
+template <Limits limits>
 StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                  LabelOf&& label_of, const Obstacles<limits>& obstacles) {
+                                  const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
   StripTallies<limits> tallies{};
   std::array<bool, limits.planes> drops{};
   for (std::size_t l = 0; l < tallies.size(); ++l) {
@@ -101,7 +102,7 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
     drops[l] = !obstacles.is(l) && drops_off(planes[l], view);
   }
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    for_each_run(dem, static_cast<int>(axis), label_of, [&](const Strip& strip, int line) {
+    for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
