@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "curbline/beside.hpp"
 #include "curbline/dem.hpp"
@@ -30,6 +31,45 @@ class Borders {
     bool open;         ///< the edge lies anywhere in the gap: something stands there, or hides it
     bool chained;
     Index next_in_cell;  ///< another border in the same cell
+
+    /// In a line, which it lies off in half gaps.
+    float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
+  };
+
+  /// Borders of a chain that follow each other. Those of one shadow err alike: all open ones together weigh as one
+  /// observation, unless there are no others.
+  class Part {
+   public:
+    struct Iterator {
+      const Border* all;
+      const Index* at;
+      const Border& operator*() const { return all[*at]; }
+      Iterator& operator++() { return ++at, *this; }
+      bool operator!=(const Iterator& other) const { return at != other.at; }
+    };
+
+    Part(const Border* all, std::span<const Index> part) : all_(all), part_(part) {
+      int open = 0;
+      for (const Border& border : *this) open += border.open;
+      if (open > 0 && open < size()) open_share_ = 1.0f / static_cast<float>(open);
+      for (const Border& border : *this) observations_ += share(border);
+    }
+
+    int size() const { return static_cast<int>(part_.size()); }
+    const Border& operator[](int k) const { return all_[part_[static_cast<std::size_t>(k)]]; }
+    const Border& front() const { return all_[part_.front()]; }
+    const Border& back() const { return all_[part_.back()]; }
+    Iterator begin() const { return {all_, part_.data()}; }
+    Iterator end() const { return {all_, part_.data() + part_.size()}; }
+
+    /// As how many observations one counts, and all of them.
+    float share(const Border& border) const { return border.open ? open_share_ : 1.0f; }
+    float observations() const { return observations_; }
+
+   private:
+    const Border* all_;
+    std::span<const Index> part_;
+    float open_share_ = 1.0f, observations_ = 0.0f;
   };
 
   void clear() {
@@ -47,6 +87,11 @@ class Borders {
   /// look-ups a border; (2 reach + 1)^2 where no other lies within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
+  /// From at(first) to at(last).
+  Part part(int first, int last) const {
+    const auto size = static_cast<std::size_t>(last - first + 1);
+    return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size));
+  }
 
  private:
   static constexpr Index none = 0xFFFF;

@@ -46,6 +46,7 @@
 #include "curbline/line_fit.hpp"         // a straight piece of it
 #include "curbline/shadow.hpp"           // of a step down
 #include "curbline/curb_piece.hpp"       // borders on one line
+#include "curbline/curb_maker.hpp"       // how high it is, where, how well that is known
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
 #include "curbline/crossed_cells.hpp"    // where steps go, for the planes of the next line
 #include "curbline/ground_label.hpp"     // which plane the ground under a cell is of
