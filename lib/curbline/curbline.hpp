@@ -28,6 +28,8 @@
 #include "curbline/segmentation.hpp"     // leaves, regions
 #include "curbline/region_graph.hpp"     // merging by evidence
 #include "curbline/plane.hpp"            // moments, evidence, fit
+#include "curbline/region_ranking.hpp"   // which regions become planes, under which labels
+#include "curbline/clean_fit.hpp"        // of cells that hold nothing else
 #include "curbline/plane_mixture.hpp"    // labels that live on
 #include "curbline/common_noise.hpp"     // what their cells err alike
 #include "curbline/obstacles.hpp"        // which planes are of what stands on the ground

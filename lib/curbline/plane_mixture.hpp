@@ -9,12 +9,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/clean_fit.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/ground.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/region_ranking.hpp"
 #include "curbline/segmentation.hpp"
 #include "curbline/settings.hpp"
 
@@ -91,38 +93,12 @@ class PlaneMixture {
   PlaneUpdate mode() const { return settings_.update; }
 
  private:
-  using Node = typename RegionGraph<limits>::Index;
-  struct Candidate {
-    Node node;
-    const PlaneMoments* moments;
-  };
-  /// Regions by size, and the labels that they take. Of one update().
-  struct Ranking {
-    std::size_t regions = 0;                      ///< how many are planes
-    std::array<Label, limits.regions> of_node;    ///< rank of a region's node, no_label if it is too small
-    std::array<Candidate, limits.planes> region;  ///< by rank
-    std::array<std::array<Slot<limits>, limits.planes>, limits.planes> overlap{};  ///< [rank][label], cells
-    std::array<Label, limits.planes> label;                                        ///< by rank
-  };
   using Fitted = std::array<bool, limits.planes>;  ///< by label
-  /// What a plane is fitted anew to, and its region.
-  struct Clean {
-    bool wanted = false, wide = false, steep = false;
-    float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
-    float cells = 0.0f, points = 0.0f;  ///< of the region
-    PlaneMoments inner, beside;
-    float bias_m2 = 0.0f;  ///< of those beside a step, each by its weight
-  };
-  /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
-  static constexpr float wide_cells = 200.0f;
-
-  void rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking, Counters& counters) const;
-  void match(Ranking& ranking);
-  Fitted fit(const Dem<limits>& dem, const Ranking& ranking);
+  void take_labels(const RegionRanking<limits>& ranking);
+  Fitted fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking);
   template <typename LabelOf>
   void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const CellSet<limits>& crossed,
               LabelOf&& label_of);
-  void fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const;
   static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
   float step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s, bool crossed) const;
 
@@ -141,46 +117,48 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
                                   const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of,
                                   Counters& counters) {
   if (!dem.any_touched()) return;
-  Ranking ranking;
-  rank_regions(work, ranking, counters);
-  const auto rank_of = [&](int slot) {
-    const Node node = work.node_of_cell[slot];
-    return node == RegionGraph<limits>::none ? no_label : ranking.of_node[work.graph.root(node)];
-  };
+  RegionRanking<limits> ranking(work, settings_.min_cells, counters);
   dem.for_each_valid([&](int, int, int s) {
-    const Label rank = rank_of(s);
+    const Label rank = ranking.rank_of_cell(s);
     if (rank == no_label) return;
     // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
     const Label before = region_label_[s];
     const Label old = before != no_label ? before : label_of(s);
-    if (old != no_label) ++ranking.overlap[rank][old];
+    if (old != no_label) ranking.count(rank, old);
   });
-
-  match(ranking);
+  ranking.match();
+  take_labels(ranking);
   dem.for_each_valid([&](int, int, int s) {
-    const Label rank = rank_of(s);
-    const Label label = rank == no_label ? no_label : ranking.label[rank];
-    Label& now = region_label_[s];
-    if (now == label) return;
-    now = label;
+    const Label label = ranking.label_of_cell(s);
+    if (region_label_[s] == label) return;
+    region_label_[s] = label;
     relabelled_.insert(s);
     any_relabelled_ = true;
   });
-
   const Fitted fitted = fit(dem, ranking);
   ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_[label] = any_fresh_ = true; });
   refine(dem, view, fitted, crossed, label_of);
 }
 
+/// Labels that no region has taken die.
+template <Limits limits>
+void PlaneMixture<limits>::take_labels(const RegionRanking<limits>& ranking) {
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
+    const bool dies = planes_[l].alive() && !ranking.taken(l);
+    if (dies) planes_[l] = Plane{};
+    if (dies || ranking.born(l)) fresh_[l] = any_fresh_ = true;
+  }
+}
+
 /// Planes of whole regions. Not of responsibilities: these keep what they are.
 template <Limits limits>
-auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const Ranking& ranking) -> Fitted {
+auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking) -> Fitted {
   Fitted fitted{};
-  for (std::size_t r = 0; r < ranking.regions; ++r) {
-    const Label label = ranking.label[r];
+  for (std::size_t r = 0; r < ranking.size(); ++r) {
+    const Label label = ranking.label(r);
     Plane& plane = planes_[label];
     if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label]) continue;
-    plane = fit_plane(*ranking.region[r].moments, dem.prior());
+    plane = fit_plane(ranking.moments(r), dem.prior());
     fitted[label] = true;
   }
   return fitted;
@@ -196,50 +174,30 @@ template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
                                   const CellSet<limits>& crossed, LabelOf&& label_of) {
-  std::array<Clean, limits.planes> clean{};
-  for (std::size_t l = 0; l < clean.size(); ++l) {
-    clean[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
-    clean[l].wide = planes_[l].cells >= wide_cells;
-    clean[l].steep = planes_[l].steeper_than_ramp();
-    clean[l].slope_m2 = dem.slope_m2(planes_[l]);
+  std::array<CleanFit, limits.planes> fits{};
+  for (std::size_t l = 0; l < fits.size(); ++l) {
+    fits[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
+    fits[l].wide = planes_[l].cells >= CleanFit::wide_cells;
+    fits[l].steep = planes_[l].steeper_than_ramp();
+    fits[l].slope_m2 = dem.slope_m2(planes_[l]);
   }
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = region_label(s);
-    if (label == no_label || !clean[label].wanted) return;
-    Clean& of_plane = clean[label];
+    if (label == no_label || !fits[label].wanted) return;
+    CleanFit& fit = fits[label];
     const Cell& cell = dem.cell(s);
-    of_plane.cells += 1.0f;
-    of_plane.points += cell.points;
-    if (dem.mixed(cell, of_plane.slope_m2)) return;
+    fit.cells += 1.0f;
+    fit.points += cell.points;
+    if (dem.mixed(cell, fit.slope_m2)) return;
     const bool is_crossed = crossed.contains(s);
-    if (of_plane.wide && is_crossed) return;
+    if (fit.wide && is_crossed) return;
     const Label borne = label_of(s);
     if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
-    PlaneMoments moments = dem.moments(i, j, cell);
-    if (!of_plane.steep) moments.zz = 0.0f;
-    const float step_m = of_plane.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed);
-    if (!(step_m > 0.0f)) return of_plane.inner.add_cell(moments);
-    of_plane.beside.add_cell(moments);
-    of_plane.bias_m2 += moments.weight * step_m * step_m * (1.0f / 12);
+    fit.add(dem.moments(i, j, cell), fit.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed));
   });
-  for (std::size_t l = 0; l < clean.size(); ++l) {
-    if (clean[l].wanted) fit_anew(dem, clean[l], planes_[l]);
+  for (std::size_t l = 0; l < fits.size(); ++l) {
+    if (fits[l].wanted) fits[l].fit(planes_[l], dem.prior(), dem.common_m2(), settings_.min_cells);
   }
-}
-
-/// What is the region's stays.
-template <Limits limits>
-void PlaneMixture<limits>::fit_anew(const Dem<limits>& dem, Clean& clean, Plane& plane) const {
-  plane.points_a_cell = clean.points / clean.cells;
-  PlaneMoments& moments = clean.inner;
-  if (moments.cells + clean.beside.cells < settings_.min_cells) return;
-  const PlanePrior& prior = dem.prior();
-  if (clean.bias_m2 > prior.noise_m2) clean.beside.scale(prior.noise_m2 / clean.bias_m2);
-  moments.add(clean.beside);
-  Plane anew = clean.steep ? fit_plane(moments, prior) : fit_plane_to_means(moments, prior, dem.common_m2());
-  anew.variance_m2 = plane.variance_m2;
-  anew.points_a_cell = plane.points_a_cell;
-  plane = anew;
 }
 
 /// Does a cell lie nearer to one plane than to another?
@@ -280,65 +238,6 @@ void PlaneMixture<limits>::forget_changes() {
   any_relabelled_ = false;
   fresh_.fill(false);
   any_fresh_ = false;
-}
-
-/// Ranks the largest regions.
-template <Limits limits>
-void PlaneMixture<limits>::rank_regions(const typename Segmentation<limits>::Work& work, Ranking& ranking,
-                                        Counters& counters) const {
-  ranking.of_node.fill(no_label);
-  auto& region = ranking.region;
-  std::size_t& kept = ranking.regions;
-  Segmentation<limits>::for_each_region(work, [&](Node node, const PlaneMoments& moments) {
-    if (moments.cells < settings_.min_cells) return;
-    if (kept == region.size()) {
-      ++counters.planes_full;
-      if (region[kept - 1].moments->cells >= moments.cells) return;
-    } else {
-      ++kept;
-    }
-    std::size_t place = kept - 1;
-    for (; place > 0 && region[place - 1].moments->cells < moments.cells; --place) region[place] = region[place - 1];
-    region[place] = {node, &moments};
-  });
-  for (std::size_t r = 0; r < kept; ++r) ranking.of_node[region[r].node] = static_cast<Label>(r);
-}
-
-/// Greatest overlap first; regions without one take free labels; labels without one die.
-template <Limits limits>
-void PlaneMixture<limits>::match(Ranking& ranking) {
-  std::array<bool, limits.planes> taken{};
-  ranking.label.fill(no_label);
-  for (std::size_t round = 0; round < ranking.regions; ++round) {
-    std::size_t best_rank = 0, best_label = 0;
-    std::uint32_t best = 0;
-    for (std::size_t r = 0; r < ranking.regions; ++r) {
-      if (ranking.label[r] != no_label) continue;
-      for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
-        if (!taken[l] && ranking.overlap[r][l] > best) {
-          best = ranking.overlap[r][l];
-          best_rank = r;
-          best_label = l;
-        }
-      }
-    }
-    if (best == 0) break;
-    ranking.label[best_rank] = static_cast<Label>(best_label);
-    taken[best_label] = true;
-  }
-  std::size_t free = 0;
-  for (std::size_t r = 0; r < ranking.regions; ++r) {
-    if (ranking.label[r] != no_label) continue;
-    while (taken[free]) ++free;
-    taken[free] = true;
-    fresh_[free] = any_fresh_ = true;
-    ranking.label[r] = static_cast<Label>(free);
-  }
-  for (std::size_t l = 0; l < static_cast<std::size_t>(limits.planes); ++l) {
-    if (taken[l] || !planes_[l].alive()) continue;
-    planes_[l] = Plane{};
-    fresh_[l] = any_fresh_ = true;
-  }
 }
 
 template <Limits limits>

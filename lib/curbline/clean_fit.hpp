@@ -1,0 +1,42 @@
+// Fits a plane of ground anew to those cells of its region that hold nothing else: what mixes both sides of a step
+// would tilt the plane of a small region toward the other. PlaneMixture says which cells these are.
+#pragma once
+
+#include "curbline/cell.hpp"
+#include "curbline/plane.hpp"
+
+namespace curbline {
+
+struct CleanFit {
+  /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
+  static constexpr float wide_cells = 200.0f;
+
+  bool wanted = false;  ///< of no other plane anything is counted
+  bool wide = false, steep = false;
+  float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
+  float cells = 0.0f, points = 0.0f;  ///< of the region
+  PlaneMoments inner{}, beside{};     ///< of clean cells: of those beside a step apart
+  float bias_m2 = 0.0f;               ///< of these, each by its weight
+
+  /// A clean cell that lies beside a step, or of which one crosses it; of none the step is 0.
+  void add(PlaneMoments cell, float step_m) {
+    if (!steep) cell.zz = 0.0f;
+    if (!(step_m > 0.0f)) return inner.add_cell(cell);
+    beside.add_cell(cell);
+    bias_m2 += cell.weight * step_m * step_m * (1.0f / 12);
+  }
+  /// The plane, if there are cells enough, where it was that of the region. What is the region's stays: by it labels
+  /// go. Cells beside a step are off by up to the half of it, anywhere, all alike: one observation together.
+  void fit(Plane& plane, const PlanePrior& prior, float common_m2, float min_cells) {
+    plane.points_a_cell = points / cells;
+    if (inner.cells + beside.cells < min_cells) return;
+    if (bias_m2 > prior.noise_m2) beside.scale(prior.noise_m2 / bias_m2);
+    inner.add(beside);
+    Plane anew = steep ? fit_plane(inner, prior) : fit_plane_to_means(inner, prior, common_m2);
+    anew.variance_m2 = plane.variance_m2;
+    anew.points_a_cell = plane.points_a_cell;
+    plane = anew;
+  }
+};
+
+}  // namespace curbline
