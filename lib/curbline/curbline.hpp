@@ -23,7 +23,8 @@
 #include "curbline/point.hpp"            //
 #include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
 #include "curbline/viewpoints.hpp"       // from where a robot that drives has seen them
-#include "curbline/dem.hpp"              // rolling window of cells
+#include "curbline/window.hpp"           // where cells lie, in the map and in memory
+#include "curbline/dem.hpp"              // what is in them
 #include "curbline/link.hpp"             // neighbours on a row or column
 #include "curbline/segmentation.hpp"     // leaves, regions
 #include "curbline/region_graph.hpp"     // merging by evidence

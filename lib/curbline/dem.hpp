@@ -1,6 +1,6 @@
-// The elevation map: a rolling window of cells. A two-dimensional ring: when the window moves no cell is copied, those
-// that leave are cleared. Cells are addressed by (i, j), i along x from the window's lowest corner; what other stages
-// keep for a cell is stored under its slot, which stays the same while the cell is in the window.
+// The elevation map: what is in the cells of the rolling window (window.hpp). The heights of each (cell.hpp), its
+// neighbours, when and from where it was seen last, and how it moves with the tilt's latency. Cells that leave the
+// window are cleared.
 #pragma once
 
 #include <array>
@@ -17,20 +17,28 @@
 #include "curbline/pose.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/viewpoints.hpp"
+#include "curbline/window.hpp"
 
 namespace curbline {
 
 template <Limits limits>
-class Dem {
+class Dem : public Window<limits> {
  public:
   static constexpr int capacity = limits.rows * limits.cols;
+  using typename Window<limits>::Place;
+  using Window<limits>::rows;
+  using Window<limits>::cols;
+  using Window<limits>::cell_x_m;
+  using Window<limits>::cell_y_m;
+  using Window<limits>::origin_x_m;
+  using Window<limits>::origin_y_m;
+  using Window<limits>::place_at;
 
   /// Empties the map and places the window. Settings are valid.
   [[gnu::cold]] void init(const WindowSettings& settings, const PlanePrior& prior);
 
-  /// Makes the window follow (x, y), in steps of a block and half a cell late, so that a pose that trembles does not
-  /// move it to and fro; a fixed window stays. Cells that leave are cleared; calls left(slot) for each valid one first.
-  /// Cost: O(1), and a pass over the window if it moves.
+  /// Makes the window follow (x, y), unless it is fixed. Cells that leave are cleared; calls left(slot) for each valid
+  /// one first. Cost: O(1), and a pass over the window if it moves.
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
@@ -39,6 +47,63 @@ class Dem {
   /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones
   /// fade. O(1).
   bool add(const Point& point);
+
+  /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
+  /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
+  void delay(float this_sweep_s, float earlier_s);
+
+  // Its cells.
+
+  const Cell& cell(int slot) const { return cells_[slot]; }
+  /// How far a cell's mean height lies above a plane, at its centroid.
+  float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
+    return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));
+  }
+  float centroid_x_m(int i, const Cell& cell) const { return (static_cast<float>(i) + 0.5f) * cell_x_m() + cell.dx_m; }
+  float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * cell_y_m() + cell.dy_m; }
+  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
+  /// points that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design
+  /// effect).
+  PlaneMoments moments(int i, int j, const Cell& cell) const {
+    PlaneMoments m;
+    const float share = 1.0f / (1.0f + prior_.common_share * (cell.points - 1.0f));
+    m.cells = 1.0f;
+    m.points = cell.points * share;
+    m.weight = cell.weight * share;
+    m.x = centroid_x_m(i, cell);
+    m.y = centroid_y_m(j, cell);
+    m.z = cell.height_m;
+    m.zz = cell.scatter_m2 * share;
+    return m;
+  }
+
+  /// Calls visit(i, j, slot) for each valid cell, row by row.
+  template <typename Visit>
+  void for_each_valid(Visit&& visit) const {
+    for (int i = 0; i < rows(); ++i) for_each_valid_in_row(i, visit);
+  }
+  template <typename Visit>
+  void for_each_valid_in_row(int i, Visit&& visit) const {
+    for_each_valid_along(1, i, [&](int j, int s) { visit(i, j, s); });
+  }
+  /// Calls visit(k, slot) for each valid cell k of a column, along x (axis 0), or of a row, along y (1).
+  template <typename Visit>
+  void for_each_valid_along(int axis, int line, Visit&& visit) const {
+    auto at = this->walk_along(axis, line);
+    for (int k = 0; k < at.count; ++k, at.next()) {
+      if (cell(at.slot).valid()) visit(k, at.slot);
+    }
+  }
+  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
+  /// at most max_link_reach. O(1).
+  int next_valid(int slot, int direction, int reach) const {
+    const int g = distances_[slot] >> (4 * direction) & 15;
+    return g <= reach ? g : 0;
+  }
+  /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
+  Place nearest_unmarked(const Place& place, int reach) const;
+
+  // What the heights within one say, beside the noise of its points.
 
   /// What is known before any point; PlanePrior::common_share by what was found last.
   const PlanePrior& prior() const { return prior_; }
@@ -56,48 +121,6 @@ class Dem {
     prior_.common_share = (found_m2 > prior_.texture_m2 ? found_m2 : prior_.texture_m2) / prior_.noise_m2;
   }
 
-  int rows() const { return settings_.rows; }
-  int cols() const { return settings_.cols; }
-  float cell_x_m() const { return settings_.cell_x_m; }
-  float cell_y_m() const { return settings_.cell_y_m; }
-  float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
-  /// Lowest corner of the window in the map frame.
-  float origin_x_m() const { return static_cast<float>(first_row_) * settings_.cell_x_m + anchor_x_m_; }
-  float origin_y_m() const { return static_cast<float>(first_col_) * settings_.cell_y_m + anchor_y_m_; }
-
-  /// The window and a cell around it: what lies outside that lies outside the window, however places are rounded.
-  Bounds surroundings(float ceiling_m) const {
-    const float x_m = origin_x_m(), y_m = origin_y_m();
-    return {x_m - cell_x_m(), y_m - cell_y_m(), x_m + static_cast<float>(rows() + 1) * cell_x_m(),
-            y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m};
-  }
-
-  int slot(int i, int j) const {
-    i += row_shift_;
-    j += col_shift_;
-    if (i >= settings_.rows) i -= settings_.rows;
-    if (j >= settings_.cols) j -= settings_.cols;
-    return i * limits.cols + j;
-  }
-  /// Of the k-th cell of a block, row by row, by the slot of its first: no block lies across the ends of the ring.
-  static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
-  const Cell& cell(int slot) const { return cells_[slot]; }
-
-  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
-  /// points that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design
-  /// effect).
-  PlaneMoments moments(int i, int j, const Cell& cell) const {
-    PlaneMoments m;
-    const float share = 1.0f / (1.0f + prior_.common_share * (cell.points - 1.0f));
-    m.cells = 1.0f;
-    m.points = cell.points * share;
-    m.weight = cell.weight * share;
-    m.x = centroid_x_m(i, cell);
-    m.y = centroid_y_m(j, cell);
-    m.z = cell.height_m;
-    m.zz = cell.scatter_m2 * share;
-    return m;
-  }
   /// Variance of a cell's mean height, from the noise of its points.
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
   /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
@@ -107,13 +130,11 @@ class Dem {
   bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
   /// Do the heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. Of
   /// several, the sums of their spreads and weights.
-  bool steep(float spread_m2, float weight) const {
-    return spread_m2 > (1.0f / 12) * settings_.cell_x_m * settings_.cell_y_m * weight;
-  }
+  bool steep(float spread_m2, float weight) const { return spread_m2 > (1.0f / 12) * cell_x_m() * cell_y_m() * weight; }
   bool steep(const Cell& cell) const { return steep(spread_m2(cell), cell.weight); }
   /// Variance of the heights of a plane within a cell.
   float slope_m2(const Plane& plane) const {
-    const float rise_x_m = plane.slope_x * settings_.cell_x_m, rise_y_m = plane.slope_y * settings_.cell_y_m;
+    const float rise_x_m = plane.slope_x * cell_x_m(), rise_y_m = plane.slope_y * cell_y_m();
     return (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
   }
   /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
@@ -123,56 +144,24 @@ class Dem {
     const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / prior_.noise_m2 - freedom;
     return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
   }
-  /// How far a cell's mean height lies above a plane, at its centroid.
-  float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
-    return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));
-  }
-  float centroid_x_m(int i, const Cell& cell) const {
-    return (static_cast<float>(i) + 0.5f) * settings_.cell_x_m + cell.dx_m;
-  }
-  float centroid_y_m(int j, const Cell& cell) const {
-    return (static_cast<float>(j) + 0.5f) * settings_.cell_y_m + cell.dy_m;
-  }
+
+  // When and from where it was seen last.
 
   /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
-  bool touched(int slot) const { return (touched_[slot] & touched_bit) != 0; }
+  bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
   void clear_touched() {
     if (any_touched_) clear_all(touched_bit);
     any_touched_ = false;
   }
-
   bool any_touched() const { return any_touched_; }
-
-  /// Calls visit(i, j, slot) for each valid cell, row by row.
-  template <typename Visit>
-  void for_each_valid(Visit&& visit) const {
-    for (int i = 0; i < settings_.rows; ++i) for_each_valid_in_row(i, visit);
-  }
-  template <typename Visit>
-  void for_each_valid_in_row(int i, Visit&& visit) const {
-    for_each_valid_along(1, i, [&](int j, int s) { visit(i, j, s); });
-  }
-  /// Calls visit(k, slot) for each valid cell k of a column, along x (axis 0), or of a row, along y (1).
-  template <typename Visit>
-  void for_each_valid_along(int axis, int line, Visit&& visit) const {
-    const bool along_x = axis == 0;
-    const int count = along_x ? settings_.rows : settings_.cols, step = along_x ? limits.cols : 1;
-    int s = along_x ? slot(0, line) : slot(line, 0);
-    const int end = s + (count - (along_x ? row_shift_ : col_shift_)) * step;
-    for (int k = 0; k < count; ++k) {
-      if (cell(s).valid()) visit(k, s);
-      s += step;
-      if (s == end) s -= count * step;
-    }
-  }
 
   /// The laser sweeps over the ground anew. A pass over the window.
   void begin_sweep() { clear_all(sweep_bit); }
   /// Has an earlier sweep seen the cell, and this one not yet?
-  bool mapped_before(int slot) const { return cell(slot).valid() && (touched_[slot] & sweep_bit) == 0; }
+  bool mapped_before(int slot) const { return cell(slot).valid() && (seen_[slot] & sweep_bit) == 0; }
   /// From now on cells that are seen bear a mark. A pass over the window.
   void begin_marking() { clear_all(marked_bit); }
-  bool marked(int slot) const { return (touched_[slot] & marked_bit) != 0; }
+  bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
   /// The laser is there, in the map frame: what is seen from now on is seen from there.
   void look_from(float x_m, float y_m) {
     viewpoints_.look_from({x_m, y_m});
@@ -181,41 +170,14 @@ class Dem {
   /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
-    const Viewpoints::Position& from = viewpoints_.at(touched_[slot] / a_viewpoint);
+    const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
     return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
   }
   /// If not, all has been seen from one place.
   bool seen_from_several() const { return viewpoints_.moved(); }
+
   /// Mean of its points' growth by the tilt's latency.
   float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
-  /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
-  /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
-  void delay(float this_sweep_s, float earlier_s);
-  /// Where in the window something lies.
-  struct Place {
-    int i = -1, j = -1;        ///< its cell; -1 outside the window
-    float u = 0.0f, v = 0.0f;  ///< in cells from the window's lowest corner
-
-    bool inside() const { return i >= 0; }
-  };
-  /// Of a place of the map; what is not finite lies outside.
-  Place place_at(float x_m, float y_m) const { return place_within(x_m - origin_x_m(), y_m - origin_y_m()); }
-  /// The same, from the window's lowest corner.
-  Place place_within(float x_m, float y_m) const;
-  /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
-  Place nearest_unmarked(const Place& place, int reach) const;
-  /// The cell at a place, from the window's lowest corner; -1 outside the window.
-  int slot_within(float x_m, float y_m) const {
-    const Place place = place_within(x_m, y_m);
-    return place.inside() ? slot(place.i, place.j) : -1;
-  }
-
-  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
-  /// at most max_link_reach. O(1).
-  int next_valid(int slot, int direction, int reach) const {
-    const int g = distances_[slot] >> (4 * direction) & 15;
-    return g <= reach ? g : 0;
-  }
 
  private:
   /// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone
@@ -233,13 +195,8 @@ class Dem {
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
   static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
   void clear_all(std::uint8_t bit) {
-    for (std::uint8_t& touched : touched_) touched &= static_cast<std::uint8_t>(~bit);
+    for (std::uint8_t& seen : seen_) seen &= static_cast<std::uint8_t>(~bit);
   }
-  static int wrap(std::int32_t index, int size) {
-    const int r = index % size;
-    return r < 0 ? r + size : r;
-  }
-  static std::int32_t nearest_block(float blocks, std::int32_t before);
   void set_distance(int slot, int direction, int distance) {
     auto& distances = distances_[slot];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
@@ -248,16 +205,12 @@ class Dem {
   void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
-  WindowSettings settings_{};
   PlanePrior prior_{};
   float common_m2_ = 0.0f;
-  float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
-  std::int32_t first_row_ = 0, first_col_ = 0;   ///< the window's lowest corner in the endless grid
-  int row_shift_ = 0, col_shift_ = 0;
   PerCell<Cell, limits> cells_{};
   Viewpoints viewpoints_{};
-  /// The bits, of this sweep the third; above them the number of the viewpoint that the cell was seen from last.
-  PerCell<std::uint8_t, limits> touched_{};
+  /// Three bits, and above them the number of the viewpoint that the cell was seen from last.
+  PerCell<std::uint8_t, limits> seen_{};
   std::uint8_t flags_ = seen_bits;              ///< of a cell that is seen now
   PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
   PerCell<std::uint16_t, limits> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
@@ -268,74 +221,50 @@ class Dem {
 
 template <Limits limits>
 void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) {
-  settings_ = settings;
+  Window<limits>::init(settings);
   prior_ = prior;
   common_m2_ = prior.common_m2();
   line_rad2_ = 0.0f;
   cells_.fill(Cell{});
-  touched_.fill(0);
+  seen_.fill(0);
   flags_ = seen_bits;
-  const float along_x_m = static_cast<float>(settings.rows) * settings.cell_x_m;
-  const float along_y_m = static_cast<float>(settings.cols) * settings.cell_y_m;
+  const float along_x_m = static_cast<float>(rows()) * cell_x_m(), along_y_m = static_cast<float>(cols()) * cell_y_m();
   viewpoints_.init(along_x_m > along_y_m ? along_x_m : along_y_m);
   growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;
-  first_row_ = first_col_ = 0;
-  row_shift_ = col_shift_ = 0;
-  anchor_x_m_ = settings.origin_x_m;
-  anchor_y_m_ = settings.origin_y_m;
-}
-
-/// First cell of the block whose border is nearest; that before as long as it is, but for half a cell.
-template <Limits limits>
-std::int32_t Dem<limits>::nearest_block(float blocks, std::int32_t before) {
-  constexpr float late = 0.5f + 0.5f / block_side;
-  const float moved = blocks - static_cast<float>(before / block_side);
-  if (moved > -late && moved < late) return before;
-  return floor_to_int(blocks + 0.5f) * block_side;
 }
 
 template <Limits limits>
 template <typename Left>
 void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
-  if (settings_.fixed) return;
-  const std::int32_t row = nearest_block(x_m / (settings_.cell_x_m * block_side), first_row_);
-  const std::int32_t col = nearest_block(y_m / (settings_.cell_y_m * block_side), first_col_);
-  if (row == first_row_ && col == first_col_) return;
-  // Of a row or column, in the window as it will be; a great number if it lies before it.
-  const auto moved = [](int place, std::int32_t first, std::int32_t first_now) {
-    return static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) -
-           static_cast<std::uint32_t>(first_now);
-  };
-  for (int i = 0; i < settings_.rows; ++i) {
-    const bool row_stays = moved(i, first_row_, row) < static_cast<std::uint32_t>(settings_.rows);
-    for (int j = 0; j < settings_.cols; ++j) {
-      if (row_stays && moved(j, first_col_, col) < static_cast<std::uint32_t>(settings_.cols)) continue;
-      const int s = slot(i, j);
+  const auto to = this->corner_of(x_m, y_m);
+  if (to == this->corner()) return;
+  for (int i = 0; i < rows(); ++i) {
+    const bool row_stays = this->row_stays(i, to);
+    for (int j = 0; j < cols(); ++j) {
+      if (row_stays && this->col_stays(j, to)) continue;
+      const int s = this->slot(i, j);
       if (!cell(s).valid()) continue;
       left(s);
       leave(i, j);
     }
   }
-  first_row_ = row;
-  first_col_ = col;
-  row_shift_ = wrap(row, settings_.rows);
-  col_shift_ = wrap(col, settings_.cols);
+  this->move(to);
 }
 
 /// A cell that has just become valid: it and the next ones on its row and column learn of each other.
 template <Limits limits>
 void Dem<limits>::meet_neighbours(int i, int j) {
-  const int s = slot(i, j);
+  const int s = this->slot(i, j);
   for (int d = 0; d < directions; ++d) {
     const auto n = static_cast<std::size_t>(d);
     int a = i, b = j;
     for (int g = 1; g <= max_link_reach; ++g) {
       a += step_i[n];
       b += step_j[n];
-      if (a < 0 || b < 0 || a >= settings_.rows || b >= settings_.cols) break;
-      const int other = slot(a, b);
+      if (a < 0 || b < 0 || a >= rows() || b >= cols()) break;
+      const int other = this->slot(a, b);
       if (!cell(other).valid()) continue;
       set_distance(s, d, g);
       set_distance(other, d ^ 1, g);
@@ -347,37 +276,28 @@ void Dem<limits>::meet_neighbours(int i, int j) {
 /// Clears a cell. What lies beyond it leaves too, so its neighbours see nothing there any more.
 template <Limits limits>
 void Dem<limits>::leave(int i, int j) {
-  const int s = slot(i, j);
+  const int s = this->slot(i, j);
   for (int d = 0; d < directions; ++d) {
     const auto n = static_cast<std::size_t>(d);
     const int g = next_valid(s, d, max_link_reach);
-    if (g > 0) set_distance(slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
+    if (g > 0) set_distance(this->slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
   }
   cells_[s] = Cell{};
   growth_[s] = 0;
   distances_[s] = 0;
-  touched_[s] = flags_;
+  seen_[s] = flags_;
   any_touched_ = true;
-}
-
-template <Limits limits>
-auto Dem<limits>::place_within(float x_m, float y_m) const -> Place {
-  const float u = x_m / settings_.cell_x_m, v = y_m / settings_.cell_y_m;
-  if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
-      !(v < static_cast<float>(settings_.cols)))
-    return {};
-  return {static_cast<int>(u), static_cast<int>(v), u, v};
 }
 
 template <Limits limits>
 auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place {
   const auto unmarked = [this](int s) { return cell(s).valid() && !marked(s); };
-  if (unmarked(slot(place.i, place.j))) return place;
+  if (unmarked(this->slot(place.i, place.j))) return place;
   for (int g = 1; g <= reach; ++g) {
     for (std::size_t d = 0; d < directions; ++d) {
       const int i = place.i + g * step_i[d], j = place.j + g * step_j[d];
-      if (i < 0 || j < 0 || i >= settings_.rows || j >= settings_.cols) continue;
-      if (unmarked(slot(i, j))) return {i, j};
+      if (i < 0 || j < 0 || i >= rows() || j >= cols()) continue;
+      if (unmarked(this->slot(i, j))) return {i, j};
     }
   }
   return {};
@@ -392,14 +312,14 @@ bool Dem<limits>::add(const Point& point) {
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
-  const int s = slot(i, j);
+  const int s = this->slot(i, j);
   if (!cells_[s].valid()) meet_neighbours(i, j);
   if (mapped_before(s) && several_surfaces(cells_[s])) cells_[s].fade(memory);
-  cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * settings_.cell_x_m - point.shift_x_m,
-                (place.v - static_cast<float>(j) - 0.5f) * settings_.cell_y_m - point.shift_y_m, point.z_m, weight);
+  cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * cell_x_m() - point.shift_x_m,
+                (place.v - static_cast<float>(j) - 0.5f) * cell_y_m() - point.shift_y_m, point.z_m, weight);
   add_growth(s, point, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
-  touched_[s] = flags_;
+  seen_[s] = flags_;
   any_touched_ = true;
   return true;
 }

@@ -1,0 +1,140 @@
+// The rolling window: where its cells lie in the map, and in memory. A two-dimensional ring: when the window moves no
+// cell is copied. Cells are addressed by (i, j), i along x from the window's lowest corner; what stages keep for a cell
+// is stored under its slot, which stays the same while the cell is in the window.
+#pragma once
+
+#include <cstdint>
+
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/point.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Window {
+ public:
+  /// Places it. Settings are valid.
+  void init(const WindowSettings& settings) {
+    settings_ = settings;
+    corner_ = {};
+    row_shift_ = col_shift_ = 0;
+    anchor_x_m_ = settings.origin_x_m;
+    anchor_y_m_ = settings.origin_y_m;
+  }
+
+  int rows() const { return settings_.rows; }
+  int cols() const { return settings_.cols; }
+  float cell_x_m() const { return settings_.cell_x_m; }
+  float cell_y_m() const { return settings_.cell_y_m; }
+  /// Along x (axis 0) or y (1).
+  int cells_along(int axis) const { return axis == 0 ? settings_.rows : settings_.cols; }
+  float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
+  /// Lowest corner in the map frame.
+  float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + anchor_x_m_; }
+  float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + anchor_y_m_; }
+
+  /// It and a cell around it: what lies outside that lies outside the window, however places are rounded.
+  Bounds surroundings(float ceiling_m) const {
+    const float x_m = origin_x_m(), y_m = origin_y_m();
+    return {x_m - cell_x_m(), y_m - cell_y_m(), x_m + static_cast<float>(rows() + 1) * cell_x_m(),
+            y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m};
+  }
+
+  int slot(int i, int j) const {
+    i += row_shift_;
+    j += col_shift_;
+    if (i >= settings_.rows) i -= settings_.rows;
+    if (j >= settings_.cols) j -= settings_.cols;
+    return i * limits.cols + j;
+  }
+  /// Of the k-th cell of a block, row by row, by the slot of its first: no block lies across the ends of the ring.
+  static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
+  /// Where in the window something lies.
+  struct Place {
+    int i = -1, j = -1;        ///< its cell; -1 outside the window
+    float u = 0.0f, v = 0.0f;  ///< in cells from the window's lowest corner
+
+    bool inside() const { return i >= 0; }
+  };
+  /// Of a place of the map; what is not finite lies outside.
+  Place place_at(float x_m, float y_m) const { return place_within(x_m - origin_x_m(), y_m - origin_y_m()); }
+  /// The same, from the window's lowest corner.
+  Place place_within(float x_m, float y_m) const {
+    const float u = x_m / settings_.cell_x_m, v = y_m / settings_.cell_y_m;
+    if (!(u >= 0.0f) || !(v >= 0.0f) || !(u < static_cast<float>(settings_.rows)) ||
+        !(v < static_cast<float>(settings_.cols)))
+      return {};
+    return {static_cast<int>(u), static_cast<int>(v), u, v};
+  }
+  /// The cell at a place, from the window's lowest corner; -1 outside the window.
+  int slot_within(float x_m, float y_m) const {
+    const Place place = place_within(x_m, y_m);
+    return place.inside() ? slot(place.i, place.j) : -1;
+  }
+
+ protected:
+  /// The slots of a column, along x (axis 0), or of a row, along y (1), one after the other.
+  struct Walk {
+    int slot, step, end, count;
+    void next() {
+      slot += step;
+      if (slot == end) slot -= count * step;
+    }
+  };
+  Walk walk_along(int axis, int line) const {
+    const bool along_x = axis == 0;
+    const int first = along_x ? slot(0, line) : slot(line, 0), step = along_x ? limits.cols : 1;
+    const int count = cells_along(axis);
+    return {first, step, first + (count - (along_x ? row_shift_ : col_shift_)) * step, count};
+  }
+
+  /// The lowest corner, in cells of an endless grid of which (0, 0) begins where the window first did.
+  struct Corner {
+    std::int32_t row = 0, col = 0;
+    bool operator==(const Corner&) const = default;
+  };
+  const Corner& corner() const { return corner_; }
+  /// Where it will be with the robot at (x, y): in steps of a block and half a cell late, so that a pose that trembles
+  /// does not move it to and fro; a fixed window stays.
+  Corner corner_of(float x_m, float y_m) const {
+    if (settings_.fixed) return corner_;
+    return {nearest_block(x_m / (settings_.cell_x_m * block_side), corner_.row),
+            nearest_block(y_m / (settings_.cell_y_m * block_side), corner_.col)};
+  }
+  /// Will a row, or a column, of the window be one of it when the corner is there?
+  bool row_stays(int i, const Corner& to) const { return stays(i, corner_.row, to.row, settings_.rows); }
+  bool col_stays(int j, const Corner& to) const { return stays(j, corner_.col, to.col, settings_.cols); }
+  void move(const Corner& to) {
+    corner_ = to;
+    row_shift_ = wrap(to.row, settings_.rows);
+    col_shift_ = wrap(to.col, settings_.cols);
+  }
+
+ private:
+  /// First cell of the block whose border is nearest; that before as long as it is, but for half a cell.
+  static std::int32_t nearest_block(float blocks, std::int32_t before) {
+    constexpr float late = 0.5f + 0.5f / block_side;
+    const float moved = blocks - static_cast<float>(before / block_side);
+    if (moved > -late && moved < late) return before;
+    return floor_to_int(blocks + 0.5f) * block_side;
+  }
+  static bool stays(int place, std::int32_t first, std::int32_t first_then, int count) {
+    const auto place_then =  // a great number if it lies before the window
+        static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) - static_cast<std::uint32_t>(first_then);
+    return place_then < static_cast<std::uint32_t>(count);
+  }
+  static int wrap(std::int32_t index, int size) {
+    const int r = index % size;
+    return r < 0 ? r + size : r;
+  }
+
+  WindowSettings settings_{};
+  float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
+  Corner corner_{};
+  int row_shift_ = 0, col_shift_ = 0;  ///< of the ring
+};
+
+}  // namespace curbline
