@@ -120,7 +120,7 @@ class BorderFinder {
   int away(const Line& line, int along) const {
     return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
   }
-  int cells_of(const Line& line) const { return line.axis == 0 ? dem_.rows() : dem_.cols(); }
+  int cells_of(const Line& line) const { return dem_.cells_along(line.axis); }
   float pitch_m(const Line& line) const { return dem_.cell_m(line.axis); }
   /// Of the middle of the line.
   float across_m(const Line& line) const {

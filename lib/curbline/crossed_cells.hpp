@@ -37,7 +37,7 @@ CellSet<limits> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curb
   const float cells_x = 1.0f / dem.cell_x_m(), cells_y = 1.0f / dem.cell_y_m();
   const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // or the window has leapt away
   const auto insert = [&](int i, int j) {
-    if (i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols()) crossed.insert(dem.slot(i, j));
+    if (dem.contains(i, j)) crossed.insert(dem.slot(i, j));
   };
   for (const Curb& curb : curbs) {
     if (!is_step(curb) || curb.far_label == no_label) continue;

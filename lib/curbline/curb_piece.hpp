@@ -232,7 +232,7 @@ int CurbPiece<limits>::cell_beside(const Stages& stages, const Border& border, i
   const auto d = static_cast<std::size_t>(direction(border.axis, own == border.high ? border.sign : -border.sign));
   const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
   int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
-  for (int g = 0; g <= reach && i >= 0 && j >= 0 && i < dem.rows() && j < dem.cols(); ++g) {
+  for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
     const int slot = dem.slot(i, j);
     if (dem.cell(slot).valid() && stages.field.label(slot) == own) return slot;
     i += step_i[d];

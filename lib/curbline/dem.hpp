@@ -263,7 +263,7 @@ void Dem<limits>::meet_neighbours(int i, int j) {
     for (int g = 1; g <= max_link_reach; ++g) {
       a += step_i[n];
       b += step_j[n];
-      if (a < 0 || b < 0 || a >= rows() || b >= cols()) break;
+      if (!this->contains(a, b)) break;
       const int other = this->slot(a, b);
       if (!cell(other).valid()) continue;
       set_distance(s, d, g);
@@ -296,8 +296,7 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
   for (int g = 1; g <= reach; ++g) {
     for (std::size_t d = 0; d < directions; ++d) {
       const int i = place.i + g * step_i[d], j = place.j + g * step_j[d];
-      if (i < 0 || j < 0 || i >= rows() || j >= cols()) continue;
-      if (unmarked(this->slot(i, j))) return {i, j};
+      if (this->contains(i, j) && unmarked(this->slot(i, j))) return {i, j};
     }
   }
   return {};

@@ -212,8 +212,7 @@ void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const Plane
     for (int j = 0; j < dem.cols(); j += block_side) {
       for (int a = i - block_side; a <= i + block_side; a += block_side) {
         for (int b = j - block_side; b <= j + block_side; b += block_side) {
-          if (a < 0 || b < 0 || a >= dem.rows() || b >= dem.cols()) continue;
-          near_by_[block_of(dem, a, b)].insert(here[static_cast<std::size_t>(j / block_side)]);
+          if (dem.contains(a, b)) near_by_[block_of(dem, a, b)].insert(here[static_cast<std::size_t>(j / block_side)]);
         }
       }
     }

@@ -157,7 +157,7 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
 template <Limits limits>
 bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
   const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
-  const int count = axis == 0 ? dem_.rows() : dem_.cols(), at = axis == 0 ? i : j;
+  const int count = dem_.cells_along(static_cast<int>(axis)), at = axis == 0 ? i : j;
   const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
   int length = 1;
   for (const int step : {toward, -toward}) {

@@ -128,8 +128,7 @@ struct Strip {
 /// Calls visit(strip, line) for each run of cells along x (axis 0) or along y (1), in the order of lines and cells.
 template <Limits limits, typename Visit>
 void for_each_run(const Dem<limits>& dem, int axis, const CellLabels<limits>& region_label, Visit&& visit) {
-  const int lines = axis == 0 ? dem.cols() : dem.rows();
-  for (int line = 0; line < lines; ++line) {
+  for (int line = 0; line < dem.cells_along(1 - axis); ++line) {
     Run before, run;
     const auto end_run = [&](const Run& next) {
       if (run.any()) visit(Strip{before, run, next}, line);

@@ -43,6 +43,7 @@ class Window {
             y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m};
   }
 
+  bool contains(int i, int j) const { return i >= 0 && j >= 0 && i < settings_.rows && j < settings_.cols; }
   int slot(int i, int j) const {
     i += row_shift_;
     j += col_shift_;
