@@ -1,27 +1,24 @@
 // Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
 // that lie on no plane of the ground, and those that hold something of both sides, are looked through; they tell where
-// between the cells of the one and of the other the edge lies. Two edges are found although no ground is seen beyond:
-//   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
-//     as well as the face; what lies beyond is flatter than the rays.
-//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
-//     follow the ground, away from the laser, and lie below it. They fall as far as is seen of the step.
-// Planes that lie farther apart than the reach of links are asked whether a step down hides what is between them.
-// Cost: a pass over the window, a look at each cell of a gap, a face and a veil, and at those before a gap without
-// points.
+// between the cells of the one and of the other the edge lies. Planes that lie farther apart than the reach of links
+// are asked whether a step down hides what is between them. Edges beyond which no ground is seen: ground_end.hpp. Cost:
+// a pass over the window, a look at each cell of a gap, and at those before a gap without points.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/beside.hpp"
 #include "curbline/borders.hpp"
+#include "curbline/cell_line.hpp"
 #include "curbline/counters.hpp"
+#include "curbline/curb_stages.hpp"
 #include "curbline/dem.hpp"
-#include "curbline/label_field.hpp"
+#include "curbline/ground_end.hpp"
 #include "curbline/math.hpp"
-#include "curbline/plane_mixture.hpp"
+#include "curbline/plane.hpp"
 #include "curbline/point.hpp"
-#include "curbline/settings.hpp"
 
 namespace curbline {
 
@@ -43,60 +40,37 @@ float before_middle(const CrossedCell& cell);
 template <Limits limits>
 class BorderFinder {
  public:
-  BorderFinder(const CurbSettings& settings, const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
-               const LabelField<limits>& field, const Viewpoint& view)
-      : settings_(settings), dem_(dem), mixture_(mixture), field_(field), view_(view) {}
+  BorderFinder(const CurbStages<limits>& stages, int link_reach)
+      : stages_(stages), ends_(stages, link_reach), link_reach_(link_reach) {}
 
   /// Fills `borders`, which are empty.
-  void find(Borders<limits>& borders, Counters& counters);
+  void find(Borders<limits>& borders, Counters& counters) const;
 
  private:
   using Border = typename Borders<limits>::Border;
+  using Line = CellLine<limits>;
 
-  static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
-  static constexpr int widest_blur = 2;         ///< cells that mix both sides, at an edge and at the end of its shadow
+  static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
 
-  /// A line of cells: a column, along x (axis 0), or a row, along y (axis 1).
-  struct Line {
-    int axis, across;
-  };
-  /// A cell of a line and its plane.
-  struct LabelledCell {
-    Label label = no_label;
-    std::int16_t along = 0;
-  };
   /// From a cell of one plane to one of another.
   struct Gap {
     Line line;
     LabelledCell first, second;
   };
-  /// The last cell of a plane, of a face or before a veil, beyond which no ground is seen.
-  struct End {
-    Line line;
-    LabelledCell last;  ///< label is no_label if there is no such end
-    int toward;         ///< 1 if the plane is left along the axis, -1 if against it
-  };
-  struct Brink {
-    End end;
-    int last_of_veil;  ///< place along the line
-  };
-
   /// The cells beside a gap, as the laser sees them.
   struct Sides {
     const LabelledCell &near, &far;
   };
   Sides sides(const Gap& gap) const {
-    return away(gap.line, gap.first.along) > 0 ? Sides{gap.first, gap.second} : Sides{gap.second, gap.first};
+    return gap.line.away(stages_.view, gap.first.along) > 0 ? Sides{gap.first, gap.second}
+                                                            : Sides{gap.second, gap.first};
   }
-  bool wide(const Gap& gap) const { return gap.second.along - gap.first.along > settings_.link_reach; }
-  [[gnu::noinline]] bool hidden(const Gap& gap) const;  // seldom: inlined twice it would not fit the flash's budget
+  // This and hidden() are called: inlined twice they would not fit the flash's budget.
+  template <typename Add>
+  [[gnu::noinline]] void cross(const Gap& gap, Add&& add) const;
+  bool wide(const Gap& gap) const { return gap.second.along - gap.first.along > link_reach_; }
+  [[gnu::noinline]] bool hidden(const Gap& gap) const;
   Border border_of(const Gap& gap) const;
-  End find_face_end(const Gap& gap, int toward) const;
-  Border border_of_face(const End& end) const;
-  Brink find_brink(const Line& line, int first_of_veil) const;
-  Border border_of(const Brink& brink) const;
-  Border border_at(const Line& line, float along_m) const;
-  Border border_at(const End& end, float along_m) const;
   Beside beside(const Line& line, float border_m, int toward, Label label) const;
   /// Of what parts the planes.
   struct Middle {
@@ -106,118 +80,75 @@ class BorderFinder {
   Middle middle(const Gap& gap) const;
   bool behind_obstacle(const Gap& gap, int along) const;
   float same_plane(const Gap& gap) const;
-  [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const;  // as slot()
-  bool bears_ground(int slot) const;
-  bool is_veil(int slot) const;
+  auto belief(const Line& line, int along) const {
+    return stages_.field.belief(stages_.dem, line.row(along), line.col(along));
+  }
 
-  static int row(const Line& line, int along) { return line.axis == 0 ? along : line.across; }
-  static int col(const Line& line, int along) { return line.axis == 0 ? line.across : along; }
-  // Asked where borders are, in many places: inlined there they take 700 bytes of flash.
-  [[gnu::noinline]] int slot(const Line& line, int along) const {
-    return dem_.slot(row(line, along), col(line, along));
-  }
-  /// 1 if the cell lies farther along the line than the laser, else -1.
-  int away(const Line& line, int along) const {
-    return (static_cast<float>(along) + 0.5f) * pitch_m(line) > (line.axis == 0 ? view_.x_m : view_.y_m) ? 1 : -1;
-  }
-  int cells_of(const Line& line) const { return dem_.cells_along(line.axis); }
-  float pitch_m(const Line& line) const { return dem_.cell_m(line.axis); }
-  /// Of the middle of the line.
-  float across_m(const Line& line) const {
-    return (static_cast<float>(line.across) + 0.5f) * dem_.cell_m(1 - line.axis);
-  }
-  /// Of the cell's centroid from its middle, in cells along the line.
-  float offset(const Line& line, const Cell& cell) const {
-    return (line.axis == 0 ? cell.dx_m : cell.dy_m) / pitch_m(line);
-  }
-  [[gnu::noinline]] float above_m(const Line& line, int along, const Plane& plane) const {
-    return dem_.above_m(row(line, along), col(line, along), dem_.cell(slot(line, along)), plane);
-  }
-  auto belief(const Line& line, int along) const { return field_.belief(dem_, row(line, along), col(line, along)); }
-
-  const CurbSettings& settings_;
-  const Dem<limits>& dem_;
-  const PlaneMixture<limits>& mixture_;
-  const LabelField<limits>& field_;
-  const Viewpoint& view_;
+  const CurbStages<limits>& stages_;
+  const GroundEnds<limits> ends_;
+  const int link_reach_;
 };
-
-/// Does a cell bear a plane that a curb may have for a side? A label may outlive its plane by a line.
-template <Limits limits>
-bool BorderFinder<limits>::bears_ground(int slot) const {
-  const Label label = field_.label(slot);
-  return label != no_label && mixture_.on_ground(slot) && mixture_.plane(label).alive() && !mixture_.may_be_veil(label);
-}
-
-/// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of a
-/// region too small for a plane, or of a plane that may be a veil.
-template <Limits limits>
-bool BorderFinder<limits>::is_veil(int slot) const {
-  if (mixture_.region_label(slot) == no_label) return true;
-  const Label label = field_.label(slot);
-  return mixture_.on_ground(slot) ? label != no_label && mixture_.may_be_veil(label) : !mixture_.covered(slot);
-}
-
-/// Within three standard deviations.
-template <Limits limits>
-bool BorderFinder<limits>::lies_on(int i, int j, const Cell& cell, const Plane& plane) const {
-  const float residual = dem_.above_m(i, j, cell, plane);
-  return residual * residual <= gate * (plane.variance_m2 + dem_.height_variance_m2(cell));
-}
 
 /// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
 template <Limits limits>
-void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) {
-  const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem_, border); };
-  const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
-    const Gap gap{line, before, here};
-    before = here;
-    if (gap.first.label == no_label || gap.first.label == here.label || (wide(gap) && !hidden(gap))) return;
-    add(border_of(gap));
-    for (const int toward : {-1, 1}) {
-      if (const End end = find_face_end(gap, toward); end.last.label != no_label) add(border_of_face(end));
-    }
-  };
+void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) const {
+  const Dem<limits>& dem = stages_.dem;
+  const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem, border); };
   const auto end_before = [&](const Line& line, int veil) {
-    if (const Brink brink = find_brink(line, veil); brink.end.last.label != no_label) add(border_of(brink));
+    if (const auto brink = ends_.brink(line, veil)) add(*brink);
+  };
+  const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
+    if (before.label != no_label && before.label != here.label) cross({line, before, here}, add);
+    before = here;
   };
   std::array<LabelledCell, limits.cols> before_in_col{};
   LabelledCell before_in_row;
   int row = -1;
-  dem_.for_each_valid([&](int i, int j, int s) {
-    const Label label = field_.label(s);
-    if (!bears_ground(s) || !lies_on(i, j, dem_.cell(s), mixture_.plane(label))) {
-      if (is_veil(s)) end_before({0, j}, i), end_before({1, i}, j);
+  dem.for_each_valid([&](int i, int j, int s) {
+    const Label label = stages_.field.label(s);
+    if (!stages_.bears_ground(s) || !stages_.lies_on(i, j, dem.cell(s), stages_.mixture.plane(label))) {
+      if (stages_.is_veil(s)) end_before({dem, 0, j}, i), end_before({dem, 1, i}, j);
       return;
     }
     if (i != row) before_in_row = {};
     row = i;
-    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {0, j});
-    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {1, i});
+    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {dem, 0, j});
+    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {dem, 1, i});
   });
+}
+
+/// Calls add(border) for that in a gap, unless it is too wide, and for those where a face on one of its sides ends.
+template <Limits limits>
+template <typename Add>
+void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
+  if (wide(gap) && !hidden(gap)) return;
+  add(border_of(gap));
+  if (const auto end = ends_.of_face(gap.line, gap.first, -1)) add(*end);
+  if (const auto end = ends_.of_face(gap.line, gap.second, 1)) add(*end);
 }
 
 /// Does a step down hide what a wide gap lacks? Then nothing stands in it, and the ray to its far cell has passed over
 /// the plane that ends at its near one: where it met that plane, or a blur before, lie cells that bear it.
 template <Limits limits>
 bool BorderFinder<limits>::hidden(const Gap& gap) const {
+  const Dem<limits>& dem = stages_.dem;
   const auto [near, far] = sides(gap);
-  const int i = row(gap.line, far.along), j = col(gap.line, far.along), far_slot = dem_.slot(i, j);
-  const Viewpoint from = dem_.seen_from(far_slot, view_);
-  const Plane& plane = mixture_.plane(near.label);
-  const Cell& cell = dem_.cell(far_slot);
-  const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem_.above_m(i, j, cell, plane);
+  const int i = gap.line.row(far.along), j = gap.line.col(far.along), far_slot = dem.slot(i, j);
+  const Viewpoint from = dem.seen_from(far_slot, stages_.view);
+  const Plane& plane = stages_.mixture.plane(near.label);
+  const Cell& cell = dem.cell(far_slot);
+  const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem.above_m(i, j, cell, plane);
   if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
   for (int along = gap.first.along + 1; along < gap.second.along; ++along) {
-    if (mixture_.obstructed(dem_, slot(gap.line, along))) return false;
+    if (stages_.mixture.obstructed(dem, gap.line.slot(along))) return false;
   }
-  const float dx_m = dem_.centroid_x_m(i, cell) - from.x_m, dy_m = dem_.centroid_y_m(j, cell) - from.y_m;
+  const float dx_m = dem.centroid_x_m(i, cell) - from.x_m, dy_m = dem.centroid_y_m(j, cell) - from.y_m;
   const float share = above_m / (above_m + below_m);  // of the ray, up to the plane
-  const float cells = square_root(square(dx_m / dem_.cell_x_m()) + square(dy_m / dem_.cell_y_m()));
+  const float cells = square_root(square(dx_m / dem.cell_x_m()) + square(dy_m / dem.cell_y_m()));
   for (int back = 0; back <= widest_blur; ++back) {
     const float at = share - static_cast<float>(back) / cells;
-    const int s = dem_.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
-    if (s >= 0 && dem_.cell(s).valid() && bears_ground(s) && field_.label(s) == near.label) return true;
+    const int s = dem.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
+    if (s >= 0 && dem.cell(s).valid() && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return true;
   }
   return false;
 }
@@ -236,34 +167,14 @@ float BorderFinder<limits>::same_plane(const Gap& gap) const {
 }
 
 template <Limits limits>
-auto BorderFinder<limits>::border_at(const Line& line, float along_m) const -> Border {
-  Border border{};
-  border.x_m = line.axis == 0 ? along_m : across_m(line);
-  border.y_m = line.axis == 0 ? across_m(line) : along_m;
-  border.axis = static_cast<std::int8_t>(line.axis);
-  return border;
-}
-
-/// `high` is no_label, and on the side of what is not seen.
-template <Limits limits>
-auto BorderFinder<limits>::border_at(const End& end, float along_m) const -> Border {
-  Border border = border_at(end.line, along_m);
-  border.probability = belief(end.line, end.last.along).of(end.last.label);
-  border.low = end.last.label;
-  border.high = no_label;
-  border.sign = static_cast<std::int8_t>(end.toward);
-  return border;
-}
-
-template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first.label < gap.second.label;
   const LabelledCell& low = rising ? gap.first : gap.second;
   const LabelledCell& high = rising ? gap.second : gap.first;
   const auto [along_m, open] = middle(gap);
-  Border border = border_at(gap.line, along_m);
+  Border border = Borders<limits>::on(gap.line, along_m);
   border.probability = 1.0f - same_plane(gap);
-  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * pitch_m(gap.line);
+  border.half_gap_m = 0.5f * static_cast<float>(gap.second.along - gap.first.along) * gap.line.pitch_m();
   border.low = low.label;
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
@@ -277,90 +188,23 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 /// than the side's plane may lie before them.
 template <Limits limits>
 Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
-  const Plane& plane = mixture_.plane(label);
-  const float slope_m2 = dem_.slope_m2(plane);
+  const PlaneMixture<limits>& mixture = stages_.mixture;
+  const Plane& plane = mixture.plane(label);
+  const float slope_m2 = line.dem.slope_m2(plane);
   const auto lies_alone = [&](int along) {
-    if (along < 0 || along >= cells_of(line)) return false;
-    const int s = slot(line, along);
-    const Cell& cell = dem_.cell(s);
-    return cell.valid() && field_.label(s) == label && mixture_.region_label(s) != no_label && mixture_.on_ground(s) &&
-           !dem_.mixed(cell, slope_m2);
+    if (along < 0 || along >= line.cells()) return false;
+    const int s = line.slot(along);
+    const Cell& cell = line.dem.cell(s);
+    return cell.valid() && stages_.field.label(s) == label && mixture.region_label(s) != no_label &&
+           mixture.on_ground(s) && !line.dem.mixed(cell, slope_m2);
   };
-  const float border = border_m / pitch_m(line);
+  const float border = border_m / line.pitch_m();
   int nearer = static_cast<int>(border) + toward;
   if (!lies_alone(nearer)) nearer += toward;
   const int farther = nearer + toward;
   if (!lies_alone(nearer) || !lies_alone(farther)) return {};
   const float away = static_cast<float>(toward) * (static_cast<float>(nearer) + 0.5f - border);
-  return Beside::of(above_m(line, nearer, plane), above_m(line, farther, plane), away);
-}
-
-/// Of the face on the far side of a gap (toward 1), or on its near side (-1).
-template <Limits limits>
-auto BorderFinder<limits>::find_face_end(const Gap& gap, int toward) const -> End {
-  const Line& line = gap.line;
-  const LabelledCell& first = toward > 0 ? gap.second : gap.first;
-  const Plane& plane = mixture_.plane(first.label);
-  const auto sign = static_cast<float>(toward);
-  const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
-  if (rise <= steepest_ramp || away(line, first.along) != toward) return {};
-
-  const int widest = static_cast<int>(widest_face_m / pitch_m(line) + 1.5f);  // touched, when it lies across cells
-  int last = first.along;
-  while (const int g = dem_.next_valid(slot(line, last), direction(line.axis, toward), settings_.link_reach)) {
-    last += toward * g;
-    if (field_.label(slot(line, last)) != first.label || toward * (last - first.along) >= widest) return {};
-  }
-  const bool at_end = last == 0 || last == cells_of(line) - 1;
-  if (at_end) return {};  // the window's, perhaps not the face's
-  return {line, {first.label, static_cast<std::int16_t>(last)}, toward};
-}
-
-/// The points of the last cell reach as far beyond their centroid as they lie before it. Where the next one would have
-/// been is open to a cell.
-template <Limits limits>
-auto BorderFinder<limits>::border_of_face(const End& end) const -> Border {
-  const auto sign = static_cast<float>(end.toward);
-  const float centroid = sign * offset(end.line, dem_.cell(slot(end.line, end.last.along)));
-  const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
-  Border border = border_at(end, (static_cast<float>(end.last.along) + 0.5f + sign * edge) * pitch_m(end.line));
-  border.half_gap_m = pitch_m(end.line);
-  return border;
-}
-
-/// Before the first cell of a veil, as the laser sees it.
-template <Limits limits>
-auto BorderFinder<limits>::find_brink(const Line& line, int first_of_veil) const -> Brink {
-  const int toward = away(line, first_of_veil);
-  const int before = dem_.next_valid(slot(line, first_of_veil), direction(line.axis, -toward), settings_.link_reach);
-  const int edge = first_of_veil - toward * before;
-  if (before == 0 || !bears_ground(slot(line, edge))) return {};
-  const auto on_plane = [&](int along, Label label) {
-    return lies_on(row(line, along), col(line, along), dem_.cell(slot(line, along)), mixture_.plane(label));
-  };
-  int last = first_of_veil;
-  while (const int g = dem_.next_valid(slot(line, last), direction(line.axis, toward), settings_.link_reach)) {
-    const int next = last + toward * g;
-    const int s = slot(line, next);
-    if (bears_ground(s) && (mixture_.region_label(s) != no_label || on_plane(next, field_.label(s)))) return {};
-    if (!is_veil(s)) break;
-    last = next;
-  }
-  const Label label = field_.label(slot(line, edge));
-  if (!on_plane(edge, label) || on_plane(last, label) || above_m(line, last, mixture_.plane(label)) > 0.0f) return {};
-  return {{line, {label, static_cast<std::int16_t>(edge)}, toward}, last};
-}
-
-/// The veil falls on to the far side of its last cell.
-template <Limits limits>
-auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
-  const End& end = brink.end;
-  const int edge = end.last.along + (end.toward > 0 ? 1 : 0);
-  const auto cells = static_cast<float>(end.toward * (brink.last_of_veil - end.last.along));
-  Border border = border_at(end, static_cast<float>(edge) * pitch_m(end.line));
-  border.half_gap_m = 0.5f * pitch_m(end.line);
-  border.drop_m = -above_m(end.line, brink.last_of_veil, mixture_.plane(end.last.label)) * cells / (cells - 0.5f);
-  return border;
+  return Beside::of(line.above_m(nearer, plane), line.above_m(farther, plane), away);
 }
 
 /// Along the line, where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
@@ -370,27 +214,27 @@ auto BorderFinder<limits>::border_of(const Brink& brink) const -> Border {
 template <Limits limits>
 auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   const Line& line = gap.line;
-  const float cell_m = pitch_m(line);
+  const float cell_m = line.pitch_m();
   const auto cells = static_cast<float>(gap.second.along - gap.first.along + 1);
   const float halfway_m = (static_cast<float>(gap.first.along) + 0.5f * cells) * cell_m;
-  const Border halfway = border_at(line, halfway_m);
-  const Plane& first = mixture_.plane(gap.first.label);
-  const Plane& second = mixture_.plane(gap.second.label);
-  const float step_m = second.height_m(halfway.x_m, halfway.y_m) - first.height_m(halfway.x_m, halfway.y_m);
+  const Plane& first = stages_.mixture.plane(gap.first.label);
+  const Plane& second = stages_.mixture.plane(gap.second.label);
+  const float x_m = line.x_m(halfway_m), y_m = line.y_m(halfway_m);
+  const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f;
   int empty = -1;  // one of them
   for (int along = gap.first.along; along <= gap.second.along; ++along) {
-    const int s = slot(line, along);
-    const Cell& cell = dem_.cell(s);
+    const int s = line.slot(along);
+    const Cell& cell = line.dem.cell(s);
     if (!cell.valid()) {
       empty = along;
       before += 0.5f;
-    } else if (mixture_.covered(s)) {
+    } else if (stages_.mixture.covered(s)) {
       covered += 1.0f;
       before += 0.5f;
     } else {
-      before += before_middle({above_m(line, along, first) / step_m, 0.5f + offset(line, cell)});
+      before += before_middle({line.above_m(along, first) / step_m, 0.5f + line.offset(cell)});
     }
   }
   const bool open = covered * covered > cells - covered || (empty >= 0 && behind_obstacle(gap, empty));
@@ -403,25 +247,27 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
 /// there a cell that bears no ground lies above the planes of both sides: the face of a step up lies between them.
 template <Limits limits>
 bool BorderFinder<limits>::behind_obstacle(const Gap& gap, int along) const {
+  const Dem<limits>& dem = stages_.dem;
   const Sides cells_beside = sides(gap);
-  const Plane& near = mixture_.plane(cells_beside.near.label);
-  const Plane& far = mixture_.plane(cells_beside.far.label);
+  const Plane& near = stages_.mixture.plane(cells_beside.near.label);
+  const Plane& far = stages_.mixture.plane(cells_beside.far.label);
   const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
-    return dem_.above_m(i, j, cell, plane) > 0.0f && !lies_on(i, j, cell, plane);
+    return dem.above_m(i, j, cell, plane) > 0.0f && !stages_.lies_on(i, j, cell, plane);
   };
-  const Viewpoint from = dem_.seen_from(slot(gap.line, cells_beside.far.along), view_);
-  const Border middle = border_at(gap.line, (static_cast<float>(along) + 0.5f) * pitch_m(gap.line));
-  const float dx = (from.x_m - middle.x_m) / dem_.cell_x_m(), dy = (from.y_m - middle.y_m) / dem_.cell_y_m();
+  const Viewpoint from = dem.seen_from(gap.line.slot(cells_beside.far.along), stages_.view);
+  const float middle_m = (static_cast<float>(along) + 0.5f) * gap.line.pitch_m();
+  const float x_m = gap.line.x_m(middle_m), y_m = gap.line.y_m(middle_m);
+  const float dx = (from.x_m - x_m) / dem.cell_x_m(), dy = (from.y_m - y_m) / dem.cell_y_m();
   const float cells = square_root(dx * dx + dy * dy);
-  float x = middle.x_m / dem_.cell_x_m(), y = middle.y_m / dem_.cell_y_m();
+  float x = x_m / dem.cell_x_m(), y = y_m / dem.cell_y_m();
   for (float passed = 1.0f; passed < cells; passed += 1.0f) {
     x += dx / cells;
     y += dy / cells;
     const int i = static_cast<int>(x), j = static_cast<int>(y);
-    if (!(x >= 0.0f) || !(y >= 0.0f) || i >= dem_.rows() || j >= dem_.cols()) return false;
-    const int s = dem_.slot(i, j);
-    const Cell& cell = dem_.cell(s);
-    if (!cell.valid() || bears_ground(s)) continue;
+    if (!(x >= 0.0f) || !(y >= 0.0f) || i >= dem.rows() || j >= dem.cols()) return false;
+    const int s = dem.slot(i, j);
+    const Cell& cell = dem.cell(s);
+    if (!cell.valid() || stages_.bears_ground(s)) continue;
     if (above(i, j, cell, near) && above(i, j, cell, far)) return true;
   }
   return false;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "curbline/beside.hpp"
+#include "curbline/cell_line.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane_mixture.hpp"
@@ -71,6 +72,15 @@ class Borders {
     std::span<const Index> part_;
     float open_share_ = 1.0f, observations_ = 0.0f;
   };
+
+  /// One on a row or column, with nothing but its place.
+  static Border on(const CellLine<limits>& line, float along_m) {
+    Border border{};
+    border.x_m = line.x_m(along_m);
+    border.y_m = line.y_m(along_m);
+    border.axis = static_cast<std::int8_t>(line.axis);
+    return border;
+  }
 
   void clear() {
     size_ = 0;

@@ -58,7 +58,7 @@ class CurbMaker {
   void set_ends(const Piece& piece, Curb& curb) const;
 
   const CurbSettings& settings_;
-  const CurbStages<limits> stages_;
+  const CurbStages<limits>& stages_;
   const Plane* nearest_ground_ = nullptr;  ///< until a deep drop asks for it
 };
 

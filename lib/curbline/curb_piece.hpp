@@ -8,23 +8,14 @@
 
 #include "curbline/beside.hpp"
 #include "curbline/borders.hpp"
+#include "curbline/curb_stages.hpp"
 #include "curbline/dem.hpp"
-#include "curbline/label_field.hpp"
 #include "curbline/line_fit.hpp"
 #include "curbline/math.hpp"
-#include "curbline/plane_mixture.hpp"
+#include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {
-
-/// What curbs are found in.
-template <Limits limits>
-struct CurbStages {
-  const Dem<limits>& dem;
-  const PlaneMixture<limits>& mixture;
-  const LabelField<limits>& field;
-  const Viewpoint& view;
-};
 
 /// The planes that a border parts. Where no ground is seen beyond it the near one stands for the other, too: no step
 /// but the drop, no known slope.

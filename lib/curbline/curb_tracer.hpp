@@ -76,8 +76,9 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
                                const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();
-  BorderFinder<limits>(settings_, dem, mixture, field, view).find(work.borders, counters);
-  CurbMaker<limits> maker(settings_, {dem, mixture, field, view});
+  const CurbStages<limits> stages{dem, mixture, field, view};
+  BorderFinder<limits>(stages, settings_.link_reach).find(work.borders, counters);
+  CurbMaker<limits> maker(settings_, stages);
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }

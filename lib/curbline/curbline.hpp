@@ -43,8 +43,11 @@
 #include "curbline/line_intake.hpp"      // from a line to its points: the tracks, the projection, what they are off by
 #include "curbline/index_set.hpp"        // planes near by, cells that changed, as bits
 #include "curbline/beside.hpp"           // the ground beside them
+#include "curbline/cell_line.hpp"        // a row or column
+#include "curbline/curb_stages.hpp"      // what curbs are found in
 #include "curbline/borders.hpp"          // where labels change
 #include "curbline/border_finder.hpp"    // to a part of a cell
+#include "curbline/ground_end.hpp"       // edges of which only one side is seen
 #include "curbline/curb.hpp"             // out: a curb
 #include "curbline/line_fit.hpp"         // a straight piece of it
 #include "curbline/shadow.hpp"           // of a step down

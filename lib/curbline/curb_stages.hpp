@@ -1,0 +1,41 @@
+// What curbs are found in: the stages before, and what they say of a cell together.
+#pragma once
+
+#include "curbline/cell.hpp"
+#include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/label_field.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/plane_mixture.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+struct CurbStages {
+  const Dem<limits>& dem;
+  const PlaneMixture<limits>& mixture;
+  const LabelField<limits>& field;
+  const Viewpoint& view;
+
+  /// Does a cell bear a plane that a curb may have for a side? A label may outlive its plane by a line.
+  bool bears_ground(int slot) const {
+    const Label label = field.label(slot);
+    return label != no_label && mixture.on_ground(slot) && mixture.plane(label).alive() && !mixture.may_be_veil(label);
+  }
+  /// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of
+  /// a region too small for a plane, or of a plane that may be a veil.
+  bool is_veil(int slot) const {
+    if (mixture.region_label(slot) == no_label) return true;
+    const Label label = field.label(slot);
+    return mixture.on_ground(slot) ? label != no_label && mixture.may_be_veil(label) : !mixture.covered(slot);
+  }
+  /// Within three standard deviations.
+  [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const {  // as CellLine::slot()
+    const float residual = dem.above_m(i, j, cell, plane);
+    return residual * residual <= gate * (plane.variance_m2 + dem.height_variance_m2(cell));
+  }
+};
+
+}  // namespace curbline
