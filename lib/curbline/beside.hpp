@@ -4,6 +4,8 @@
 // from it cannot be. What is left tells how wrong the plane may be there. Cost: two cells a border and side.
 #pragma once
 
+#include <algorithm>
+
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 
@@ -46,10 +48,7 @@ struct Deviation {
   float too_far_m2(float of_borders) const { return away_m < 0.0f ? borders / of_borders * beyond_m2() : 0.0f; }
 
  private:
-  float beyond_m2() const {
-    const float m2 = square(away_m) - variance_m2;
-    return m2 > 0.0f ? m2 : 0.0f;
-  }
+  float beyond_m2() const { return std::max(0.0f, square(away_m) - variance_m2); }
 };
 
 /// Of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow. `away` is 1 if

@@ -5,6 +5,7 @@
 // a pass over the window, a look at each cell of a gap, and at those before a gap without points.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -239,7 +240,7 @@ auto BorderFinder<limits>::middle(const Gap& gap) const -> Middle {
   }
   const bool open = covered * covered > cells - covered || (empty >= 0 && behind_obstacle(gap, empty));
   if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open};
-  before = before < 0.0f ? 0.0f : before > cells ? cells : before;
+  before = std::clamp(before, 0.0f, cells);
   return {(static_cast<float>(gap.first.along) + before) * cell_m, open};
 }
 

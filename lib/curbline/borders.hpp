@@ -2,6 +2,7 @@
 // polylines. Working memory of one call of CurbTracer::trace().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -110,10 +111,7 @@ class Borders {
   Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
   /// Before the window's ends in the first cell, beyond them in the last.
   int cell_of(const Dem<limits>& dem, const Border& border) const {
-    const auto within = [](float cells, int count) {
-      const int at = static_cast<int>(cells);
-      return at < 0 ? 0 : at < count ? at : count - 1;
-    };
+    const auto within = [](float cells, int count) { return std::clamp(static_cast<int>(cells), 0, count - 1); };
     return dem.slot(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
   }
 
@@ -157,8 +155,8 @@ int Borders<limits>::walk(const Dem<limits>& dem, Index start, int reach) {
 template <Limits limits>
 auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int reach) const -> Index {
   const int ci = static_cast<int>(from.x_m / dem.cell_x_m()), cj = static_cast<int>(from.y_m / dem.cell_y_m());
-  const int first_i = ci > reach ? ci - reach : 0, last_i = ci + reach < dem.rows() ? ci + reach : dem.rows() - 1;
-  const int first_j = cj > reach ? cj - reach : 0, last_j = cj + reach < dem.cols() ? cj + reach : dem.cols() - 1;
+  const int first_i = std::max(ci - reach, 0), last_i = std::min(ci + reach, dem.rows() - 1);
+  const int first_j = std::max(cj - reach, 0), last_j = std::min(cj + reach, dem.cols() - 1);
   Index best = none;
   float best_m2 = 1e30f;
   for (int i = first_i; i <= last_i; ++i) {

@@ -3,6 +3,7 @@
 // goes through.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -23,10 +24,10 @@ void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&&
   if (!(x1 >= 0.0f)) return;
   for (int x = x0 > 0.0f ? static_cast<int>(x0) : 0; x < end_x && static_cast<float>(x) <= x1; ++x) {
     const float enters = static_cast<float>(x), leaves = enters + 1.0f;
-    const float a = y0 + slope * ((enters > x0 ? enters : x0) - x0);
-    const float b = y0 + slope * ((leaves < x1 ? leaves : x1) - x0);
-    const int last = floor_to_int(a > b ? a : b);
-    for (int y = floor_to_int(a < b ? a : b); y <= last; ++y) visit(x, y);
+    const float a = y0 + slope * (std::max(x0, enters) - x0);
+    const float b = y0 + slope * (std::min(x1, leaves) - x0);
+    const int last = floor_to_int(std::max(b, a));
+    for (int y = floor_to_int(std::min(b, a)); y <= last; ++y) visit(x, y);
   }
 }
 

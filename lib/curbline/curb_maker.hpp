@@ -3,6 +3,7 @@
 // operations a border, and a pass over the window where there is a deep drop.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -80,7 +81,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   curb.position_sd_m = square_root(place_variance_m2(piece, curb, variance_m2));
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
-  curb.face_width_m = width_m > 0.0f && !one_sided ? width_m : 0.0f;
+  curb.face_width_m = one_sided ? 0.0f : std::max(0.0f, width_m);
   set_ends(piece, curb);
   return curb;
 }
@@ -91,7 +92,7 @@ Curb CurbMaker<limits>::as_planes_tell(const Piece& piece) const {
   Curb curb;
   curb.near_label = piece.low_is_near ? piece.first.low : piece.first.high;
   curb.far_label = piece.low_is_near ? piece.first.high : piece.first.low;
-  curb.probability = piece.probability < 1.0f ? piece.probability : 1.0f;  // a mean, rounded
+  curb.probability = std::min(1.0f, piece.probability);  // a mean, rounded
   const auto [low, high] = piece.planes;
   const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
   const float height_m = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;

@@ -3,6 +3,7 @@
 // border, and of a robot that drives a look at the cells beside it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -83,8 +84,7 @@ struct CurbPiece {
   float shifted_m2(float step_m, float height_variance_m2, float cell_variance_m2) const {
     const float each = 1.0f / square(step_m);
     const float all = height_variance_m2 * each, own = cell_variance_m2 * each;
-    return square(0.5f * gap_m) * (all < 1.0f ? all : 1.0f) +
-           (gap_m + cell_m) * cell_m * (own < 1.0f ? own : 1.0f) / observations;
+    return square(0.5f * gap_m) * std::min(1.0f, all) + (gap_m + cell_m) * cell_m * std::min(1.0f, own) / observations;
   }
   /// Does it look from the right of the line?
   bool has_right(const Viewpoint& view) const {
@@ -173,7 +173,7 @@ template <Limits limits>
 void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
   for (const Border& border : part) {
     const float cosine = border.axis == 0 ? line.normal_x : line.normal_y;
-    const float across = part.share(border) / observations * (cosine < 0.0f ? -cosine : cosine);
+    const float across = part.share(border) / observations * magnitude(cosine);
     gap_m += 2.0f * border.half_gap_m * across;
     cell_m += dem.cell_m(border.axis) * across;
   }
@@ -201,7 +201,7 @@ void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
   const float pitch_m = 0.5f * (stages.dem.cell_x_m() + stages.dem.cell_y_m());
   const float step_x = dx_m * pitch_m / length_m, step_y = dy_m * pitch_m / length_m;
   const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
-  const float aside_m = half_gap_m > pitch_m ? half_gap_m : pitch_m;
+  const float aside_m = std::max(pitch_m, half_gap_m);
   const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
   const float high_x = line.normal_x * to_high_m, high_y = line.normal_y * to_high_m;
   const float most = 0.25f * length_m / pitch_m;

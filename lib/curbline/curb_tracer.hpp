@@ -82,7 +82,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
-  const float cell_m = dem.cell_x_m() > dem.cell_y_m() ? dem.cell_x_m() : dem.cell_y_m();
+  const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
   tell_once(work, cell_m);
   keep_ids(work, 2.0f * cell_m);
 }

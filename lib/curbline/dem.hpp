@@ -3,6 +3,7 @@
 // window are cleared.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -110,15 +111,12 @@ class Dem : public Window<limits> {
   /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
   float common_m2() const { return common_m2_; }
   /// Of cells that lie at a distance and hold few points, see Viewpoint::reach_m2(): no less.
-  float common_m2(float reach_m2) const {
-    const float there_m2 = line_rad2_ * reach_m2;
-    return there_m2 > common_m2_ ? there_m2 : common_m2_;
-  }
+  float common_m2(float reach_m2) const { return std::max(common_m2_, line_rad2_ * reach_m2); }
   /// As evidence it is no less than the ground's texture.
   void set_common(float found_m2, float found_line_rad2) {
     common_m2_ = found_m2;
     line_rad2_ = found_line_rad2;
-    prior_.common_share = (found_m2 > prior_.texture_m2 ? found_m2 : prior_.texture_m2) / prior_.noise_m2;
+    prior_.common_share = std::max(prior_.texture_m2, found_m2) / prior_.noise_m2;
   }
 
   /// Variance of a cell's mean height, from the noise of its points.
@@ -229,7 +227,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   seen_.fill(0);
   flags_ = seen_bits;
   const float along_x_m = static_cast<float>(rows()) * cell_x_m(), along_y_m = static_cast<float>(cols()) * cell_y_m();
-  viewpoints_.init(along_x_m > along_y_m ? along_x_m : along_y_m);
+  viewpoints_.init(std::max(along_y_m, along_x_m));
   growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;

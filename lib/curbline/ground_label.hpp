@@ -9,6 +9,7 @@
 #include "curbline/curb.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
+#include "curbline/math.hpp"
 #include "curbline/plane_mixture.hpp"
 
 namespace curbline {
@@ -29,7 +30,7 @@ Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, 
     if (!is_step(curb) || curb.far_label == no_label) continue;
     if (of_readings != curb.near_label && of_readings != curb.far_label) continue;
     const float to_far_m = to_far_side_m(curb, x_m, y_m);
-    const float away_m = to_far_m < 0.0f ? -to_far_m : to_far_m;
+    const float away_m = magnitude(to_far_m);
     const auto there = static_cast<Label>(to_far_m > 0.0f ? curb.far_label : curb.near_label);
     if (!(away_m < nearest_m) || !mixture.plane(there).alive()) continue;
     nearest_m = away_m;

@@ -20,6 +20,10 @@ constexpr float square(float x) {
   return x * x;
 }
 
+constexpr float magnitude(float x) {
+  return x < 0.0f ? -x : x;
+}
+
 /// Nearest integer, halves away from zero; the float just below a half counts as one. |x| < 2^22.
 constexpr std::int32_t round_to_int(float x) {
   return static_cast<std::int32_t>(x < 0.0f ? x - 0.5f : x + 0.5f);

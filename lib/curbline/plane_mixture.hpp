@@ -227,7 +227,7 @@ float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, const Viewpoin
     if (other == region_label(s)) continue;
     const float step_m = dem.cell(next).height_m - cell.height_m;
     if (k < 2) most_m = std::max(most_m, step_m);
-    if (crossed && other != no_label && ground_.is(other)) most_m = std::max(most_m, step_m < 0.0f ? -step_m : step_m);
+    if (crossed && other != no_label && ground_.is(other)) most_m = std::max(most_m, magnitude(step_m));
   }
   return most_m;
 }

@@ -5,6 +5,7 @@
 // merge().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -192,7 +193,7 @@ template <Limits limits>
 void RegionGraph<limits>::add_pair(Index end, int axis, float rise_m) {
   constexpr float most = 127.0f;  // of one pair: 127 of them fit 16 bits
   const float scaled = rise_m * rise_scale;
-  const std::int32_t rise = round_to_int(scaled > most ? most : scaled < -most ? -most : scaled);
+  const std::int32_t rise = round_to_int(std::clamp(scaled, -most, most));
   link_[end / 2].add_pairs(end % 2 == 0 ? -1 : 1, 1, rise, axis == 0, axis != 0);
 }
 

@@ -3,6 +3,7 @@
 // runs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -54,8 +55,8 @@ struct StripTally {
     const float one_m2 = before.scatter_m2 / before.weight, other_m2 = next.scatter_m2 / next.weight;
     strips += 1.0f;
     strip_cells += static_cast<float>(run.length());
-    step_m += step < 0.0f ? -step : step;
-    strip_spread_m2 += run.scatter_m2 - run.weight * (one_m2 < other_m2 ? one_m2 : other_m2);
+    step_m += magnitude(step);
+    strip_spread_m2 += run.scatter_m2 - run.weight * std::min(other_m2, one_m2);
     strip_weight += run.weight;
   }
 

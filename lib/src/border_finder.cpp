@@ -1,10 +1,11 @@
 #include "curbline/border_finder.hpp"
 
+#include <algorithm>
+
 namespace curbline {
 
 float before_middle(const CrossedCell& cell) {
-  const float far_share = cell.far_share < 0.0f ? 0.0f : cell.far_share > 1.0f ? 1.0f : cell.far_share;
-  return 0.5f - far_share + cell.centroid;
+  return 0.5f - std::clamp(cell.far_share, 0.0f, 1.0f) + cell.centroid;
 }
 
 }  // namespace curbline

@@ -1,5 +1,6 @@
 #include "curbline/curb.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -42,10 +43,10 @@ const char* to_string(CurbKind kind) {
 CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
   const float across =
       border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
-  const float steep = across < 0.0f ? -across : across;
-  const float step_m = drawn.height_m < 0.0f ? -drawn.height_m : drawn.height_m;
+  const float steep = magnitude(across);
+  const float step_m = magnitude(drawn.height_m);
   const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
-  const float cell_m2 = mean_m2 > drawn.texture_m2 ? mean_m2 : drawn.texture_m2;
+  const float cell_m2 = std::max(drawn.texture_m2, mean_m2);
   const float unknown_m2 = square(drawn.height_sd_m) + cell_m2 + square(steep) * drawn.place_variance_m2;
   const float open_m = first.steeper_than_ground() || second.steeper_than_ground() ? steep * drawn.half_gap_m : 0.0f;
   if (step_m > open_m + 2.0f * square_root(unknown_m2)) return CurbKind::step_up;
@@ -80,8 +81,7 @@ float overlap_m(const Curb& now, const Curb& before, float near_m) {
   const float aside_m = line.left_m(0.5f * (now.x0_m + now.x1_m), 0.5f * (now.y0_m + now.y1_m));
   if (aside_m > near_m || aside_m < -near_m) return 0.0f;
   const float a = line.along_m(now.x0_m, now.y0_m), b = line.along_m(now.x1_m, now.y1_m);
-  const float from = a < b ? a : b, to = a < b ? b : a;
-  return (to < line.length_m ? to : line.length_m) - (from > 0.0f ? from : 0.0f);
+  return std::min(line.length_m, std::max(a, b)) - std::max(0.0f, std::min(b, a));
 }
 
 }  // namespace curbline

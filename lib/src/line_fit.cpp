@@ -1,13 +1,14 @@
 #include "curbline/line_fit.hpp"
 
+#include <algorithm>
+
 #include "curbline/math.hpp"
 
 namespace curbline {
 
 float LineFit::squares() const {
   const float half_difference = 0.5f * (xx_ - yy_);
-  const float squares = 0.5f * (xx_ + yy_) - square_root(half_difference * half_difference + xy_ * xy_);
-  return squares > 0.0f ? squares : 0.0f;
+  return std::max(0.0f, 0.5f * (xx_ + yy_) - square_root(half_difference * half_difference + xy_ * xy_));
 }
 
 float LineFit::grown(float x_m, float y_m) const {

@@ -12,8 +12,7 @@ bool passable(const Plane& plane, const Mobility& mobility) {
 
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility) {
   if (!is_step(curb)) return passable(near, mobility) && passable(far, mobility);
-  const float height_m = curb.height_m < 0.0f ? -curb.height_m : curb.height_m;
-  return height_m + 2.0f * curb.height_sd_m <= mobility.max_step_m;
+  return magnitude(curb.height_m) + 2.0f * curb.height_sd_m <= mobility.max_step_m;
 }
 
 }  // namespace curbline

@@ -1,5 +1,7 @@
 #include "curbline/plane.hpp"
 
+#include <algorithm>
+
 #include "curbline/math.hpp"
 
 namespace curbline {
@@ -15,12 +17,10 @@ struct Slopes {
 Slopes solve(const PlaneMoments& m, float ridge) {
   const float xx = m.xx + ridge, yy = m.yy + ridge;
   // Of a thin strip that lies across the axes rounding takes it below what the ridge alone makes of it.
-  const float product = xx * yy - m.xy * m.xy, least = ridge * (xx + yy - ridge);
-  const float determinant = product > least ? product : least;
+  const float determinant = std::max(ridge * (xx + yy - ridge), xx * yy - m.xy * m.xy);
   const float x = (yy * m.xz - m.xy * m.yz) / determinant;
   const float y = (xx * m.yz - m.xy * m.xz) / determinant;
-  const float residual = m.zz - x * m.xz - y * m.yz;
-  return {x, y, determinant, residual > 0.0f ? residual : 0.0f};
+  return {x, y, determinant, std::max(0.0f, m.zz - x * m.xz - y * m.yz)};
 }
 
 /// With the variance that a sum of squares has by a weight.
@@ -35,8 +35,7 @@ Plane fitted(const PlaneMoments& m, const PlanePrior& prior, float weight, float
   plane.z_m = m.z;
   plane.slope_x = slopes.x;
   plane.slope_y = slopes.y;
-  const float mean_square = slopes.residual_m2 / weight;
-  plane.variance_m2 = plane.fit_variance_m2 = mean_square > least_m2 ? mean_square : least_m2;
+  plane.variance_m2 = plane.fit_variance_m2 = std::max(least_m2, slopes.residual_m2 / weight);
   plane.cells = m.cells;
   plane.scatter_m2 = (m.xx + m.yy) / m.weight;
   plane.pxx = (m.yy + ridge) * per_cell;

@@ -1,5 +1,7 @@
 #include "curbline/tilt_latency.hpp"
 
+#include <algorithm>
+
 #include "curbline/math.hpp"
 #include "curbline/point.hpp"
 
@@ -18,10 +20,6 @@ constexpr int lines_of_a_step = 10;
 /// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have
 /// it known exactly, which is said of what is not estimated.
 constexpr float least_share = 1e-7f;
-
-float within(float x, float bound) {
-  return x < -bound ? -bound : x > bound ? bound : x;
-}
 
 }  // namespace
 
@@ -156,8 +154,8 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
   if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // nor what is no number
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
-  constant_s_ = within(constant_s_ + cross[constant] * weight, largest_offset_s_);
-  offset_s_ = within(offset_s_ + cross[now] * weight, largest_offset_s_);
+  constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
+  offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
   for (std::size_t a = 0; a < states; ++a) {
     const bool open = !known(static_cast<State>(a));
     for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
@@ -196,7 +194,7 @@ float TiltLatency::sd_s() const {
 
 float TiltLatency::latest_offset_s() const {
   const float next_s = drives_ ? constant_s_ : other_.offset_s;
-  return offset_s_ > next_s ? offset_s_ : next_s;
+  return std::max(next_s, offset_s_);
 }
 
 }  // namespace curbline
