@@ -37,6 +37,7 @@
 #include "curbline/run.hpp"              // cells of one plane in line, as the laser sees them
 #include "curbline/strip_tally.hpp"      // what they tell of a plane
 #include "curbline/ground.hpp"           // which planes are ground
+#include "curbline/planes_near_by.hpp"   // which a cell may bear
 #include "curbline/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/label_field.hpp"      // belief propagation
 #include "curbline/map_comparison.hpp"   // what a line says against the map: to tilt_latency, pose_offset

@@ -2,8 +2,7 @@
 // (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
 // from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
 // values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) out of
-// the planes near by (those of regions in its block or the eight around it). So two pavements of one height on either
-// side of a road keep their labels apart.
+// the planes near by (planes_near_by.hpp).
 #pragma once
 
 #include <array>
@@ -13,11 +12,11 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
-#include "curbline/index_set.hpp"
 #include "curbline/label_site.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane_mixture.hpp"
+#include "curbline/planes_near_by.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -73,16 +72,13 @@ class LabelField {
 
   /// Bits; renew: its candidates too.
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
-  using Planes = IndexSet<limits.planes>;
 
-  static std::size_t block_of(const Dem<limits>& dem, int i, int j) {
-    return static_cast<std::size_t>((i / block_side) * (dem.cols() / block_side) + j / block_side);
-  }
-
-  void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
-                     Counters& counters);
+  // Called, so that send() is inlined where it sends for each visit: 50,000 instructions a line of a Cortex-M7.
+  [[gnu::noinline]] void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                       Visits& visits, Counters& counters);
+  int flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
+  std::uint8_t wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const;
   bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
-  void find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
@@ -91,11 +87,10 @@ class LabelField {
   int follow_belief(const Visit& visit);
 
   LabelSettings settings_{};
-  std::array<Planes, capacity / (block_side * block_side)> near_by_{};  ///< of each block of the window
-  float near_by_x_m_ = 0.0f, near_by_y_m_ = 0.0f;                       ///< of the window then
-  int band_ = 0;                                                        ///< first row to refresh in the next update()
-  int first_row_ = 0;                                                   ///< whose cells may send first in it
-  std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};      ///< by distance
+  PlanesNearBy<limits> near_by_{};
+  int band_ = 0;                                                    ///< first row to refresh in the next update()
+  int first_row_ = 0;                                               ///< whose cells may send first in it
+  std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
   PerCell<LabelSite, limits> sites_{};
   PerCell<std::uint8_t, limits> flag_{};
 };
@@ -105,7 +100,7 @@ void LabelField<limits>::init(const LabelSettings& settings) {
   settings_ = settings;
   sites_.fill(LabelSite{});
   flag_.fill(quiet);
-  near_by_.fill({});
+  near_by_.clear();
   band_ = first_row_ = 0;
   for (std::size_t g = 1; g < coupling_.size(); ++g)
     coupling_[g] = LabelSite::coupling(settings.coupling / static_cast<float>(g));
@@ -114,7 +109,7 @@ void LabelField<limits>::init(const LabelSettings& settings) {
 template <Limits limits>
 int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                Visits& visits, Counters& counters) {
-  find_planes_near_by(dem, mixture);
+  near_by_.follow(dem, mixture);
   choose_visits(dem, mixture, scope, visits, counters);
   const std::span<Visit> all(visits.visit.data(), static_cast<std::size_t>(visits.size));
   for (Visit& visit : all) hear_neighbours(visit);
@@ -134,38 +129,13 @@ void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   });
 }
 
-/// What changed first, from a row that moves on, so that a budget that is too small starves none as long as it holds a
-/// row's cells; then the band of rows.
+/// What changed first, then the band of rows.
 template <Limits limits>
 void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters) {
-  const int rows = dem.rows();
-  const int first = first_row_ < rows ? first_row_ : 0;
-  first_row_ = first + 1;
-  const int band = band_ < rows ? band_ : 0;
+  int left = flag_changed(dem, mixture, scope, counters);
+  const int band = band_ < dem.rows() ? band_ : 0;
   band_ = band + settings_.refresh_rows;
-  const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
-  int left = scope == FieldScope::line ? messages / directions : capacity;
-  /// `visited`, with `renew` or without, or `quiet`.
-  const auto wanted = [&](int s) -> std::uint8_t {
-    const std::uint8_t before = flag_[s];
-    if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, s)) return visited | renew;
-    if ((before & (heard | deferred)) == 0) return quiet;
-    return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
-  };
-  for (int a = 0; a < rows; ++a) {
-    dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
-      auto& flag = flag_[s];
-      flag = wanted(s);
-      if (flag == quiet) return;
-      if (left > 0) {
-        --left;
-      } else {
-        flag ^= visited | deferred;
-        ++counters.cells_deferred;
-      }
-    });
-  }
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
     auto& flag = flag_[s];
@@ -181,6 +151,41 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   });
 }
 
+/// From a row that moves on, so that a budget that is too small starves none as long as it holds a row's cells. Returns
+/// how many visits are left.
+template <Limits limits>
+int LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                     Counters& counters) {
+  const int rows = dem.rows();
+  const int first = first_row_ < rows ? first_row_ : 0;
+  first_row_ = first + 1;
+  const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
+  int left = scope == FieldScope::line ? messages / directions : capacity;
+  for (int a = 0; a < rows; ++a) {
+    dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
+      auto& flag = flag_[s];
+      flag = wanted(mixture, scope, s);
+      if (flag == quiet) return;
+      if (left > 0) {
+        --left;
+      } else {
+        flag ^= visited | deferred;
+        ++counters.cells_deferred;
+      }
+    });
+  }
+  return left;
+}
+
+/// `visited`, with `renew` or without, or `quiet`.
+template <Limits limits>
+std::uint8_t LabelField<limits>::wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const {
+  const std::uint8_t before = flag_[slot];
+  if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, slot)) return visited | renew;
+  if ((before & (heard | deferred)) == 0) return quiet;
+  return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
+}
+
 template <Limits limits>
 bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
   if (mixture.relabelled(slot)) return true;
@@ -194,31 +199,6 @@ bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slo
   return site.label[0] == no_label;
 }
 
-/// The planes of the regions in each block and those around it.
-template <Limits limits>
-void LabelField<limits>::find_planes_near_by(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
-  if (!mixture.any_relabelled() && near_by_x_m_ == dem.origin_x_m() && near_by_y_m_ == dem.origin_y_m()) return;
-  near_by_x_m_ = dem.origin_x_m();
-  near_by_y_m_ = dem.origin_y_m();
-  near_by_.fill({});
-  for (int i = 0; i < dem.rows(); i += block_side) {
-    std::array<Planes, limits.cols / block_side> here{};  // of the blocks of these rows
-    for (int row = i; row < i + block_side; ++row) {
-      dem.for_each_valid_in_row(row, [&](int, int j, int s) {
-        const Label label = mixture.region_label(s);
-        if (label != no_label) here[static_cast<std::size_t>(j / block_side)].insert(label);
-      });
-    }
-    for (int j = 0; j < dem.cols(); j += block_side) {
-      for (int a = i - block_side; a <= i + block_side; a += block_side) {
-        for (int b = j - block_side; b <= j + block_side; b += block_side) {
-          if (dem.contains(a, b)) near_by_[block_of(dem, a, b)].insert(here[static_cast<std::size_t>(j / block_side)]);
-        }
-      }
-    }
-  }
-}
-
 /// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept. Where the ground
 /// is covered they are alike, and the cells around decide.
 template <Limits limits>
@@ -227,9 +207,7 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
   const Cell& cell = dem.cell(slot);
   const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
   const float cell_variance = dem.height_variance_m2(cell);
-  // exp(-2 log potential): a logarithm each of those that are kept is enough.
-  std::array<float, label_candidates> doubt{};
-  LabelSite::Labels label{no_label, no_label, no_label};
+  LabelSite::Candidates candidates;
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
     if (!plane.alive() || !mixture.ground(k)) return;
@@ -238,30 +216,13 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     float u = 1.0f + residual * residual / (6.0f * variance);
     if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
     const float u3 = u * u * u;
-    const float doubted = variance * u3 * u3 * u;
-    std::size_t rank = label.size();
-    while (rank > 0 && (label[rank - 1] == no_label || doubted < doubt[rank - 1])) --rank;
-    if (rank == label.size()) return;
-    for (std::size_t c = label.size() - 1; c > rank; --c) {
-      label[c] = label[c - 1];
-      doubt[c] = doubt[c - 1];
-    }
-    label[rank] = static_cast<Label>(k);
-    doubt[rank] = doubted;
+    candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
   };
-  near_by_[block_of(dem, i, j)].for_each(consider);
-  if (label[0] == no_label) {
+  near_by_.of_cell(i, j).for_each(consider);
+  if (candidates.label[0] == no_label) {
     for (int k = 0; k < limits.planes; ++k) consider(k);
   }
-  LabelSite& site = sites_[slot];
-  site.set_labels(label);
-  site.node.fill(0);
-  if (mixture.covered(slot)) return;
-  for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
-    const float below = -0.5f * log(doubt[c] / doubt[0]);
-    site.node[c] =
-        static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{LabelSite::node_scale}));
-  }
+  sites_[slot].set_candidates(candidates, mixture.covered(slot));
 }
 
 template <Limits limits>

@@ -54,10 +54,21 @@ struct LabelSite {
     return {exp(nats) - 1.0f, static_cast<std::uint8_t>(round_to_int(nats * float{message_scale}))};
   }
 
+  /// Labels by how likely they are, the best first. `doubt` is exp(-2 log potential) of each: a logarithm each of those
+  /// that are kept is enough.
+  struct Candidates {
+    Labels label{no_label, no_label, no_label};
+    std::array<float, label_candidates> doubt{};
+
+    void consider(Label other, float other_doubt);
+  };
+
   /// Only one label is possible, or none.
   bool decided() const { return label[1] == no_label; }
   /// Candidates in another order, or others: what was said of a label stays with it.
   void set_labels(const Labels& labels);
+  /// The same, with node potentials by their doubts; of a cell whose ground is covered they are level.
+  void set_candidates(const Candidates& candidates, bool covered);
   /// Adds to `sum` (sign 1) or takes from it (-1) what a neighbour says of the labels that both may bear.
   void hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const;
   /// Belief, from its node and what was heard.
@@ -72,6 +83,28 @@ struct LabelSite {
   using Nats = std::array<std::int32_t, label_candidates>;  ///< in 1 / node_scale nat
   Nats log_belief(const Heard& heard) const;
 };
+
+inline void LabelSite::Candidates::consider(Label other, float other_doubt) {
+  std::size_t rank = label.size();
+  while (rank > 0 && (label[rank - 1] == no_label || other_doubt < doubt[rank - 1])) --rank;
+  if (rank == label.size()) return;
+  for (std::size_t c = label.size() - 1; c > rank; --c) {
+    label[c] = label[c - 1];
+    doubt[c] = doubt[c - 1];
+  }
+  label[rank] = other;
+  doubt[rank] = other_doubt;
+}
+
+inline void LabelSite::set_candidates(const Candidates& candidates, bool covered) {
+  set_labels(candidates.label);
+  node.fill(0);
+  if (covered) return;
+  for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
+    const float below = -0.5f * log(candidates.doubt[c] / candidates.doubt[0]);
+    node[c] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
+  }
+}
 
 inline void LabelSite::set_labels(const Labels& labels) {
   if (labels == label) return;
