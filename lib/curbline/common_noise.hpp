@@ -78,6 +78,17 @@ class CommonNoise {
     float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
     float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
   };
+  /// Of a patch, while its cells are looked at.
+  struct PatchSums {
+    PatchResiduals residuals{};
+    float growth_m2_s2 = 0.0f, points = 0.0f;
+  };
+  struct PatchRow {
+    std::array<PatchSums, patches_in_row> patch{};
+    std::array<Seen, limits.cols> last{};  ///< of each column
+  };
+  void look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
+               PatchRow& row) const;
   /// What a patch shows, and what it weighs.
   struct Shown {
     float value, weight;
@@ -90,41 +101,45 @@ class CommonNoise {
 
 template <Limits limits>
 void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view) {
-  std::array<PatchResiduals, patches_in_row> residuals{};
-  std::array<float, patches_in_row> growth_m2_s2{}, points{};
-  std::array<Seen, limits.cols> last{};  // of each column
-  const auto visit = [&](int i, int j, int s) {
-    const Label label = mixture.region_label(s);
-    if (label == no_label) return;
-    const Plane& plane = mixture.plane(label);
-    const Cell& cell = dem.cell(s);
-    if (dem.mixed(cell, dem.slope_m2(plane))) return;
-    const Seen now{label, i, dem.above_m(i, j, cell, plane)};
-    const auto k = static_cast<std::size_t>(j / side);
-    residuals[k].add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
-    growth_m2_s2[k] += square(dem.growth_m_s(s));
-    points[k] += cell.points;
-    const auto column = static_cast<std::size_t>(j);
-    const auto neighbour = [&](std::size_t axis, const Seen& other, int row) {
-      if (other.label == label && other.i == row) residuals[k].add_rise(axis, now.above_m - other.above_m);
-    };
-    neighbour(0, last[column], i - 1);
-    if (j % side != 0) neighbour(1, last[column - 1], i);
-    last[column] = now;
-  };
-  for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) dem.for_each_valid_in_row(i, visit);
-
+  PatchRow row;
+  for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) {
+    dem.for_each_valid_in_row(i, [&](int, int j, int s) { look_at(dem, mixture, i, j, s, row); });
+  }
   Patch* patch = &patches_[static_cast<std::size_t>(first_row_ / side) * patches_in_row];
+  const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
   for (std::size_t k = 0; k < patches_in_row; ++k, ++patch) {
     *patch = Patch{};
-    if (residuals[k].cells < PatchResiduals::least_cells) continue;
-    const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
+    const PatchSums& sums = row.patch[k];
+    const float cells = sums.residuals.cells;
+    if (cells < PatchResiduals::least_cells) continue;
     const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
-    const float cells = residuals[k].cells, common_m2 = residuals[k].common_m2();
-    *patch = {cells, common_m2, view.reach_m2(x_m, y_m, 0.0f, points[k] / cells), growth_m2_s2[k]};
+    *patch = {cells, sums.residuals.common_m2(), view.reach_m2(x_m, y_m, 0.0f, sums.points / cells), sums.growth_m2_s2};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
+}
+
+/// One that holds nothing but its plane is counted, and what it rises from its neighbours before it.
+template <Limits limits>
+void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
+                                  PatchRow& row) const {
+  const Label label = mixture.region_label(slot);
+  if (label == no_label) return;
+  const Plane& plane = mixture.plane(label);
+  const Cell& cell = dem.cell(slot);
+  if (dem.mixed(cell, dem.slope_m2(plane))) return;
+  const Seen now{label, i, dem.above_m(i, j, cell, plane)};
+  PatchSums& sums = row.patch[static_cast<std::size_t>(j / side)];
+  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
+  sums.growth_m2_s2 += square(dem.growth_m_s(slot));
+  sums.points += cell.points;
+  const auto column = static_cast<std::size_t>(j);
+  const auto rise_from = [&](const Seen& other, int other_i, std::size_t axis) {
+    if (other.label == label && other.i == other_i) sums.residuals.add_rise(axis, now.above_m - other.above_m);
+  };
+  rise_from(row.last[column], i - 1, 0);
+  if (j % side != 0) rise_from(row.last[column - 1], i, 1);
+  row.last[column] = now;
 }
 
 template <Limits limits>
