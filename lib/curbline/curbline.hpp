@@ -4,6 +4,7 @@
 // clang-format off
 #include "curbline/limits.hpp"           // sizes, at compile time
 #include "curbline/grid.hpp"             // numbers of cells and planes, directions
+#include "curbline/per_cell.hpp"         // what a stage keeps for each cell
 #include "curbline/settings.hpp"         // geometry, noise and tuning, at run time
 #include "curbline/status.hpp"           // how a call ended
 #include "curbline/counters.hpp"         // what was dropped, refused, done

@@ -187,7 +187,7 @@ class Dem : public Window<limits> {
   /// long a robot has stood before it.
   static constexpr float most_points = 512.0f;
   static constexpr int growth_scale = 1024;
-  /// Of a point: with others float loses what it tells, or what they do.
+  /// Of a point. With one beyond these float would lose what it tells beside the others, or what they tell.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;

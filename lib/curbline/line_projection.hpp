@@ -1,6 +1,6 @@
-// From a scan line to points with the variance of their heights: the beam's own time, tilt and pose for each (issue of
-// every nodding laser: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line). About 170 operations a
-// beam, 120 of one that returns from outside the map.
+// From a scan line to points with the variance of their heights: the beam's own time, tilt and pose for each (as
+// every nodding laser wants: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line). About 170
+// operations a beam, 120 of one that returns from outside the map.
 #pragma once
 
 #include <array>

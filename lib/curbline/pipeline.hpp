@@ -51,7 +51,7 @@ class Pipeline {
   /// bad_setting(settings, limits) which; the pipeline then takes nothing and knows of no curb, label or ground to
   /// drive on. May be called again to start afresh, with the interrupt that calls add_tilt() masked, and not beside
   /// that of another thread.
-  // Cold, as what is large of what it calls: small, not fast.
+  // Cold, as are the large ones of those that it calls: they are made small, not fast.
   [[gnu::cold]] Status init(const Settings& settings);
 
   /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if

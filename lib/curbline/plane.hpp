@@ -56,8 +56,8 @@ struct PlanePrior {
   /// Part of it that is the ground's: unevenness within a cell, whatever the sensor. [0, 100]
   float texture_m2 = 0.005f * 0.005f;
   float degrees = 2.0f;  ///< how firmly: shape a0 of the inverse gamma; 2 is the weakest with a finite mean; [1, 1e6]
-  /// Of that variance, common to all points of a cell: tilt timing, mount, texture; [least_common_share, 1]. The most
-  /// that is thought of: the pipeline finds what it is.
+  /// The share of that variance that all points of a cell have in common: tilt timing, mount, texture;
+  /// [least_common_share, 1]. At most: the pipeline finds what it is.
   float common_share = 0.5f;
   /// Standard deviation of how bent ground is: its slope changes by 1 in 10 over a metre. [0, 10]
   float curvature_1_m = 0.1f;
