@@ -18,6 +18,7 @@
 #include <cstdint>
 
 #include "curbline/settings.hpp"
+#include "curbline/sweep_turns.hpp"
 
 namespace curbline {
 
@@ -25,14 +26,8 @@ class TiltLatency {
  public:
   void init(const TiltSettings& tilt, const PoseSettings& pose);
 
-  enum class Turn : std::uint8_t {
-    none,
-    back,  ///< by play: the sweep goes on
-    new_sweep,
-  };
-  /// The angle and its rate at the beginning of a line, and the number of the reading after it: has the servo turned
-  /// round? Known from two lines on end that lie between other readings: one damaged reading leads all those before it
-  /// or after it astray.
+  using Turn = SweepTurns::Turn;
+  /// A line begins: SweepTurns::follow().
   Turn follow(float angle_rad, float rate_rad_s, std::uint32_t reading);
 
   /// A point of the line on ground that an earlier sweep has mapped.
@@ -104,15 +99,12 @@ class TiltLatency {
   void suspect(const Observation& seen);
   bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
-  bool drives_ = false, begun_ = false, turned_ = false;
-  bool downward_ = false;            ///< the angle grows
-  bool turns_ = false;               ///< it seems to grow no more, or again, by the last line ...
-  std::uint32_t turns_reading_ = 0;  ///< ... and this reading
-  float turned_at_rad_ = 0.0f;       ///< where the sweep began
-  float prior_variance_s2_ = 0.0f;   ///< of an offset of which nothing has been seen
+  bool drives_ = false;
+  bool turned_ = false;  ///< this sweep is not the first
+  SweepTurns turns_{};
+  float prior_variance_s2_ = 0.0f;  ///< of an offset of which nothing has been seen
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong and not the servo late
-  float slow_rad_s_ = 0.0f;        ///< below it a wrong latency is less than the error of an angle
 
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
   std::array<std::array<float, states>, states> covariance_{};

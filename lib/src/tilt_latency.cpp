@@ -8,9 +8,6 @@
 namespace curbline {
 namespace {
 
-/// No sweep worth the name is smaller; turns closer together come from damaged readings and from play.
-constexpr float least_sweep_rad = 0.05f;
-
 /// Of what is not known of the latency, the part by which the sweeps of a robot that drives may differ.
 constexpr float sweep_share = 0.2f;
 
@@ -30,7 +27,8 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   largest_offset_s_ = 5.0f * tilt.latency_sd_s;
   time_variance_s2_ = square(tilt.time_sd_s);
   angle_variance_ = square(tilt.angle_sd_rad);
-  if (tilt.latency_sd_s > 0.0f) slow_rad_s_ = tilt.angle_sd_rad / tilt.latency_sd_s;
+  // Below it a wrong latency is less than the error of an angle.
+  turns_.init(tilt.latency_sd_s > 0.0f ? tilt.angle_sd_rad / tilt.latency_sd_s : 0.0f);
   covariance_[now][now] = other_.variance_s2 = prior_variance_s2_;
   if (!drives_) return;
   angle_variance_ += square(pose.attitude_sd_rad);
@@ -40,30 +38,16 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
 }
 
 TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s, std::uint32_t reading) {
-  const bool slow = rate_rad_s < slow_rad_s_ && rate_rad_s > -slow_rad_s_;
-  const bool downward = slow ? downward_ : rate_rad_s > 0.0f;
-  if (!begun_) {
-    begun_ = true;
-    downward_ = downward;
-    turned_at_rad_ = angle_rad;
-  }
-  const bool turned_before = turns_ && reading != turns_reading_;
-  if (!turns_) turns_reading_ = reading;
-  turns_ = downward != downward_;
-  if (!turns_ || !turned_before) return Turn::none;
-  turns_ = false;
-  downward_ = downward;
-  if (!drives_) take_up_other_direction();
-  const float swept = angle_rad - turned_at_rad_;
-  if (swept < least_sweep_rad && swept > -least_sweep_rad) return Turn::back;
-  turned_at_rad_ = angle_rad;
+  const Turn turn = turns_.follow(angle_rad, rate_rad_s, reading);
+  if (turn != Turn::none && !drives_) take_up_other_direction();
+  if (turn != Turn::new_sweep) return turn;
   if (drives_) {
     turn_driving();
   } else {
     turn_standing();
   }
   turned_ = true;
-  return Turn::new_sweep;
+  return turn;
 }
 
 void TiltLatency::take_up_other_direction() {

@@ -10,7 +10,7 @@ STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes",
 HELPER = -1
 FILES = {
     "signal.cpp": "tilt", "frame.hpp": "tilt", "tilt_decoder.hpp": "tilt", "tilt_decoder.cpp": "tilt", "pipeline.hpp": "pipeline",
-    "line_intake.hpp": "points", "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "tilt_latency.cpp": "points",
+    "line_intake.hpp": "points", "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "sweep_turns.hpp": "points", "tilt_latency.cpp": "points",
     "map_comparison.hpp": "points", "viewpoints.hpp": "cells", "pose_offset.hpp": "points", "pose_offset.cpp": "points",
     "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes", "region_ranking.hpp": "planes", "clean_fit.hpp": "planes", "index_set.hpp": "planes", "common_noise.hpp": "planes", "common_noise.cpp": "planes",
     "label_field.hpp": "labels", "label_site.hpp": "labels", "planes_near_by.hpp": "labels", "curb_tracer.hpp": "curbs", "curb_piece.hpp": "curbs", "curb_maker.hpp": "curbs", "border_finder.hpp": "curbs", "ground_end.hpp": "curbs", "cell_line.hpp": "curbs", "curb_stages.hpp": "curbs", "border_finder.cpp": "curbs", "borders.hpp": "curbs",

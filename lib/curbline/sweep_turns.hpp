@@ -1,0 +1,58 @@
+// Where the tilt servo turns round, and a new sweep begins. Known from two lines on end that lie between other
+// readings: one damaged reading leads all those before it or after it astray. O(1) a line.
+#pragma once
+
+#include <cstdint>
+
+namespace curbline {
+
+class SweepTurns {
+ public:
+  /// A rate below slow_rad_s tells no direction.
+  void init(float slow_rad_s) {
+    *this = SweepTurns{};
+    slow_rad_s_ = slow_rad_s;
+  }
+
+  enum class Turn : std::uint8_t {
+    none,
+    back,  ///< by play: the sweep goes on
+    new_sweep,
+  };
+  /// The angle and its rate at the beginning of a line, and the number of the reading after it: has the servo turned
+  /// round?
+  Turn follow(float angle_rad, float rate_rad_s, std::uint32_t reading);
+
+ private:
+  /// No sweep worth the name is smaller; turns closer together come from damaged readings and from play.
+  static constexpr float least_sweep_rad = 0.05f;
+
+  float slow_rad_s_ = 0.0f;
+  bool begun_ = false;
+  bool downward_ = false;            ///< the angle grows
+  bool turns_ = false;               ///< it seems to grow no more, or again, by the last line ...
+  std::uint32_t turns_reading_ = 0;  ///< ... and this reading
+  float turned_at_rad_ = 0.0f;       ///< where the sweep began
+};
+
+inline SweepTurns::Turn SweepTurns::follow(float angle_rad, float rate_rad_s, std::uint32_t reading) {
+  const bool slow = rate_rad_s < slow_rad_s_ && rate_rad_s > -slow_rad_s_;
+  const bool downward = slow ? downward_ : rate_rad_s > 0.0f;
+  if (!begun_) {
+    begun_ = true;
+    downward_ = downward;
+    turned_at_rad_ = angle_rad;
+  }
+  const bool turned_before = turns_ && reading != turns_reading_;
+  if (!turns_) turns_reading_ = reading;
+  turns_ = downward != downward_;
+  if (!turns_ || !turned_before) return Turn::none;
+  turns_ = false;
+  downward_ = downward;
+  const float swept = angle_rad - turned_at_rad_;
+  if (swept < least_sweep_rad && swept > -least_sweep_rad) return Turn::back;
+  turned_at_rad_ = angle_rad;
+  return Turn::new_sweep;
+}
+
+}  // namespace curbline
