@@ -30,7 +30,8 @@
 #include "curbline/link.hpp"             // neighbours on a row or column
 #include "curbline/segmentation.hpp"     // leaves, regions
 #include "curbline/region_graph.hpp"     // merging by evidence
-#include "curbline/plane.hpp"            // moments, evidence, fit
+#include "curbline/plane.hpp"            // moments, fit
+#include "curbline/plane_evidence.hpp"   // that points lie on one, or on two that are parted
 #include "curbline/region_ranking.hpp"   // which regions become planes, under which labels
 #include "curbline/clean_fit.hpp"        // of cells that hold nothing else
 #include "curbline/plane_mixture.hpp"    // labels that live on

@@ -15,6 +15,7 @@
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/plane_evidence.hpp"
 
 namespace curbline {
 

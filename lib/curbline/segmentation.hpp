@@ -15,6 +15,7 @@
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/plane_evidence.hpp"
 #include "curbline/region_graph.hpp"
 #include "curbline/settings.hpp"
 
