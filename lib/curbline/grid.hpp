@@ -10,7 +10,7 @@
 
 namespace curbline {
 
-/// Where the memory of a cell lies, in whatever stage keeps something for it (dem.hpp).
+/// Where the memory of a cell lies, in whatever stage keeps something for it (window.hpp).
 template <Limits limits>
 using Slot = std::conditional_t<(limits.rows * limits.cols < 65535), std::uint16_t, std::uint32_t>;
 

@@ -1,4 +1,4 @@
-// What a stage keeps for the window's cells, by their slots (dem.hpp).
+// What a stage keeps for the window's cells, by their slots (window.hpp).
 #pragma once
 
 #include <array>
