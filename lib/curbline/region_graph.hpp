@@ -105,6 +105,18 @@ class RegionGraph {
             static_cast<float>(link.along_y) * share * cell_y_m_,
             static_cast<float>(link.rise) * share * (1.0f / rise_scale)};
   }
+  /// Calls visit(end) for each end that leaves from a node; it may move the end to another.
+  template <typename Visit>
+  void for_each_end(Index node, Visit&& visit) {
+    const Index first = node_[node].first;
+    if (first == none) return;
+    Index next = first;
+    do {
+      const Index end = next;
+      next = end_[end].next;
+      visit(end);
+    } while (next != first);
+  }
   int refresh_all(const PlaneEvidence& evidence);
   void build_heap() {
     for (int p = static_cast<int>(heap_size_) / 2 - 1; p >= 0; --p) sift_down(static_cast<Index>(p));
@@ -113,6 +125,7 @@ class RegionGraph {
   void insert(Index node, Index end);
   void remove(Index node, Index end);
   void absorb(Index a, Index b);
+  void move_end(Index end, Index a);
   void heap_remove(Index place);
   void sift_up(Index place);
   [[gnu::noinline]] void sift_down(Index place);
@@ -262,37 +275,30 @@ template <Limits limits>
 void RegionGraph<limits>::absorb(Index a, Index b) {
   node_[a].moments.add(node_[b].moments);
   node_[b].parent = a;
-  if (const Index first = node_[a].first; first != none) {
-    Index end = first;
-    do {
-      link_[end / 2].stale = true;
-      seen_[end_[end].target] = end;
-      end = end_[end].next;
-    } while (end != first);
+  for_each_end(a, [&](Index end) {
+    link_[end / 2].stale = true;
+    seen_[end_[end].target] = end;
+  });
+  for_each_end(b, [&](Index end) { move_end(end, a); });
+}
+
+/// From the node that has become part of a.
+template <Limits limits>
+void RegionGraph<limits>::move_end(Index end, Index a) {
+  const auto other = static_cast<Index>(end ^ 1u);
+  const Index target = end_[end].target, twin = seen_[target];
+  const bool has_twin = twin != none && end_[twin].target == target && end_[twin ^ 1u].target == a;
+  Link& link = link_[end / 2];
+  if (target != a && !has_twin) {
+    end_[other].target = a;
+    insert(a, end);
+    link.stale = true;
+    return;
   }
-  const Index first = node_[b].first;
-  if (first == none) return;
-  Index next = first;
-  do {
-    const Index end = next;
-    next = end_[end].next;
-    const auto other = static_cast<Index>(end ^ 1u);
-    const Index target = end_[end].target, twin = seen_[target];
-    const bool has_twin = twin != none && end_[twin].target == target && end_[twin ^ 1u].target == a;
-    if (target == a || has_twin) {
-      if (has_twin) {
-        const Link& second = link_[end / 2];
-        const int sign = (end ^ twin) % 2 == 0 ? 1 : -1;
-        link_[twin / 2].add_pairs(sign, second.pairs, second.rise, second.along_x, second.along_y);
-      }
-      remove(target, other);
-      heap_remove(link_[end / 2].place);
-    } else {
-      end_[other].target = a;
-      insert(a, end);
-      link_[end / 2].stale = true;
-    }
-  } while (next != first);
+  if (has_twin)
+    link_[twin / 2].add_pairs((end ^ twin) % 2 == 0 ? 1 : -1, link.pairs, link.rise, link.along_x, link.along_y);
+  remove(target, other);
+  heap_remove(link.place);
 }
 
 template <Limits limits>
