@@ -13,6 +13,7 @@ FILES = {
     "line_intake.hpp": "points", "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "sweep_turns.hpp": "points", "tilt_latency.cpp": "points",
     "map_comparison.hpp": "points", "viewpoints.hpp": "cells", "pose_offset.hpp": "points", "pose_offset.cpp": "points",
     "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes", "region_ranking.hpp": "planes", "clean_fit.hpp": "planes", "index_set.hpp": "planes", "common_noise.hpp": "planes", "common_noise.cpp": "planes",
+    "ground.hpp": "planes", "obstacles.hpp": "planes", "run.hpp": "planes", "strip_tally.hpp": "planes",
     "label_field.hpp": "labels", "label_site.hpp": "labels", "planes_near_by.hpp": "labels", "curb_tracer.hpp": "curbs", "curb_piece.hpp": "curbs", "curb_maker.hpp": "curbs", "border_finder.hpp": "curbs", "ground_end.hpp": "curbs", "cell_line.hpp": "curbs", "curb_stages.hpp": "curbs", "border_finder.cpp": "curbs", "borders.hpp": "curbs",
     "shadow.hpp": "curbs", "shadow.cpp": "curbs", "curb.hpp": "curbs", "curb.cpp": "curbs", "line_fit.hpp": "curbs", "line_fit.cpp": "curbs",
 }
