@@ -15,8 +15,8 @@
 // veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
 // tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
 // for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
-// away more steeply than a ramp and is no wider than the shadow of what it falls and the laser's spot on an edge,
-// however the rays pass it, blurs that edge.
+// away more steeply than a ramp, against what the ground leans, and is no wider than the shadow of what it falls and
+// the laser's spot on an edge, however the rays pass it, blurs that edge.
 // Cost: three passes over the window.
 #pragma once
 

@@ -98,7 +98,13 @@ struct Plane {
 
   /// How far its centroid lies above another plane.
   float above_m(const Plane& other) const { return z_m - other.height_m(x_m, y_m); }
+  /// What its slope is more than 1 in 20, as a plane through the origin.
+  Plane lean() const;
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
+  /// The same against ground that leans.
+  bool steeper_than_ramp(const Plane& lean) const {
+    return square(slope_x - lean.slope_x) + square(slope_y - lean.slope_y) > square(steepest_ramp);
+  }
   /// By three standard deviations of the slopes of ground: a face.
   bool steeper_than_ground() const { return square(slope_x) + square(slope_y) > gate * square(steepest_ramp); }
 

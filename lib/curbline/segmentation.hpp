@@ -116,14 +116,8 @@ void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, const Plan
 /// is taken off. Not all of it: leaves as large as blocks tear ground that is bent (lib/README.md).
 template <Limits limits>
 void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plane& ground) {
-  const float slope = square_root(square(ground.slope_x) + square(ground.slope_y));
-  const bool leans = slope > least_ramp;
-  Plane lean;
-  if (leans) {
-    const float share = 1.0f - least_ramp / slope;
-    lean.slope_x = share * ground.slope_x;
-    lean.slope_y = share * ground.slope_y;
-  }
+  const Plane lean = ground.lean();
+  const bool leans = square(lean.slope_x) + square(lean.slope_y) > 0.0f;
   for (int bi = 0; bi < dem.rows(); bi += block_side) {
     for (int bj = 0; bj < dem.cols(); bj += block_side) {
       constexpr int size = block_side * block_side;

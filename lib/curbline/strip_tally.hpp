@@ -86,9 +86,9 @@ struct StripTally {
 template <Limits limits>
 using StripTallies = std::array<StripTally, limits.planes>;
 
-/// Does a plane fall away from the laser, and more steeply than a ramp?
-inline bool drops_off(const Plane& plane, const Viewpoint& view) {
-  return plane.steeper_than_ramp() &&
+/// Does a plane fall away from the laser, and more steeply than a ramp on ground that leans?
+inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& view) {
+  return plane.steeper_than_ramp(lean) &&
          plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
 }
 
@@ -97,10 +97,11 @@ template <Limits limits>
 StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                                   const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
   StripTallies<limits> tallies{};
+  const Plane lean = obstacles.ground() == nullptr ? Plane{} : obstacles.ground()->lean();
   std::array<bool, limits.planes> drops{};
   for (std::size_t l = 0; l < tallies.size(); ++l) {
     tallies[l].cells = obstacles.cells(l);
-    drops[l] = !obstacles.is(l) && drops_off(planes[l], view);
+    drops[l] = !obstacles.is(l) && drops_off(planes[l], lean, view);
   }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {

@@ -62,6 +62,17 @@ void PlaneMoments::scale(float share) {
   zz *= share;
 }
 
+Plane Plane::lean() const {
+  Plane beyond;
+  const float slope = square_root(square(slope_x) + square(slope_y));
+  if (slope > least_ramp) {
+    const float share = 1.0f - least_ramp / slope;
+    beyond.slope_x = share * slope_x;
+    beyond.slope_y = share * slope_y;
+  }
+  return beyond;
+}
+
 Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {
   return fitted(m, prior, m.weight, prior.common_m2());
 }

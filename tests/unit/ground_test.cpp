@@ -306,6 +306,23 @@ TEST_CASE("ground: a plane that holds the laser is ground where that is no highe
   CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any kerb: a veil
 }
 
+//  o
+//  ------____
+//            ------____     a pavement on a hill, of which a robot sees little: 40 cm, from afar
+TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is steeper than a ramp") {
+  const auto may_blur = [](double hill, double strip) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = {0.0f, 1.2f, 1.0f, 8.0f, 8.0f};
+    fill(stages.dem, [=](double x, double) { return x < 2.0 ? -hill * x : -hill * 2.0 + 0.06 - strip * (x - 2.0); });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    return stages.mixture.may_be_veil(stages.label_at(22, 12));
+  };
+  CHECK(may_blur(0.0, 0.15));
+  CHECK_FALSE(may_blur(0.12, 0.15));
+  CHECK(may_blur(0.12, 0.27));
+  CHECK(may_blur(0.04, 0.15));  // a street
+}
+
 TEST_CASE("ground: a slope that a robot can stand on is ground") {
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : 0.3 * (x - 1.0); }) == 2);
 }
