@@ -177,6 +177,18 @@ TEST_CASE("ground: what is narrower than shoulders is a wall, unless it may go o
   CHECK(borne_from({0.0f, 1.2f, 1.0f}, underfoot) == 2);
 }
 
+//       __ . . .       a pavement along the front of which the laser has looked up to now; a wall, and what it hides
+//  ____|
+TEST_CASE("ground: a high pavement of which the laser has seen the front alone, up to now, is no wall") {
+  const auto seen = [](double from_x_m, double to_x_m) {
+    return [=](double x, double) {
+      return x < 1.2 ? 0.0 : x < 1.5 ? 0.22 : x < from_x_m || x > to_x_m ? 0.0 : std::nan("");
+    };
+  };
+  CHECK(borne_from({0.0f, 1.2f, 1.0f}, seen(1.5, 9.0)) == 2);
+  CHECK(borne_from({0.0f, 1.2f, 1.0f}, seen(1.5, 2.0)) == 2);  // the ground before it and behind
+}
+
 //             ______
 //          __|         between two walls, 1.2 m apart
 //  _______|
