@@ -108,7 +108,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = stages_.field.label(s);
     if (!stages_.bears_ground(s) || !stages_.lies_on(i, j, dem.cell(s), stages_.mixture.plane(label))) {
-      if (stages_.is_veil(s)) end_before({dem, 0, j}, i), end_before({dem, 1, i}, j);
+      end_before({dem, 0, j}, i), end_before({dem, 1, i}, j);
       return;
     }
     if (i != row) before_in_row = {};

@@ -2,7 +2,8 @@
 //   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
 //     as well as the face; what lies beyond is flatter than the rays.
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
-//     follow the ground, away from the laser, and lie below it. They fall as far as is seen of the step.
+//     or belong to what stands there, follow the ground, away from the laser, and lie below it. They fall as far as is
+//     seen of the step.
 // Cost: a look at each cell of a face and a veil.
 #pragma once
 
@@ -28,7 +29,8 @@ class GroundEnds {
   /// Of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it is no
   /// face, or does not end in the window.
   std::optional<Border> of_face(const Line& line, const LabelledCell& first, int toward) const;
-  /// Before the first cell of a veil, as the laser sees it.
+  /// Before a cell, if that is the first of a veil, as the laser sees it. What stands on the ground does not lie below
+  /// it: a cell of an obstacle that does, as far as it was seen over the edge, mixes what lies behind that, as a veil.
   std::optional<Border> brink(const Line& line, int first_of_veil) const;
 
  private:
@@ -77,6 +79,14 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   const auto on_plane = [&](int along, Label label) {
     return stages_.lies_on(line.row(along), line.col(along), line.cell(along), stages_.mixture.plane(label));
   };
+  const Label label = stages_.field.label(line.slot(edge));
+  const Plane& plane = stages_.mixture.plane(label);
+  const auto below = [&](int along) { return line.above_m(along, plane) < 0.0f && !on_plane(along, label); };
+  const auto may_fall = [&](int along) {
+    const int s = line.slot(along);
+    return stages_.is_veil(s) || (below(along) && line.away(line.dem.seen_from(s, stages_.view), along) == toward);
+  };
+  if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
   int last = first_of_veil;
   while (const int g = line.next_valid(last, toward, link_reach_)) {
     const int next = last + toward * g;
@@ -84,12 +94,10 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     if (stages_.bears_ground(s) &&
         (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s))))
       return std::nullopt;
-    if (!stages_.is_veil(s)) break;
+    if (!may_fall(next)) break;
     last = next;
   }
-  const Label label = stages_.field.label(line.slot(edge));
-  const Plane& plane = stages_.mixture.plane(label);
-  if (!on_plane(edge, label) || on_plane(last, label) || line.above_m(last, plane) > 0.0f) return std::nullopt;
+  if (!below(last)) return std::nullopt;
 
   const auto cells = static_cast<float>(toward * (last - edge));
   Border border = border_behind(line, edge, toward, static_cast<float>(edge + (toward > 0 ? 1 : 0)) * line.pitch_m());

@@ -346,6 +346,47 @@ TEST_CASE("border finder: a veil before an obstacle hides a step as one beside i
   }
 }
 
+//  o             |
+//  ________      |       a car on a road of which nothing is seen; its wheels and the edge share the cells between
+//          \\    |
+//            \\  |
+TEST_CASE("border finder: a step down right before an obstacle is told by what lies below the ground") {
+  const auto curbs = [](double drop_m) {
+    Stages<small_limits> stages(small_settings());
+    test::fill(stages.dem, [&](double x, double y) {  // four points a cell
+      const auto second_half = [](double at) { return std::lround(at * 100) % 10 > 5; };
+      if (x < 1.2) return 0.0;
+      return second_half(y) && (x > 1.4 || second_half(x)) ? 0.4 : -drop_m;
+    });
+    stages.view.y_m = 1.2f;
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(0.0f, 1.2f);
+    return std::vector<Curb>(stages.tracer.curbs().begin(), stages.tracer.curbs().end());
+  };
+  const std::vector<Curb> found = curbs(0.25);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == CurbKind::step_down);
+  CHECK(found[0].far_label == no_label);
+  CHECK(found[0].x0_m == Approx(1.2).margin(0.05));
+  CHECK(curbs(0.0).empty());
+}
+
+//             _______
+//   o  ->    :       o   what is left of a step that a robot has climbed: its upper side, and a row that mixes both
+TEST_CASE("border finder: the face of a step up is no step down for a robot that has climbed it") {
+  Stages<small_limits> stages(small_settings());
+  test::Noise noise;
+  stages.dem.look_from(-0.8f, 1.2f);
+  for (const Point& p :
+       test::sample({1.2, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, [](double x, double) { return x < 1.25 ? -0.3 : 0.0; })) {
+    stages.dem.add(p);
+  }
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.dem.look_from(2.3f, 1.2f);
+  stages.trace(2.3f, 1.2f);
+  CHECK(stages.tracer.curbs().empty());
+}
+
 TEST_CASE("border finder: a veil at the window's end hides a step all the same") {
   CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
 }
