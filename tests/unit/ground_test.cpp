@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "support/small_map.hpp"
 
@@ -276,6 +277,68 @@ TEST_CASE("ground: readings in the shadow of a step stay what they are when the 
   CHECK(borne_after(2.2f) == 2);
 }
 
+/// A place when the window is turned by as many quarters.
+std::pair<double, double> turned(double x, double y, int quarters) {
+  for (int k = 0; k < quarters; ++k) std::swap(x, y), x = 2.4 - x;
+  return {x, y};
+}
+Viewpoint turned(const Viewpoint& view, int quarters) {
+  const auto [x, y] = turned(static_cast<double>(view.x_m), static_cast<double>(view.y_m), quarters);
+  return {static_cast<float>(x), static_cast<float>(y), view.z_m, view.end_x_m, view.end_y_m};
+}
+template <typename Height>
+auto turned_ground(Height height_m, int quarters) {
+  return [=](double x, double y) {
+    const auto [u, v] = turned(x, y, 4 - quarters);
+    return height_m(u, v);
+  };
+}
+
+TEST_CASE(
+    "ground: what a robot has seen in a shadow stays so, though it sees what lies before the edge from beside it") {
+  const int quarters = GENERATE(0, 1, 2, 3);
+  const auto borne_after = [=](float robot_x_m) {
+    Stages<small_limits> stages(small_settings());
+    const auto look_from = [&](float x_m) {
+      stages.view = turned({x_m, 1.2f, 1.0f, 2.4f, 2.4f}, quarters);
+      stages.dem.look_from(stages.view.x_m, stages.view.y_m);
+    };
+    const auto see = [&](bool before) {
+      const auto ground = [=](double x, double) {
+        if ((x < 1.4) != before) return std::nan("");
+        return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2;
+      };
+      fill(stages.dem, turned_ground(ground, quarters));
+    };
+    look_from(0.0f);
+    see(false);
+    look_from(robot_x_m);
+    see(true);
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    std::set<int> labels;
+    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
+    return labels.size();
+  };
+  CHECK(borne_after(0.0f) == 2);
+  CHECK(borne_after(2.2f) == 2);
+}
+
+TEST_CASE("ground: the face of a curb is one in a window that is longer than wide, or wider than long") {
+  const auto borne_in = [](int rows, int cols) {
+    Stages<small_limits> stages(small_settings(rows, cols));
+    const auto ground = [](double along, double across) {
+      return (along < 0.55 ? 0.0 : 0.06) + (along > 1.2 && across > 0.55 ? 0.12 : 0.0);
+    };
+    fill(stages.dem, [&](double x, double y) { return rows > cols ? ground(x, y) : ground(y, x); });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    std::set<int> labels;
+    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
+    return labels.size();
+  };
+  CHECK(borne_in(24, 12) == 3);
+  CHECK(borne_in(12, 24) == 3);
+}
+
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {
   CHECK(borne([](double x, double y) {
           const double d = x + y;
@@ -333,6 +396,325 @@ TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is 
   CHECK_FALSE(may_blur(0.12, 0.15));
   CHECK(may_blur(0.12, 0.27));
   CHECK(may_blur(0.04, 0.15));  // a street
+}
+
+TEST_CASE("ground: what is ground is so whatever way the window lies, and on whatever side of it the laser stands") {
+  const int quarters = GENERATE(1, 2, 3);
+  const auto borne_turned = [=](const Viewpoint& view, auto&& height_m) {
+    return borne_from(turned(view, quarters), turned_ground(height_m, quarters));
+  };
+  const auto one_of = [](double y, double low_m, double high_m) {
+    return static_cast<int>(y * 100) % 10 < 5 ? low_m : high_m;
+  };
+  const Viewpoint afar{0.0f, 0.0f, 1.0f}, near_by{0.8f, 1.2f, 1.0f};
+  const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; };
+  CHECK(borne_turned(afar, down) == 2);  // a veil
+  CHECK(borne_turned(near_by, down) == 3);
+  CHECK(borne_turned({0.8f, 1.2f, 1.0f, 2.4f, 2.4f}, down) == 2);  // seen from afar
+  CHECK(borne_turned(afar, [](double x, double y) {                // askew
+          const double d = x + y;
+          return d < 2.0 ? 0.0 : d < 2.35 ? -0.1 - 0.36 * (d - 2.175) : -0.2;
+        }) == 2);
+  CHECK(borne_turned({0.0f, 1.2f, 1.0f}, [](double x, double y) {  // about the laser
+          const double r = std::hypot(x, y - 1.2);
+          return r < 1.4 ? 0.0 : r < 1.7 ? -0.15 - 0.5 * (r - 1.55) : -0.3;
+        }) == 2);
+  for (const double lean : {0.2, 0.0}) {  // a fringe, a pavement
+    CHECK(borne_turned(afar, [=](double x, double y) {
+            if (x >= 1.2) return 0.5 + 0.6 * (x - 1.2) + one_of(y, -0.5, 0.5);
+            return x < 1.0 ? 0.0 : (lean > 0.0 ? 0.04 : 0.08) + lean * (x - 1.1);
+          }) == (lean > 0.0 ? 1 : 2));
+  }
+  for (const double post_m : {0.9, 1.2}) {  // beside a kerb's face
+    CHECK(borne_turned(afar, [=](double x, double y) {
+            if (x >= post_m && x < post_m + 0.2 && y >= 0.5 && y < 0.7) return one_of(y, 0.5, 2.0);
+            return x < 1.15 ? 0.0 : 0.06;
+          }) == 2);
+  }
+  CHECK(borne_turned({0.0f, 1.2f, 1.0f}, [](double x, double) {  // a platform under the robot
+          return x < 0.6 ? std::nan("") : x < 0.9 ? 0.28 : 0.0;
+        }) == 2);
+}
+
+//  ________           _
+//                ____| |
+//          \\             \\        below the road behind it: a gutter; above the pavement: a kerb stone
+//            \\ ___        |____
+TEST_CASE("ground: what lies in the shadow of a step down, but not between both sides, is no veil of it") {
+  const auto strip = [](double z_m) {  // falls a third as steeply as the rays
+    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.2 * (x - 1.4) : -0.2; };
+  };
+  CHECK(borne(strip(-0.08)) == 2);  // a veil
+  CHECK(borne(strip(-0.23)) == 3);  // a gutter
+  CHECK(borne(strip(0.1)) == 3);    // a kerb stone
+}
+
+TEST_CASE("ground: a strip in the shadow of a step down is a veil however high the ground lies in the map") {
+  const int quarters = GENERATE(0, 2);
+  const auto down = [](double x, double) { return x < 1.4 ? 5.0 : x < 1.7 ? 4.9 - 0.2 * (x - 1.55) : 4.8; };
+  const auto seen_from = [&](float z_m) {
+    return borne_from(turned({0.0f, 0.0f, z_m}, quarters), turned_ground(down, quarters));
+  };
+  CHECK(seen_from(6.0f) == 2);
+  CHECK(seen_from(7.0f) == 3);  // from higher up the shadow is narrower
+}
+
+TEST_CASE("ground: a veil that is mostly a cell wide is left to both sides, though here and there it is two") {
+  CHECK(borne([](double x, double y) {
+          const bool wider = static_cast<int>(y * 10) % 3 == 0;
+          return x < 1.4 ? 0.0 : x < 1.5 || (wider && x < 1.6) ? -0.1 : -0.2;
+        }) == 2);
+}
+
+TEST_CASE("ground: near the laser, where rays are steep, what is steeper than ground in a step's shadow is a veil") {
+  const auto down = [](double slope) {
+    return [=](double x, double) { return x < 0.5 ? 0.0 : x < 0.7 ? -0.1 - slope * (x - 0.55) : -0.25; };
+  };
+  CHECK(borne(down(0.42)) == 2);  // the rays fall five times as steeply
+  CHECK(borne(down(0.2)) == 3);
+}
+
+TEST_CASE("ground: a step that the laser is straight above has no shadow") {
+  const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 : -0.2; };
+  CHECK(borne_from({1.55f, 1.2f, 1.0f}, down) == 3);
+}
+
+//  ________
+//             \\         what parts a strip from the planes beside it is not seen
+//               \\
+//                     _____
+TEST_CASE("ground: a strip that lies farther from a step's sides than a face is wide is no veil between them") {
+  const auto apart = [](double before_m, double behind_m) {
+    return [=](double x, double) {
+      if (x > 1.4 - before_m && x < 1.4) return std::nan("");
+      if (x > 1.7 && x < 1.7 + behind_m) return std::nan("");
+      return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.2 * (x - 1.55) : -0.2;
+    };
+  };
+  CHECK(borne(apart(0.1, 0.1)) == 2);
+  CHECK(borne(apart(0.2, 0.0)) == 3);
+  CHECK(borne(apart(0.0, 0.2)) == 3);
+}
+
+TEST_CASE("ground: an uneven row at the window's end is no face: what lies beyond it is not known") {
+  const auto row = [](bool first) {
+    return [=](double x, double y) {
+      return (first ? x < 0.1 : x > 2.3) ? 0.06 + (static_cast<int>(y * 100) % 10 < 5 ? -0.02 : 0.02) : 0.12;
+    };
+  };
+  CHECK(borne(row(true)) == 2);
+  CHECK(borne(row(false)) == 2);
+}
+
+TEST_CASE("ground: on a street that leans, too, a pavement before a wall is no fringe of it") {
+  CHECK(borne([](double x, double y) {
+          const double street_m = 0.08 * x + 0.08 * y;
+          if (x >= 1.2) return 0.7 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+          return x < 1.0 ? street_m : street_m + 0.08;
+        }) == 2);
+}
+
+//             |
+//          __ |           a ledge before a wall, 20 cm deep; what lies before it is not seen
+//  ______     |
+TEST_CASE("ground: level readings on a wall are left to the ground, from as high above it on as no kerb is") {
+  const auto ledge = [](double ledge_m) {
+    return [=](double x, double y) {
+      if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+      return x < 0.8 ? 0.0 : x < 1.0 ? std::nan("") : ledge_m;
+    };
+  };
+  CHECK(borne(ledge(0.4)) == 1);
+  CHECK(borne(ledge(0.25)) == 2);
+}
+
+TEST_CASE("ground: a strip that does not touch an obstacle is no fringe of it") {
+  const auto one_of = [](double y) { return static_cast<int>(y * 100) % 10 < 5 ? 0.0 : 1.2; };
+  const auto before = [=](double gap_m) {
+    return [=](double x, double y) {
+      if (x >= 1.2 + gap_m) return one_of(y);
+      return x >= 1.2 ? std::nan("") : x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
+    };
+  };
+  const auto behind = [=](double gap_m) {
+    return [=](double x, double y) {
+      if (x < 1.0 - gap_m) return one_of(y);
+      return x < 1.0 ? std::nan("") : x > 1.2 ? 0.0 : 0.04 - 0.2 * (x - 1.1);
+    };
+  };
+  CHECK(borne(before(0.0)) == 1);
+  CHECK(borne(before(0.1)) == 2);
+  CHECK(borne_from({2.4f, 0.0f, 1.0f}, behind(0.0)) == 1);
+  CHECK(borne_from({2.4f, 0.0f, 1.0f}, behind(0.1)) == 2);
+}
+
+TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left to it, too") {
+  CHECK(borne(
+            [](double x, double y) {
+              if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+              return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
+            },
+            0.0f) == 1);
+}
+
+/// A map of this ground. Is the plane at a place, which is ground, one that may be a veil?
+template <typename Height>
+bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_m) {
+  Stages<small_limits> stages(small_settings());
+  stages.view = view;
+  fill(stages.dem, height_m);
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  const Label label =
+      stages.mixture.region_label(stages.dem.slot_within(static_cast<float>(x_m), static_cast<float>(y_m)));
+  REQUIRE(label != no_label);
+  return stages.mixture.ground(label) && stages.mixture.may_be_veil(label);
+}
+
+TEST_CASE("ground: what falls half as steeply as the rays from any height may be a veil, a flatter slope is none") {
+  const auto falls = [](double slope) {
+    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -slope * (x - 1.4) : std::nan(""); };
+  };
+  for (const double laser_m : {0.7, 1.0, 2.0}) {
+    const double rays = laser_m / 1.4;
+    CHECK(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.65 * rays)));
+    CHECK_FALSE(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.35 * rays)));
+  }
+}
+
+//  ____            from far away a slope of 30 cm may be the blurred edge of what lies before it; not if it begins far
+//      __          below or above: then it is not that edge's
+//        --__
+TEST_CASE("ground: a slope that a higher step parts from the ground before it is no blurred edge") {
+  const int quarters = GENERATE(0, 1, 2, 3);
+  const auto slope_after = [=](double step_m, double before_m = 3.0, double behind_m = std::nan("")) {
+    const auto slope = [=](double, double y) {
+      if (y < 1.2) return before_m;
+      if (y > 1.9) return behind_m;
+      return y < 1.6 ? std::nan("") : 3.0 + step_m - 0.14 * (y - 1.6);
+    };
+    const auto [x, y] = turned(1.25, 1.75, quarters);
+    return may_be_veil(turned({1.2f, -3.3f, 5.0f}, quarters), x, y, turned_ground(slope, quarters));
+  };
+  CHECK(slope_after(0.0));
+  CHECK(slope_after(0.0, std::nan(""), 2.958));  // nothing is seen before it
+  CHECK_FALSE(slope_after(-0.1));
+  CHECK_FALSE(slope_after(0.1));
+}
+
+TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
+  const auto falls = [](double slope) {
+    return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {
+      return y < 1.6 ? 0.0 : y > 1.9 ? std::nan("") : -slope * (y - 1.6);
+    });
+  };
+  CHECK(falls(0.14));
+  CHECK_FALSE(falls(0.11));
+}
+
+TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fringe and covers the ground") {
+  const auto covered = [](const Viewpoint& view, double lean) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = view;
+    fill(stages.dem, [=](double x, double y) {
+      if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+      return x < 0.9 ? 0.0 : 0.05 + lean * (x - 1.05);
+    });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    REQUIRE(stages.mixture.region_label(stages.dem.slot(10, 12)) != no_label);
+    return stages.mixture.covered(stages.dem.slot(10, 12));
+  };
+  const Viewpoint before{0.0f, 1.2f, 1.0f}, close_by{0.8f, 1.2f, 0.4f}, low{0.0f, 1.2f, 0.31f};
+  CHECK(covered(before, 0.063));
+  CHECK_FALSE(covered(before, 0.038));
+  CHECK(covered(before, 0.2));
+  CHECK(covered(low, -0.11));          // falls as rays do, but no more steeply than a ramp
+  CHECK_FALSE(covered(before, -0.5));  // a veil: it tells where an edge lies
+}
+
+//   ||
+//   ||  ....          what a wall hides is not seen
+//  _||______
+TEST_CASE("ground: a wall, whatever way it runs, is left to the ground, also if nothing is seen behind it") {
+  const int quarters = GENERATE(0, 1, 2, 3);
+  const auto wall = [=](double hidden_m) {
+    return borne_from(turned({0.0f, 1.2f, 1.0f}, quarters), turned_ground(
+                                                                [=](double x, double) {
+                                                                  if (x > 1.2 && x < 1.2 + hidden_m)
+                                                                    return std::nan("");
+                                                                  return x > 0.9 && x < 1.2 ? 0.28 : 0.0;
+                                                                },
+                                                                quarters));
+  };
+  CHECK(wall(0.0) == 2);
+  CHECK(wall(0.4) == 2);
+}
+
+TEST_CASE("ground: a block is no obstacle if a robot has room on it, if it leans, or if it goes on beyond the window") {
+  const auto block = [](double height_m, double from_x_m, double size_m, double lean = 0.0) {
+    return [=](double x, double y) {
+      const bool on_it = x > from_x_m && x < from_x_m + size_m && y > 0.6 && y < 0.6 + size_m;
+      return on_it ? height_m + lean * (x - from_x_m) : 0.0;
+    };
+  };
+  CHECK(borne(block(0.28, 0.6, 0.9)) == 1);
+  CHECK(borne(block(0.28, 0.6, 1.1)) == 2);  // more than a square metre
+  CHECK(borne(block(0.28, 0.6, 0.8, 0.2)) == 2);
+  for (const int quarters : {0, 1, 2, 3}) CHECK(borne(turned_ground(block(0.28, 1.8, 0.6), quarters), 3.0f) == 2);
+}
+
+//              _____
+//     _  _    |           two boxes of about one height lead nowhere; two that lie on a platform are steps on it
+//  __| || |___|
+TEST_CASE("ground: boxes beside each other are obstacles, low steps on a platform are ways") {
+  const auto steps = [](double platform_m) {
+    return [=](double x, double y) {
+      if (y < 1.2 || y > 1.7) return x > 1.8 ? platform_m : 0.0;
+      if (x > 1.4 && x < 1.8) return 0.28;
+      return x > 0.9 && x < 1.4 ? 0.35 : x > 1.8 ? platform_m : 0.0;
+    };
+  };
+  CHECK(borne(steps(0.0)) == 1);
+  CHECK(borne(steps(0.22)) == 4);
+}
+
+TEST_CASE("ground: the next step of a stair may lie behind a face of two cells, whatever way the stair goes") {
+  const int quarters = GENERATE(0, 1, 2, 3);
+  const auto steps = [](double face_m) {
+    return [=](double x, double y) {
+      if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
+      if (x > 1.8 + face_m) return std::nan("");  // not seen
+      return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : x < 1.5 + face_m ? 0.0 : 0.42;
+    };
+  };
+  CHECK(borne_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.2), quarters)) == 4);
+  CHECK(borne_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.3), quarters)) == 2);
+}
+
+TEST_CASE("ground: a bank before rough grass that is lower than a kerb is no fringe of it, before a hedge it is") {
+  const auto before = [](double rough_m) {
+    return [=](double x, double y) {
+      if (x >= 1.2) return 0.15 + (static_cast<int>(y * 100) % 10 < 5 ? -rough_m : rough_m);
+      return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
+    };
+  };
+  CHECK(borne(before(0.075)) == 2);
+  CHECK(borne(before(0.1)) == 1);
+}
+
+TEST_CASE("ground: what stands on the ground is measured against the largest plane, whichever was there first") {
+  Stages<small_limits> stages(small_settings());
+  const auto box_and_platform = [](double x, double y) {
+    if (x < 0.4) return 0.28;
+    return x > 1.2 && x < 1.8 && y > 0.9 && y < 1.5 ? 0.28 : 0.0;
+  };
+  fill(stages.dem, [&](double x, double y) { return x < 0.4 ? box_and_platform(x, y) : std::nan(""); });
+  stages.infer(true);
+  const int platform = stages.label_at(2, 12);
+  fill(stages.dem, [&](double x, double y) { return x < 0.4 ? std::nan("") : box_and_platform(x, y); });
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  CHECK(stages.label_at(2, 12) == platform);
+  REQUIRE(stages.label_at(20, 2) != platform);
+  CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells bear the road
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {
