@@ -492,5 +492,193 @@ TEST_CASE("borders: one that lies before the window or beyond it is found from i
   }
 }
 
+TEST_CASE("border finder: a face that the window cuts has no end on any side, of one that is longer than wide, too") {
+  CHECK(Street{.from = 2.1, .to = 9.0, .turned = true}.ends().empty());
+  const auto one_sided = [](int rows, int cols) {  // the window's end cuts the face, along its shorter side
+    Stages<small_limits> stages(small_settings(rows, cols));
+    test::fill(stages.dem, [=](double x, double y) { return 0.4 * std::max((rows < cols ? x : y) - 1.3, 0.0); });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(0.0f, 0.0f);
+    REQUIRE(!stages.tracer.curbs().empty());  // its foot
+    return std::count_if(stages.tracer.curbs().begin(), stages.tracer.curbs().end(),
+                         [](const Curb& curb) { return curb.far_label == no_label || curb.near_label == no_label; });
+  };
+  CHECK(one_sided(16, 24) == 0);
+  CHECK(one_sided(24, 16) == 0);
+}
+
+TEST_CASE("border finder: a veil hides a step on whichever half of the window it lies") {
+  for (const double from : {0.9, 1.6}) {
+    const Street street{.slope = -0.7 / from, .from = from, .to = from + 0.3, .turned = GENERATE(false, true)};
+    CHECK(street.one_sided().size() == 1);
+  }
+}
+
+/// The curbs of a window 1 m below the laser at (0, 1.2).
+template <typename Height>
+std::unique_ptr<Stages<small_limits>> traced(Height&& height_m) {
+  auto stages = std::make_unique<Stages<small_limits>>(small_settings());
+  stages->view = {0.0f, 1.2f, 1.0f};
+  test::fill(stages->dem, height_m);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace(0.0f, 1.2f);
+  return stages;
+}
+
+//  o
+//  _________
+//           .            two rows, of two cells and of one: too few for a plane
+TEST_CASE("border finder: a few readings below the end of what is seen hide a step, above it they do not") {
+  const auto ground = [](double off_m) {
+    return [=](double x, double y) {
+      if (x < 1.4) return 0.0;
+      if (y < 1.0 || y > 1.2 || x > (y < 1.1 ? 1.6 : 1.5)) return std::nan("");
+      return off_m;
+    };
+  };
+  const auto below = traced(ground(-0.1)), above = traced(ground(0.1));
+  REQUIRE(below->tracer.curbs().size() == 1);
+  CHECK(below->tracer.curbs()[0].kind == CurbKind::step_down);
+  CHECK(below->tracer.curbs()[0].far_label == no_label);
+  CHECK(above->tracer.curbs().empty());
+}
+
+//  o
+//  _________    ________     the foot of a ramp, of which what lies about it is not seen
+TEST_CASE("border finder: planes that meet in what is not seen part in its middle") {
+  const auto stages =
+      traced([](double x, double) { return x > 1.1 && x < 1.5 ? std::nan("") : 0.2 * std::max(x - 1.3, 0.0); });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].kind == CurbKind::ramp_edge);
+  CHECK(stages->tracer.curbs()[0].x0_m == Approx(1.3).margin(0.01));
+  CHECK(stages->tracer.curbs()[0].x1_m == Approx(1.3).margin(0.01));
+}
+
+/// How many borders of a window's one chain are open.
+int open_borders(const Stages<small_limits>& stages, int of) {
+  const auto& borders = const_cast<Stages<small_limits>&>(stages).work.curbs().borders;
+  REQUIRE(borders.size() == of);
+  int open = 0;
+  for (int k = 0; k < of; ++k) open += borders.at(k).open;
+  return open;
+}
+
+TEST_CASE("border finder: a hedge two cells wide on an edge leaves it open where it lies, one of a cell does not") {
+  const auto hedge = [](double wide_m) {
+    return [=](double x, double y) {
+      if (x > 1.3 && x < 1.3 + wide_m && y > 0.8 && y < 1.6) return static_cast<int>(y * 100) % 10 < 5 ? 0.2 : 1.2;
+      return x < 1.4 ? 0.0 : 0.12;
+    };
+  };
+  CHECK(open_borders(*traced(hedge(0.2)), 24) == 8);
+  CHECK(open_borders(*traced(hedge(0.1)), 24) == 0);
+}
+
+//  o
+//  ____
+//      -                 readings that mix the edge and the road
+//        ____
+TEST_CASE("border finder: what is mixed at the edge of a step down is no obstacle before what the edge hides") {
+  const auto stages = traced([](double x, double) {
+    return x < 1.4 ? 0.0 : x < 1.5 ? -0.06 : x < 1.6 ? std::nan("") : -0.12;
+  });
+  CHECK(open_borders(*stages, 24) == 0);
+}
+
+TEST_CASE("border finder: a step down is told, however much it hides and however high its ground lies in the map") {
+  const auto platform = [](double map_m, double post_m) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = {0.0f, 1.2f, static_cast<float>(map_m + 1.0)};
+    test::fill(stages.dem, [=](double x, double y) {
+      const bool post = x > 1.4 && x < 1.5 && y > 1.0 && y < 1.3;
+      if (post && post_m > 0.0) return map_m - 0.4 + (static_cast<int>(y * 100) % 10 < 5 ? 0.0 : post_m);
+      return x > 1.2 && x < 1.8 ? std::nan("") : x < 1.2 ? map_m : map_m - 0.5;
+    });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(0.0f, 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    CHECK(stages.tracer.curbs()[0].kind == CurbKind::step_down);
+    CHECK(stages.tracer.curbs()[0].height_m == Approx(-0.5).margin(0.01));
+    return stages.work.curbs().borders.size();
+  };
+  CHECK(platform(0.0, 0.0) == 24);
+  CHECK(platform(7.0, 0.0) == 24);
+  CHECK(platform(0.0, 0.3) == 21);  // what stands in the gap, not the edge, may hide the rest of it
+}
+
+//  y     -0.1 m  |  not seen           | -0.5 m
+//  2.1 __________|___________          |
+//        0 m                 |         |          hides from the laser what lies behind both
+TEST_CASE("border finder: what the edge of another plane hides tells no step between those on both sides of it") {
+  const auto stages = traced([](double x, double y) {
+    if (x > 1.8) return -0.5;
+    return y > 2.1 ? (x < 0.8 ? -0.1 : std::nan("")) : x < 1.2 ? 0.0 : std::nan("");
+  });
+  const auto beside = stages->label_at(2, 22), platform = stages->label_at(2, 2), road = stages->label_at(20, 22);
+  int of_platform = 0;
+  for (const Curb& curb : stages->tracer.curbs()) {
+    CHECK_FALSE((curb.near_label == beside && curb.far_label == road));
+    of_platform += curb.near_label == platform && curb.far_label == road;
+  }
+  CHECK(of_platform == 1);
+}
+
+TEST_CASE("border finder: where in a cell an edge lies is told by readings that do not lie evenly in it") {
+  for (const bool turned : {false, true}) {
+    Stages<small_limits> stages(small_settings());
+    for (int i = 0; i < 24; ++i) {
+      for (int j = 0; j < 24; ++j) {
+        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {  // across the edge; along it all on one side
+          const double across = 0.1 * i + at, along = 0.1 * j + 0.01 + 0.1 * at;
+          const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
+          stages.dem.add({x, y, across < 1.26 ? 0.0f : 0.12f, 1e-4f});
+        }
+      }
+    }
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    const Curb& curb = stages.tracer.curbs()[0];
+    CHECK((turned ? curb.y0_m : curb.x0_m) == Approx(1.26).margin(0.006));
+  }
+}
+
+TEST_CASE("borders: a chain goes on to the next border within reach, of the same planes alone") {
+  Stages<small_limits> stages(small_settings());
+  Borders<small_limits> borders;
+  const auto chained = [&](const std::vector<std::array<double, 2>>& places, bool of_others) {
+    borders.clear();
+    for (const auto& [x, y] : places) {
+      Borders<small_limits>::Border border{};
+      border.x_m = static_cast<float>(x);
+      border.y_m = static_cast<float>(y);
+      border.low = of_others && borders.size() == 1 ? 1 : 0;
+      border.high = 2;
+      REQUIRE(borders.add(stages.dem, border));
+    }
+    return borders.chain(stages.dem, 0, 5);
+  };
+  for (const bool along_x : {false, true}) {
+    for (const double from : {0.35, 1.95}) {
+      const auto two = [&](double apart, bool of_others = false) {
+        const double to = from < 1.0 ? from + apart : from - apart;
+        using Places = std::vector<std::array<double, 2>>;
+        return chained(along_x ? Places{{from, 1.25}, {to, 1.25}} : Places{{1.25, from}, {1.25, to}}, of_others);
+      };
+      CHECK(two(0.1) == 2);
+      CHECK(two(0.5) == 2);
+      CHECK(two(0.6) == 1);
+      CHECK(two(1.6) == 1);
+      CHECK(two(0.1, true) == 1);
+      // One between them, where the chain is begun: what lies beyond the reach of one end is no part of it.
+      const double toward = from < 1.0 ? 0.1 : -0.1, next = from + toward, away = from + 7.0 * toward;
+      using Places = std::vector<std::array<double, 2>>;
+      CHECK(chained(along_x ? Places{{next, 1.25}, {from, 1.25}, {away, 1.25}}
+                            : Places{{1.25, next}, {1.25, from}, {1.25, away}},
+                    false) == 2);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace curbline

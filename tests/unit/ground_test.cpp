@@ -327,7 +327,7 @@ TEST_CASE("ground: the face of a curb is one in a window that is longer than wid
   const auto borne_in = [](int rows, int cols) {
     Stages<small_limits> stages(small_settings(rows, cols));
     const auto ground = [](double along, double across) {
-      return (along < 0.55 ? 0.0 : 0.06) + (along > 1.2 && across > 0.55 ? 0.12 : 0.0);
+      return (along < 0.55 ? 0.0 : 0.05) + (along > 1.2 && across > 0.55 ? 0.05 : 0.0);
     };
     fill(stages.dem, [&](double x, double y) { return rows > cols ? ground(x, y) : ground(y, x); });
     for (int pass = 0; pass < 3; ++pass) stages.infer(true);
