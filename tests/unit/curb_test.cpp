@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 
 namespace curbline {
@@ -34,6 +35,125 @@ TEST_CASE("curb: of steps along each other the longest is told, whatever their o
   told_by_longer(std::array{step(1.0f, 2.0f), step(1.05f, 2.0f)}, 0.1f, told);
   CHECK_FALSE(told[0]);
   CHECK(told[1]);
+}
+
+/// Of a length, in a direction, from a place of a line through (x, y): 30 degrees off the axes, and along them.
+struct Way {
+  double x, y, angle;
+
+  Curb piece(double from, double to, double left) const {
+    const auto at = [&](double along) {
+      const double c = std::cos(angle), s = std::sin(angle);
+      return std::array{static_cast<float>(x + along * c - left * s), static_cast<float>(y + along * s + left * c)};
+    };
+    return Curb{.x0_m = at(from)[0], .y0_m = at(from)[1], .x1_m = at(to)[0], .y1_m = at(to)[1]};
+  }
+};
+
+TEST_CASE("curb: how far a place lies to a curb's far side, its left, and what overlaps, is so in any direction") {
+  const double angle = GENERATE(0.0, 0.5236, 1.5708, 2.4, -2.0);
+  const Way way{1.0, 3.0, angle};
+  const Curb curb = way.piece(0.0, 2.0, 0.0);
+  const auto to_far_m = [&](double along, double left) {
+    const Curb place = way.piece(along, along, left);
+    return to_far_side_m(curb, place.x0_m, place.y0_m);
+  };
+  CHECK(to_far_m(0.5, 0.3) == Approx(0.3));
+  CHECK(to_far_m(1.5, -0.2) == Approx(-0.2));
+  CHECK(std::isinf(to_far_m(-0.1, 0.1)));
+  CHECK(std::isinf(to_far_m(2.1, 0.1)));
+  CHECK(overlap_m(way.piece(0.5, 1.5, 0.1), curb, 0.2f) == Approx(1.0));
+  CHECK(overlap_m(way.piece(1.5, 4.5, -0.1), curb, 0.2f) == Approx(0.5));
+  CHECK(overlap_m(way.piece(0.5, 1.5, 0.25), curb, 0.2f) == 0.0f);
+  CHECK(overlap_m(way.piece(0.5, 1.5, -0.25), curb, 0.2f) == 0.0f);
+  CHECK(overlap_m(curb, way.piece(1.0, 1.0, 0.0), 0.2f) == 0.0f);  // a point
+}
+
+TEST_CASE("curb: a step is told beside a longer crease, and of two far apart each") {
+  const Way way{0.0, 0.0, 0.0};
+  std::array<Curb, 2> curbs{way.piece(0.0, 1.0, 0.0), way.piece(0.0, 2.0, 0.05)};
+  curbs[0].kind = CurbKind::step_down;
+  const auto shorter_is_told = [&](CurbKind kind, double left) {
+    curbs[1] = way.piece(0.0, 2.0, left);
+    curbs[1].kind = kind;
+    std::array<bool, 2> by_longer{};
+    told_by_longer(curbs, 0.1f, by_longer);
+    CHECK_FALSE(by_longer[1]);
+    return !by_longer[0];
+  };
+  CHECK_FALSE(shorter_is_told(CurbKind::step_up, 0.05));
+  CHECK(shorter_is_told(CurbKind::step_up, 0.15));
+  CHECK(shorter_is_told(CurbKind::crease, 0.05));
+  CHECK(shorter_is_told(CurbKind::ramp_edge, 0.05));
+  curbs[0].kind = CurbKind::crease;
+  CHECK(shorter_is_told(CurbKind::step_up, 0.05));  // of creases each
+}
+
+/// Of two planes that lean, at a border of which the normal is at an angle to x.
+struct Meeting {
+  double first_lean = 0.0, second_lean = 0.0;  ///< across the border
+  double first_fit_m2 = 1e-6, second_fit_m2 = 1e-6;
+
+  CurbKind kind(double angle, const DrawnBorder& drawn) const {
+    const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const auto plane = [&](double lean, double fit_m2) {
+      Plane plane;
+      plane.slope_x = static_cast<float>(lean) * c;
+      plane.slope_y = static_cast<float>(lean) * s;
+      plane.fit_variance_m2 = static_cast<float>(fit_m2);
+      return plane;
+    };
+    return kind_of(plane(first_lean, first_fit_m2), plane(second_lean, second_fit_m2), {0.0f, 0.0f, 1.0f, 1.0f, c, s},
+                   drawn);
+  }
+  /// From which height on, up or down, it is a step.
+  double least_step_m(double angle, DrawnBorder drawn) const {
+    for (int mm10 = 1; mm10 < 2000; ++mm10) {
+      drawn.height_m = static_cast<float>(mm10) * 1e-4f;
+      const bool up = kind(angle, drawn) == CurbKind::step_up;
+      drawn.height_m = -drawn.height_m;
+      CHECK((kind(angle, drawn) == CurbKind::step_up) == up);
+      if (up) return mm10 * 1e-4;
+    }
+    return 1.0;
+  }
+};
+
+TEST_CASE("curb: a step is what is higher than two deviations of its height, of cells and of its place leave open") {
+  const double angle = GENERATE(0.0, 0.8, 1.5708, 2.6, -1.5708);
+  const float half_gap_m = 0.05f;
+  const auto about = [](double m) { return Approx(m).margin(1.5e-4); };
+  CHECK(Meeting{}.least_step_m(angle, {0.0f, 0.0f, half_gap_m, 0.0f, 2.5e-5f}) == about(0.01));  // texture of 5 mm
+  CHECK(Meeting{}.least_step_m(angle, {0.0f, 0.004f, half_gap_m, 0.0f, 9e-6f}) == about(0.01));
+  // Cells that err by more than the texture: the mean of both sides' variances.
+  CHECK((Meeting{.first_fit_m2 = 1e-5, .second_fit_m2 = 4e-5}.least_step_m(
+            angle, {0.0f, 0.0f, half_gap_m, 0.0f, 1e-6f})) == about(0.01));
+  // Slopes that differ by 1 in 5, a place that is known to 2 cm.
+  const DrawnBorder drawn{0.0f, 0.0f, half_gap_m, 4e-4f, 9e-6f};
+  CHECK((Meeting{.first_lean = 0.1, .second_lean = -0.1}.least_step_m(angle, drawn)) == about(0.01));
+  CHECK((Meeting{.first_lean = -0.1, .second_lean = 0.1}.least_step_m(angle, drawn)) == about(0.01));
+  CHECK((Meeting{.first_lean = 0.1, .second_lean = 0.1}.least_step_m(angle, drawn)) == about(0.006));
+}
+
+TEST_CASE("curb: a face, steeper than ground, begins anywhere in half a gap; a ramp does not") {
+  const DrawnBorder drawn{0.0f, 0.0f, 0.05f, 0.0f, 9e-6f};
+  const auto about = [](double m) { return Approx(m).margin(1.5e-4); };
+  CHECK((Meeting{.second_lean = 0.4}.least_step_m(0.3, drawn)) == about(0.4 * 0.05 + 0.006));
+  CHECK((Meeting{.first_lean = -0.4}.least_step_m(0.3, drawn)) == about(0.4 * 0.05 + 0.006));
+  CHECK((Meeting{.second_lean = 0.35}.least_step_m(0.3, drawn)) == about(0.006));
+}
+
+TEST_CASE(
+    "curb: planes that meet part at the edge of a ramp if one alone leans by more than 1 in 20, else at a crease") {
+  const double angle = GENERATE(0.0, 0.8, 1.5708, 2.6, -1.5708);
+  const DrawnBorder drawn{0.0f, 0.0f, 0.05f, 0.0f, 9e-6f};
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK((Meeting{.second_lean = sign * 0.053}.kind(angle, drawn)) == CurbKind::ramp_edge);
+    CHECK((Meeting{.first_lean = sign * 0.053}.kind(angle, drawn)) == CurbKind::ramp_edge);
+    CHECK((Meeting{.second_lean = sign * 0.047}.kind(angle, drawn)) == CurbKind::crease);
+    CHECK((Meeting{.first_lean = sign * 0.06, .second_lean = sign * 0.1}.kind(angle, drawn)) == CurbKind::crease);
+    CHECK((Meeting{.first_lean = sign * 0.06, .second_lean = -sign * 0.1}.kind(angle, drawn)) == CurbKind::crease);
+  }
 }
 
 TEST_CASE("curb: each kind has a word of its own") {

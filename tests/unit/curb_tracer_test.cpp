@@ -696,6 +696,255 @@ TEST_CASE("curb tracer: cells whose label outlives its plane make no curb") {
   CHECK(stages->tracer.curbs().empty());
 }
 
+TEST_CASE("curb tracer: the place of a crease is known to its gaps, of an edge that is all hidden to one of them") {
+  const auto ramp = traced([](double x, double) { return x < 1.2 ? 0.0 : 0.3 * (x - 1.2); });
+  REQUIRE(ramp->tracer.curbs().size() == 1);
+  REQUIRE(ramp->tracer.curbs()[0].kind == CurbKind::ramp_edge);
+  CHECK(ramp->tracer.curbs()[0].position_sd_m == Approx(0.05 / std::sqrt(3.0 * 24.0)).epsilon(0.02));
+  const auto hidden = traced(behind_box(-1.0, 9.0), 0.0f, 1.2f);  // from 1.1 m to 1.5 m, a gap of 50 cm
+  REQUIRE(hidden->tracer.curbs().size() == 1);
+  CHECK(hidden->tracer.curbs()[0].position_sd_m == Approx(0.25 / std::sqrt(3.0)).epsilon(0.02));
+}
+
+//  o
+//  ________            the laser sees the edge, and what mixes it and the road behind, and no more
+//          \\ ...
+TEST_CASE("curb tracer: of a brink, and of the end of a face, all borders err alike, and as much may be hidden again") {
+  const auto one_sided = [](double slope, double from) {
+    const auto stages = traced(
+        [=](double x, double) { return x > from + 0.3 ? std::nan("") : slope * std::max(x - from, 0.0); }, 0.0f, 1.2f);
+    std::vector<Curb> found;
+    for (const Curb& curb : stages->tracer.curbs()) {
+      if (curb.far_label == no_label) found.push_back(curb);
+    }
+    return found;
+  };
+  const std::vector<Curb> brinks = one_sided(-0.5, 1.4), faces = one_sided(0.4, 1.2);
+  REQUIRE(brinks.size() == 1);
+  CHECK(brinks[0].position_sd_m == Approx(0.05 / std::sqrt(3.0)).epsilon(0.02));
+  CHECK(brinks[0].height_sd_m == Approx(-brinks[0].height_m / std::sqrt(3.0)).epsilon(0.02));
+  REQUIRE(faces.size() == 1);
+  CHECK(faces[0].position_sd_m == Approx(0.1 / std::sqrt(3.0)).epsilon(0.02));
+}
+
+TEST_CASE("curb tracer: the variance of a step's height is that of both planes") {
+  const auto stages = traced(up, 0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  const double of_planes_m2 =
+      static_cast<double>(stages->mixture.plane(curb.near_label).height_variance_m2(1.4f, 1.2f) +
+                          stages->mixture.plane(curb.far_label).height_variance_m2(1.4f, 1.2f));
+  CHECK(curb.height_sd_m > 0.99 * std::sqrt(of_planes_m2));
+  CHECK(curb.height_sd_m < 1.2 * std::sqrt(of_planes_m2));  // and what the cells beside it lie off
+}
+
+TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place, along y, too") {
+  const auto deviation_m = [](double before, double behind) {
+    const auto stages =
+        traced([=](double, double y) { return y < 1.4 ? before * (y - 1.4) : 0.12 + behind * (y - 1.4); }, 1.2f, 0.0f);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_up);
+    return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
+  };
+  const double level_m = deviation_m(0.0, 0.0);
+  for (const auto& [before, behind] : {std::pair{0.0, 0.15}, {-0.15, 0.0}, {0.1, -0.05}}) {
+    const double sloped_m = deviation_m(before, behind);
+    CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.2));
+  }
+}
+
+TEST_CASE("curb tracer: the probability of a curb is that of the cells beside it, of a low one in noise below 1") {
+  const auto mean_probability = [](double step_m, double noise_m) {
+    double sum = 0.0, along_m = 0.0;
+    for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
+      Stages<> stages(small_settings());
+      Noise noise(seed);
+      const auto ground = [=](double x, double) { return x < 1.2 ? 0.0 : step_m; };
+      for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, noise_m, noise, ground)) stages.dem.add(p);
+      for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+      stages.trace(0.0f, 1.2f);
+      for (const Curb& curb : stages.tracer.curbs()) {
+        sum += length_m(curb) * curb.probability;
+        along_m += length_m(curb);
+      }
+    }
+    REQUIRE(along_m > 2.4);
+    return sum / along_m;
+  };
+  CHECK(mean_probability(0.12, 0.003) > 0.9999);
+  const double low = mean_probability(0.025, 0.008);
+  CHECK(low > 0.9);
+  CHECK(low < 0.9995);
+}
+
+TEST_CASE(
+    "curb tracer: a step down is as high as its planes lie apart at its edge, of any slope, along y, from below") {
+  const auto ground = [](double, double y) { return y < 1.4 ? 0.12 + 0.06 * (y - 1.4) : 0.04 * (y - 1.4); };
+  for (const float robot_y_m : {0.0f, 2.3f}) {
+    auto stages = std::make_unique<Stages<>>(small_settings());
+    stages->dem.look_from(1.2f, 0.0f);
+    fill(stages->dem, ground);
+    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->dem.look_from(1.2f, robot_y_m);
+    stages->trace(1.2f, robot_y_m);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    const Curb& curb = stages->tracer.curbs()[0];
+    REQUIRE(curb.kind == (robot_y_m > 1.4f ? CurbKind::step_up : CurbKind::step_down));
+    const double edge_m = 0.5 * static_cast<double>(curb.y0_m + curb.y1_m);
+    CHECK(edge_m < 1.36);
+    CHECK(std::abs(curb.height_m) == Approx(0.12 + 0.02 * (edge_m - 1.4)).margin(0.0006));
+    CHECK(curb.face_width_m >= 0.0f);
+  }
+}
+
+TEST_CASE("curb tracer: ground beside a step down is carried on to the near end of the step's shadow") {
+  const auto stages = traced(with_gutter(0.02), 2.3f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.kind == CurbKind::step_down);
+  const double edge_m = 0.5 * static_cast<double>(curb.x0_m + curb.x1_m);
+  CHECK(curb.height_m == Approx(-0.12 - 0.1 * (edge_m - 1.2)).margin(0.003));
+}
+
+TEST_CASE("curb tracer: a step that grows along x is cut into pieces of which the height holds, from either plane") {
+  const auto grows = [](double of_low, double of_high) {
+    const auto stages =
+        traced([=](double x, double y) { return y < 1.4 ? of_low * x : 0.06 + of_high * x; }, 1.2f, 0.0f);
+    for (const Curb& curb : stages->tracer.curbs())
+      CHECK(std::abs(curb.x1_m - curb.x0_m) * std::abs(of_high - of_low) < 0.026);
+    return stages->tracer.curbs().size();
+  };
+  CHECK(grows(0.0, 0.05) >= 6);
+  CHECK(grows(-0.05, 0.0) >= 6);
+  CHECK(grows(0.04, 0.04) == 1);
+}
+
+//  y  near  |   not seen, at one end of the edge, whatever way it runs
+//  |  near  |____
+//  |  near  |  0.12 m higher
+TEST_CASE("curb tracer: a curb goes on for two cells where one side is not seen at either end, along x and y") {
+  const bool along_x = GENERATE(false, true), mirrored = GENERATE(false, true), far_unseen = GENERATE(false, true);
+  const auto stages = traced(
+      [=](double x, double y) {
+        double along = along_x ? x : y;
+        const double across = along_x ? y : x;
+        if (mirrored) along = 2.4 - along;
+        if (along > 1.6 && (across > 1.4) == far_unseen) return std::nan("");
+        return across < 1.4 ? 0.0 : 0.12;
+      },
+      along_x ? 1.2f : 0.0f, along_x ? 0.0f : 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  const double a = along_x ? curb.x0_m : curb.y0_m, b = along_x ? curb.x1_m : curb.y1_m;
+  const double first = mirrored ? 2.4 - std::max(a, b) : std::min(a, b),
+               last = mirrored ? 2.4 - std::min(a, b) : std::max(a, b);
+  CHECK(first == Approx(0.0).margin(0.02));
+  CHECK(last == Approx(1.8).margin(0.02));
+}
+
+TEST_CASE("curb tracer: an edge along x lies before its shadow from where it was seen, wherever the robot is by now") {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  const double hidden_m = 2.0 * 0.12 / (1.0 - 0.12);
+  stages->dem.look_from(1.2f, -0.8f);
+  Noise noise;
+  for (const Point& p :
+       test::sample({0.0, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, [](double, double y) { return y < 1.2 ? 0.12 : 0.0; })) {
+    if (p.y_m < 1.2f || p.y_m > 1.2 + hidden_m) stages->dem.add(p);
+  }
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  for (const float robot_y_m : {-0.8f, 0.9f, 1.9f}) {
+    stages->dem.look_from(1.2f, robot_y_m);
+    stages->trace(1.2f, robot_y_m);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].y0_m == Approx(1.2).margin(0.015));
+    CHECK(stages->tracer.curbs()[0].y1_m == Approx(1.2).margin(0.015));
+  }
+}
+
+TEST_CASE("curb tracer: from a table that it stands on a robot is told the drops, however high the table lies") {
+  for (const double map_m : {0.0, 4.0}) {
+    for (const bool turned : {false, true}) {
+      const auto told = [=](double robot_m) {
+        Stages<> stages(small_settings());
+        stages.view.z_m = static_cast<float>(map_m + 1.4);
+        fill(stages.dem, [=](double x, double y) {
+          const double along = turned ? y : x;
+          return map_m + (along > 0.8 && along < 1.6 ? 0.35 : 0.0);
+        });
+        for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+        stages.trace(turned ? 1.2f : static_cast<float>(robot_m), turned ? static_cast<float>(robot_m) : 1.2f);
+        for (const Curb& curb : stages.tracer.curbs()) CHECK(curb.kind == CurbKind::step_down);
+        return stages.tracer.curbs().size();
+      };
+      CHECK(told(1.2) == 2);
+      CHECK(told(0.2) == 0);
+      CHECK(told(2.3) == 0);
+    }
+  }
+}
+
+TEST_CASE("curb tracer: a step of which the window holds a single row of the far side is told") {
+  const auto stages =
+      traced([](double x, double y) { return x < 1.4              ? 0.0
+                                             : y > 1.0 && y < 1.1 ? 0.12
+                                                                  : std::nan(""); }, 0.0f, 1.2f);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_up);
+  CHECK(length_m(stages->tracer.curbs()[0]) == Approx(0.1).margin(0.01));
+}
+
+TEST_CASE("curb tracer: in the map frame both ends of a curb lie where they are") {
+  Settings settings = small_settings();
+  settings.window.origin_x_m = -10.0f;
+  settings.window.origin_y_m = 30.0f;
+  const auto stages = traced([](double, double y) { return y < 31.0 ? 0.0 : 0.12; }, 1.2f, 0.0f, settings);
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(std::min(curb.x0_m, curb.x1_m) == Approx(-10.0).margin(0.02));
+  CHECK(std::max(curb.x0_m, curb.x1_m) == Approx(-7.6).margin(0.02));
+  CHECK(curb.y0_m == Approx(31.0).margin(0.01));
+  CHECK(curb.y1_m == Approx(31.0).margin(0.01));
+}
+
+TEST_CASE("curb tracer: an oblique face is as wide as across it") {
+  const double turn = GENERATE(0.0, 0.5, 0.7854);
+  const double nx = std::cos(turn), ny = std::sin(turn);
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  const auto face = [=](double x, double y) { return 1.2 * std::clamp(nx * (x - 1.2) + ny * (y - 1.2), 0.0, 0.1); };
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, face)) stages->dem.add(p);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->trace(0.0f, 0.0f);
+  const auto curbs = stages->tracer.curbs();
+  const auto longest = std::max_element(curbs.begin(), curbs.end(),
+                                        [](const Curb& a, const Curb& b) { return length_m(a) < length_m(b); });
+  REQUIRE(longest != curbs.end());
+  CHECK(longest->height_m == Approx(0.12).margin(0.01));
+  CHECK(longest->face_width_m == Approx(0.1).margin(0.06));
+}
+
+TEST_CASE("curb tracer: a number goes to one curb, of a kind, that lies within two cells of where it lay") {
+  const auto first = traced([](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  CurbTracer<test::small_limits> tracer;
+  const auto ids_on = [&](Stages<>& stages) {
+    tracer.init(CurbSettings{});
+    tracer.trace(first->dem, first->mixture, first->field, first->view, first->work.curbs(), first->counters);
+    REQUIRE(tracer.curbs().size() == 1);
+    REQUIRE(tracer.curbs()[0].id == 1);
+    tracer.trace(stages.dem, stages.mixture, stages.field, stages.view, stages.work.curbs(), stages.counters);
+    std::vector<int> ids;
+    for (const Curb& curb : tracer.curbs()) ids.push_back(curb.id);
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  CHECK(ids_on(*traced([](double x, double) { return x < 1.3 ? 0.0 : 0.12; })) == std::vector{1});
+  CHECK(ids_on(*traced([](double x, double) { return x < 1.5 ? 0.0 : 0.12; })) == std::vector{2});
+  CHECK(ids_on(*traced([](double x, double) { return x < 1.2 ? 0.0 : 0.3 * (x - 1.2); })) == std::vector{2});
+  CHECK(ids_on(*traced([](double x, double y) { return x < 1.2 ? 0.0 : y < 1.2 ? 0.08 : 0.16; })).size() >= 2);
+  const auto ids = ids_on(*traced([](double x, double y) { return x < 1.2 ? 0.0 : y < 1.2 ? 0.08 : 0.16; }));
+  CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
+}
+
 TEST_CASE("curb tracer: full stores refuse and count") {
   constexpr Limits few{.rows = 24, .cols = 24, .planes = 6, .borders = 30, .curbs = 1};
   const auto stages = traced<few>([](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.3; });

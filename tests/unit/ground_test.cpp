@@ -481,7 +481,7 @@ TEST_CASE("ground: a step that the laser is straight above has no shadow") {
 
 //  ________
 //             \\         what parts a strip from the planes beside it is not seen
-//               \\
+//               \\ ...
 //                     _____
 TEST_CASE("ground: a strip that lies farther from a step's sides than a face is wide is no veil between them") {
   const auto apart = [](double before_m, double behind_m) {
