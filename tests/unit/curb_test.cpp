@@ -96,15 +96,15 @@ struct Meeting {
 
   CurbKind kind(double angle, const DrawnBorder& drawn) const {
     const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    const auto plane = [&](double lean, double fit_m2) {
+    const auto leaning = [&](double lean, double fit_m2) {
       Plane plane;
       plane.slope_x = static_cast<float>(lean) * c;
       plane.slope_y = static_cast<float>(lean) * s;
       plane.fit_variance_m2 = static_cast<float>(fit_m2);
       return plane;
     };
-    return kind_of(plane(first_lean, first_fit_m2), plane(second_lean, second_fit_m2), {0.0f, 0.0f, 1.0f, 1.0f, c, s},
-                   drawn);
+    return kind_of(leaning(first_lean, first_fit_m2), leaning(second_lean, second_fit_m2),
+                   {0.0f, 0.0f, 1.0f, 1.0f, c, s}, drawn);
   }
   /// From which height on, up or down, it is a step.
   double least_step_m(double angle, DrawnBorder drawn) const {

@@ -623,7 +623,7 @@ TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fr
     REQUIRE(stages.mixture.region_label(stages.dem.slot(10, 12)) != no_label);
     return stages.mixture.covered(stages.dem.slot(10, 12));
   };
-  const Viewpoint before{0.0f, 1.2f, 1.0f}, close_by{0.8f, 1.2f, 0.4f}, low{0.0f, 1.2f, 0.31f};
+  const Viewpoint before{0.0f, 1.2f, 1.0f}, low{0.0f, 1.2f, 0.31f};
   CHECK(covered(before, 0.063));
   CHECK_FALSE(covered(before, 0.038));
   CHECK(covered(before, 0.2));

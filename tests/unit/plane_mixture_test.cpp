@@ -305,5 +305,116 @@ TEST_CASE("plane mixture: a plane that hardly a cell answers for keeps its param
   CHECK(stages->mixture.plane(label).z_m == Approx(0.3).margin(1e-4));
 }
 
+TEST_CASE("plane mixture: the largest ground is no wall, however large, and whichever plane was there first") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  CHECK_FALSE(stages->mixture.largest_ground().alive());
+  const auto ground = [](double x, double y) {
+    if (x > 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
+    return y < 0.4 ? 0.12 : 0.0;
+  };
+  fill(stages->dem, [&](double x, double y) { return y < 0.4 ? ground(x, y) : std::nan(""); });
+  stages->infer(true);
+  CHECK(stages->mixture.largest_ground().z_m == Approx(0.12).margin(0.005));
+  fill(stages->dem, [&](double x, double y) { return y < 0.4 ? std::nan("") : ground(x, y); });
+  stages->infer(true);
+  CHECK(stages->mixture.largest_ground().z_m == Approx(0.0).margin(0.005));
+  CHECK(stages->mixture.largest_ground().cells > 200.0f);
+}
+
+TEST_CASE("plane mixture: something stands where a box's level top is, and where heights spread, not on a kerb") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double y) {
+    if (x > 0.9 && x < 1.5 && y > 0.9 && y < 1.5) return 0.28;
+    if (x > 1.8 && x < 2.0 && y > 0.4 && y < 0.6) return static_cast<int>(y * 100) % 10 < 5 ? 0.0 : 0.3;
+    return y < 1.8 ? 0.0 : 0.12;
+  });
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  const auto obstructed = [&](int i, int j) { return stages->mixture.obstructed(stages->dem, stages->dem.slot(i, j)); };
+  CHECK(obstructed(12, 12));
+  CHECK(obstructed(18, 4));
+  CHECK_FALSE(obstructed(12, 20));
+  CHECK_FALSE(obstructed(2, 2));
+}
+
+TEST_CASE("plane mixture: what lies too high beside a step down does not tilt the strip behind, from any side") {
+  const bool along_y = GENERATE(false, true), mirrored = GENERATE(false, true);
+  const auto strip_seen_from = [=](double laser_m) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    fill(stages->dem, [=](double x, double y) {
+      const double along = mirrored ? 2.4 - (along_y ? y : x) : (along_y ? y : x);
+      return along < 2.2 ? 0.06 : along < 2.3 ? 0.016 : 0.0;
+    });
+    const auto at = static_cast<float>(mirrored ? 2.4 - laser_m : laser_m);
+    (along_y ? stages->view.y_m : stages->view.x_m) = at;
+    (along_y ? stages->view.x_m : stages->view.y_m) = 1.2f;
+    stages->infer();
+    const int last = mirrored ? 0 : 23;
+    const Plane plane = stages->mixture.plane(
+        stages->mixture.region_label(along_y ? stages->dem.slot(12, last) : stages->dem.slot(last, 12)));
+    return (mirrored ? -1.0f : 1.0f) * (along_y ? plane.slope_y : plane.slope_x);
+  };
+  CHECK(strip_seen_from(3.0) == Approx(-0.16).margin(0.01));
+  CHECK(std::abs(strip_seen_from(0.0)) < 0.08f);
+}
+
+/// A plane of this ground after cells of row 14 are told to be crossed by a step.
+template <typename Height>
+Plane with_crossed_row(Height&& height_m, int i, double spread_m = 0.002) {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, height_m, spread_m);
+  stages->infer(true);
+  CellSet<test::small_limits> crossed;
+  for (int j = 0; j < 24; ++j) crossed.insert(stages->dem.slot(14, j));
+  stages->dem.add({0.05f, 0.05f, 0.0f, 1e-4f});
+  stages->segment();
+  stages->mixture.update(
+      stages->dem, *stages->segmented, stages->view, crossed, [&](int slot) { return stages->field.label(slot); },
+      stages->counters);
+  return stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(i, 12)));
+}
+
+TEST_CASE(
+    "plane mixture: wide planes do without the cells that a step crosses, to small ones they are one observation") {
+  const auto cells_of_strip = [](double step_m) {  // of two rows, one of them crossed
+    return with_crossed_row([=](double x, double) { return x < 1.4   ? 0.0
+                                                           : x < 1.6 ? step_m
+                                                                     : std::nan(""); }, 15)
+        .cells;
+  };
+  for (const double step_m : {0.06, -0.06}) {
+    CHECK(cells_of_strip(step_m) > 24.0f);
+    CHECK(cells_of_strip(step_m) < 26.0f);
+  }
+  CHECK(cells_of_strip(0.03) > cells_of_strip(0.06));  // off by less
+  CHECK(with_crossed_row([](double x, double) { return x < 1.4 ? 0.0 : 0.06; }, 20).cells == 9.0f * 24.0f);
+  CHECK(with_crossed_row([](double, double) { return 0.0; }, 20).cells == 23.0f * 24.0f);
+}
+
+TEST_CASE("plane mixture: what is crossed before nothing that is seen, or a wall, has no step to be off by") {
+  CHECK(with_crossed_row([](double x, double) { return x < 1.4 || x > 1.6 ? std::nan("") : 0.0; }, 15).cells == 48.0f);
+  // Nor what a step does not cross.
+  CHECK(with_crossed_row([](double x, double) { return x < 1.5   ? 0.0
+                                                       : x < 1.7 ? 0.06
+                                                                 : std::nan(""); }, 15).cells ==
+        48.0f);
+  const auto before_wall = [](double x, double y) {
+    if (x > 1.5) return static_cast<int>(y * 100) % 10 < 5 ? 0.3 : 1.3;
+    return x > 1.3 ? 0.0 : std::nan("");
+  };
+  CHECK(with_crossed_row(before_wall, 13).cells == 48.0f);
+  CHECK(with_crossed_row([](double x, double) { return x < 1.3   ? std::nan("")
+                                                       : x < 1.5 ? 0.0
+                                                                 : 0.06; }, 13).cells <
+        26.0f);
+}
+
+TEST_CASE("plane mixture: a face, steeper than a ramp, is as well known as its points tell, ground as cells do") {
+  const auto variance_m2 = [](double slope) {
+    return with_crossed_row([=](double x, double) { return slope * x; }, 20, 0.012).fit_variance_m2;
+  };
+  CHECK(variance_m2(0.2) > 2.0f * variance_m2(0.1));
+  CHECK(variance_m2(0.1) == Approx(variance_m2(0.0)).epsilon(0.2));
+}
+
 }  // namespace
 }  // namespace curbline

@@ -311,5 +311,90 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("plane evidence: on a hill, too, a low kerb parts planes if the ground jumps by more than the hill rises") {
+  const bool along_y = GENERATE(false, true);
+  const double hill = GENERATE(0.1, -0.1);
+  Noise noise;
+  const PlaneEvidence evidence;
+  const auto height_m = [=](double x, double y) {
+    const double across = along_y ? y : x;
+    return hill * across + (across < 2.0 ? 0.0 : 0.025 + 0.022 * (across - 2.0));
+  };
+  const auto points = [&](double from, double to) {
+    return of_points(
+        test::sample(along_y ? Patch{0, 4, from, to} : Patch{from, to, 0, 4}, 0.1, 0.007, noise, height_m));
+  };
+  const PlaneMoments first = points(0, 2), second = points(2, 4);
+  const auto parted = [&](double jump_m) {
+    const auto rise_m = static_cast<float>(0.1 * (hill + 0.011) + jump_m);  // of a cell, by the mean slope, and more
+    return evidence.parted(first, second, {40.0f, along_y ? 0.0f : 0.1f, along_y ? 0.1f : 0.0f, rise_m});
+  };
+  CHECK(parted(0.0125));
+  CHECK_FALSE(parted(0.004));
+  CHECK_FALSE(parted(0.0));
+  CHECK_FALSE(parted(-0.0125));
+}
+
+TEST_CASE("plane evidence: a crease parts two planes whatever way it runs") {
+  const double turn = GENERATE(0.0, 0.8, 1.5708);
+  Noise noise;
+  const PlaneEvidence evidence;
+  const auto gain = [&](double before, double behind) {
+    std::vector<Point> points[2];
+    const auto across = [&](double x, double y) { return x * std::cos(turn) + y * std::sin(turn); };
+    for (const Point& p : test::sample({-1, 1, -1, 1}, 0.1, 0.012, noise, [&](double x, double y) {
+           return (across(x, y) < 0.0 ? before : behind) * across(x, y);
+         })) {
+      const double at = across(static_cast<double>(p.x_m), static_cast<double>(p.y_m));
+      if (at > -0.3 && at < 0.4) points[at < 0.0 ? 0 : 1].push_back(p);
+    }
+    const PlaneMoments face = of_points(points[0]), above = of_points(points[1]);
+    PlaneMoments both = face;
+    both.add(above);
+    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, [] { return BorderRise{}; });
+  };
+  CHECK(gain(0.35, 0.07) < 0.0f);
+  CHECK(gain(0.07, 0.07) > 0.0f);
+}
+
+TEST_CASE("plane: steeper than ground, how high above another, how wrong some way off, are told in any direction") {
+  const auto leaning = [](float slope_x, float slope_y) {
+    Plane plane;
+    plane.slope_x = slope_x;
+    plane.slope_y = slope_y;
+    return plane;
+  };
+  for (const float sign : {-1.0f, 1.0f}) {
+    CHECK_FALSE(leaning(sign * 0.37f, 0.0f).steeper_than_ground());
+    CHECK_FALSE(leaning(0.0f, sign * 0.37f).steeper_than_ground());
+    CHECK(leaning(sign * 0.38f, 0.0f).steeper_than_ground());
+    CHECK(leaning(0.0f, sign * 0.38f).steeper_than_ground());
+    CHECK(leaning(sign * 0.3f, 0.3f).steeper_than_ground());
+  }
+  Plane ground = leaning(0.1f, -0.2f), box;
+  ground.z_m = 1.0f;
+  box.x_m = 2.0f;
+  box.y_m = 3.0f;
+  box.z_m = 1.5f;
+  CHECK(box.above_m(ground) == Approx(1.5 - (1.0 + 0.2 - 0.6)));
+  Plane known;
+  known.fit_variance_m2 = 1e-4f;
+  known.pxx = 0.5f;
+  known.pxy = -0.3f;
+  known.pyy = 0.7f;
+  CHECK(known.rise_variance_m2(2.0f, 1.0f) == Approx(1e-4 * (4 * 0.5 - 2 * 2 * 0.3 + 0.7)));
+}
+
+TEST_CASE("plane fit: how far the cells lie from the centroid is told along both axes") {
+  Noise noise;
+  const auto scatter_m2 = [&](double along_x, double along_y) {
+    const auto points =
+        test::sample({1, 1 + along_x, 2, 2 + along_y}, 0.02, 0.0, noise, [](double, double) { return 0.0; });
+    return static_cast<double>(fit_plane(of_points(points), PlanePrior{}).scatter_m2);
+  };
+  CHECK(scatter_m2(2.0, 1.0) == Approx((4.0 + 1.0) / 12).epsilon(0.02));
+  CHECK(scatter_m2(1.0, 3.0) == Approx((1.0 + 9.0) / 12).epsilon(0.02));
+}
+
 }  // namespace
 }  // namespace curbline
