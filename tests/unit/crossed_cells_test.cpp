@@ -72,5 +72,13 @@ TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: a curb that is as long as a p
   CHECK(crossed_by(step(1.25, 0.75, 1.25, 0.75)).size() == 1);
 }
 
+TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: none of a curb of which an end is beyond all maps") {
+  const double away = GENERATE(-1e9, 1e9);
+  CHECK(crossed_by(step(away, 0.5, 1.5, 0.5)).empty());
+  CHECK(crossed_by(step(0.5, away, 0.5, 1.5)).empty());
+  CHECK(crossed_by(step(0.5, 0.5, away, 0.5)).empty());
+  CHECK(crossed_by(step(0.5, 0.5, 0.5, away)).empty());
+}
+
 }  // namespace
 }  // namespace curbline

@@ -622,5 +622,45 @@ TEST_CASE("dem: every point that is taken lies in the surroundings, of the small
   CHECK(taken > 100);
 }
 
+TEST_CASE("dem: what is level is kept whole from sweep to sweep, of what has changed a quarter") {
+  const auto points_after = [](float second_m) {
+    Map dem = make_map(moving());
+    const int s = slot_at(dem, 0.55f, 0.05f);
+    for (int k = 0; k < 8; ++k) REQUIRE(dem.add(at(0.55, 0.05, k % 2 == 0 ? 0.0 : static_cast<double>(second_m))));
+    dem.begin_sweep();
+    REQUIRE(dem.add(at(0.55, 0.05, 0.0)));
+    REQUIRE(dem.add(at(0.55, 0.05, 0.0)));
+    return dem.cell(s).points;
+  };
+  CHECK(points_after(0.01f) == 10.0f);
+  CHECK(points_after(0.2f) == Approx(2.0 + 2.0));
+}
+
+TEST_CASE("dem: a cell holds more than a plane by what its heights spread beyond noise, never by how little they do") {
+  const auto mixed = [](double sd, double slope_m2) {
+    Map dem = make_map(moving());
+    for (int k = 0; k < 20; ++k) REQUIRE(dem.add(at(0.55, 0.05, k % 2 == 0 ? -sd : sd)));
+    return dem.mixed(dem.cell(slot_at(dem, 0.55f, 0.05f)), static_cast<float>(slope_m2));
+  };
+  CHECK_FALSE(mixed(0.0, 0.0));
+  CHECK_FALSE(mixed(0.011, 0.0));
+  CHECK(mixed(0.02, 0.0));
+  CHECK_FALSE(mixed(0.02, 4e-4));  // as much as the plane's slope makes
+}
+
+TEST_CASE("dem: what lies beyond the window's end is not found on its other side") {
+  const auto found = [](double x, double y, double from_x, double from_y) {
+    Map dem = make_map(moving());
+    REQUIRE(dem.add(at(x, y)));
+    dem.begin_marking();
+    return dem.nearest_unmarked(dem.place_at(static_cast<float>(from_x), static_cast<float>(from_y)), 5).inside();
+  };
+  CHECK(found(0.35, 0.05, 0.05, 0.05));
+  CHECK_FALSE(found(1.15, 0.05, 0.05, 0.05));
+  CHECK_FALSE(found(0.05, 0.05, 1.15, 0.05));
+  CHECK_FALSE(found(0.05, 0.75, 0.05, -0.75));
+  CHECK_FALSE(found(0.05, -0.75, 0.05, 0.75));
+}
+
 }  // namespace
 }  // namespace curbline

@@ -362,5 +362,44 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
   CHECK(worst < static_cast<float>(quantisation));
 }
 
+TEST_CASE("label field: no cell bears a plane that has died, from the line on that it dies by") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  // Two patches out of reach of each other, until the ground between them is seen.
+  const auto see = [&](double from, double to) {
+    test::fill(stages->dem, [=](double x, double) { return x < from || x > to ? std::nan("") : 0.0; });
+  };
+  see(0.0, 0.6);
+  see(1.7, 2.4);
+  for (int line = 0; line < 3; ++line) stages->infer();
+  REQUIRE(stages->label_at(2, 12) != stages->label_at(20, 12));
+  see(0.6, 1.7);
+  stages->infer();
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      REQUIRE(stages->label_at(i, j) != no_label);
+      CHECK(stages->mixture.plane(stages->label_at(i, j)).alive());
+    }
+  }
+}
+
+TEST_CASE("label field: what turns out to be no ground is left to the ground beside it in the same line, and back") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  // A veil for a laser 1 m up, a slope for one that is higher.
+  test::fill(stages->dem, [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; });
+  const auto own_labels = [&](float laser_m) {
+    stages->view.z_m = laser_m;
+    stages->dem.add({0.05f, 0.05f, 0.0f, 1e-4f});
+    stages->infer();
+    const Label of_slope = stages->mixture.region_label(stages->dem.slot(15, 12));
+    REQUIRE(of_slope != no_label);
+    int own = 0;
+    for (int j = 0; j < 24; ++j) own += stages->label_at(15, j) == of_slope;
+    return own;
+  };
+  CHECK(own_labels(3.0f) == 24);
+  CHECK(own_labels(1.0f) == 0);
+  CHECK(own_labels(3.0f) == 24);
+}
+
 }  // namespace
 }  // namespace curbline

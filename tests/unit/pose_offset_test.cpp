@@ -1,6 +1,7 @@
 // Who has stepped, the robot or its localisation, and by what the poses are set back.
 #include "curbline/pose_offset.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -149,6 +150,128 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   CHECK(offset.offset().slope_x == Approx(first.slope_x - 0.001f).margin(1e-5));
   for (int line = 0; line < 4000; ++line) offset.follow(0.0f, 0.0f);
   CHECK_FALSE(offset.offset().any());
+}
+
+/// A robot away from the origin, and lines that run at an angle: ahead of it, or askew.
+struct Elsewhere {
+  double angle;
+  float x_m = 7.0f, y_m = -3.0f;
+
+  /// Of a slope ahead and one along the lines.
+  PoseShift shift(double height_m, double ahead, double along) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {static_cast<float>(height_m), static_cast<float>(ahead * c - along * s),
+            static_cast<float>(ahead * s + along * c)};
+  }
+  PoseOffset stepped(const PoseShift& by) const {
+    PoseOffset offset = made();
+    offset.follow(x_m, y_m);
+    offset.follow({PoseStepNews::Kind::begun, by});
+    offset.follow({PoseStepNews::Kind::confirmed});
+    return offset;
+  }
+  /// As see_line(); two in five of its points may lie on another surface, higher by kerb_m.
+  PoseShift see_line(PoseOffset& offset, double ahead_m, const PoseShift& off, test::Noise& lot,
+                     double kerb_m = 0.0) const {
+    const PoseShift poses = off + offset.offset();
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (int k = 0; k < 200; ++k) {
+      const double along_m = -2.0 + 4.0 * k / 200.0;
+      const auto dx = static_cast<float>(ahead_m * c - along_m * s), dy = static_cast<float>(ahead_m * s + along_m * c);
+      const double above_m = (k % 5 < 2 ? kerb_m : 0.0) + 0.01 * lot.normal();
+      offset.compare({x_m + dx, y_m + dy, poses.at(dx, dy) + static_cast<float>(above_m), 1e-4f, 0.0f});
+    }
+    return offset.end_line();
+  }
+};
+
+TEST_CASE("pose offset: what a localisation has stepped by is taken off wherever the robot is, of lines of any way") {
+  const Elsewhere robot{GENERATE(0.0, 0.7, 1.5708, 2.5, 3.9)};
+  const double kerb_m = GENERATE(0.0, 0.3);
+  test::Noise lot(11);
+  const PoseShift by = robot.shift(0.02, -0.007, 0.007);
+  PoseOffset offset = robot.stepped(by);
+  robot.see_line(offset, 1.0, by, lot, kerb_m);
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().height_m == Approx(-by.height_m).margin(0.004));
+  CHECK(offset.offset().slope_x == Approx(-by.slope_x).margin(0.003));
+  CHECK(offset.offset().slope_y == Approx(-by.slope_y).margin(0.003));
+  PoseOffset robots = robot.stepped(by);
+  CHECK_FALSE(robot.see_line(robots, 1.0, {}, lot, kerb_m).any());
+  CHECK_FALSE(robots.undecided());
+  CHECK_FALSE(robots.offset().any());
+}
+
+TEST_CASE("pose offset: what one line does not show of a step stays in doubt, in any direction, until others do") {
+  const Elsewhere robot{GENERATE(0.0, 0.7, 1.5708, 2.5, 3.9)};
+  test::Noise lot(12);
+  const PoseShift level = robot.shift(0.02, -0.02, 0.0);  // nothing of it is seen 1 m ahead
+  PoseOffset offset = robot.stepped(level);
+  robot.see_line(offset, 1.0, level, lot);
+  CHECK(offset.undecided());
+  const auto doubt_m2 = [&](double ahead_m) {
+    return offset.doubt_m2(robot.x_m + static_cast<float>(ahead_m * std::cos(robot.angle)),
+                           robot.y_m + static_cast<float>(ahead_m * std::sin(robot.angle)));
+  };
+  CHECK(doubt_m2(1.0) < 1e-5f);
+  CHECK(doubt_m2(3.0) == Approx(0.04 * 0.04).epsilon(0.3));
+  for (const double ahead_m : {2.0, 3.0}) robot.see_line(offset, ahead_m, level, lot);
+  CHECK_FALSE(offset.undecided());
+  CHECK(doubt_m2(3.0) == 0.0f);
+}
+
+TEST_CASE("pose offset: a pose is set back about the level axes of the map, whatever way the robot heads") {
+  test::Noise lot(13);
+  PoseOffset offset = made();
+  step(offset, jump);
+  see_line(offset, 1.0, jump, lot);
+  const PoseShift by = offset.offset();
+  for (const double yaw : {0.0, 1.0, 2.5, -1.5708}) {
+    const Pose pose{0,
+                    0.0f,
+                    0.0f,
+                    0.0f,
+                    0.0f,
+                    0.0f,
+                    static_cast<float>(std::sin(0.5 * yaw)),
+                    static_cast<float>(std::cos(0.5 * yaw))};
+    const Pose set_back = offset.corrected(pose);
+    const double w = set_back.qw, x = set_back.qx, y = set_back.qy, z = set_back.qz;
+    CHECK(2 * (x * z + w * y) == Approx(-by.slope_x).margin(1e-4));  // its vertical
+    CHECK(2 * (y * z - w * x) == Approx(-by.slope_y).margin(1e-4));
+    CHECK(2 * std::atan2(z, w) == Approx(yaw).margin(1e-4));
+    CHECK(set_back.z_m == by.height_m);
+    // On a slope, too: turned by what it is set back, before all else.
+    const Eigen::Quaterniond leaning(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                     Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()) *
+                                     Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY()));
+    const Eigen::Quaterniond turn(1.0, 0.5 * static_cast<double>(by.slope_y), -0.5 * static_cast<double>(by.slope_x),
+                                  0.0);
+    const Eigen::Quaterniond expected = turn * leaning;
+    const Pose on_slope =
+        offset.corrected({0, 0.0f, 0.0f, 0.0f, static_cast<float>(leaning.x()), static_cast<float>(leaning.y()),
+                          static_cast<float>(leaning.z()), static_cast<float>(leaning.w())});
+    CHECK(on_slope.qw == Approx(expected.w()).margin(1e-6));
+    CHECK(on_slope.qx == Approx(expected.x()).margin(1e-6));
+    CHECK(on_slope.qy == Approx(expected.y()).margin(1e-6));
+    CHECK(on_slope.qz == Approx(expected.z()).margin(1e-6));
+  }
+}
+
+TEST_CASE(
+    "pose offset: a localisation that leaps by as much as a kerb is found out, and a robot that climbs one after") {
+  const Elsewhere robot{GENERATE(0.0, 0.7)};
+  test::Noise lot(14);
+  const PoseShift leap = robot.shift(0.12, 0.0, 0.0);
+  PoseOffset offset = robot.stepped(leap);
+  robot.see_line(offset, 1.0, leap, lot);
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().height_m == Approx(-0.12).margin(0.005));
+  offset.follow({PoseStepNews::Kind::begun, leap});
+  offset.follow({PoseStepNews::Kind::confirmed});
+  robot.see_line(offset, 1.0, leap, lot);  // lies where it lay
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().height_m == Approx(-0.12).margin(0.005));
 }
 
 }  // namespace
