@@ -585,6 +585,41 @@ TEST_CASE("border finder: what is mixed at the edge of a step down is no obstacl
   CHECK(open_borders(*stages, 24) == 0);
 }
 
+/// What a robot at (0, 1.2) has seen, traced when it has driven on.
+template <typename Height>
+std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& height_m) {
+  auto stages = std::make_unique<Stages<small_limits>>(small_settings());
+  stages->view = {0.0f, 1.2f, 1.0f};
+  stages->dem.look_from(0.0f, 1.2f);
+  test::fill(stages->dem, height_m);
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->dem.look_from(robot_x_m, 1.2f);
+  stages->view.x_m = robot_x_m;
+  stages->trace(robot_x_m, 1.2f);
+  return stages;
+}
+
+TEST_CASE("border finder: what a step down hid when it was seen it hides for a robot that has driven up to it") {
+  for (const float robot_x_m : {0.0f, 1.1f}) {
+    const auto stages = seen_before(robot_x_m, [](double x, double) {
+      return x > 1.2 && x < 1.8 ? std::nan("") : x < 1.2 ? 0.0 : -0.5;
+    });
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_down);
+    CHECK(stages->tracer.curbs()[0].height_m == Approx(-0.5).margin(0.01));
+  }
+}
+
+TEST_CASE("border finder: an edge behind what hid it is open for a robot that has driven around that, too") {
+  for (const float robot_x_m : {0.0f, 2.3f}) {
+    const auto stages = seen_before(robot_x_m, [](double x, double y) {
+      if (y > 1.6 && x > 1.1 && x < 1.2) return 0.4;
+      return y > 1.6 && x > 1.1 && x < 1.5 ? std::nan("") : x < 1.4 ? 0.0 : 0.12;
+    });
+    CHECK(open_borders(*stages, 24) == 7);  // to the first row behind it the rays pass beside it
+  }
+}
+
 TEST_CASE("border finder: a step down is told, however much it hides and however high its ground lies in the map") {
   const auto platform = [](double map_m, double post_m) {
     Stages<small_limits> stages(small_settings());

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "support/small_map.hpp"
 
@@ -100,6 +101,25 @@ TEST_CASE("segmentation: a low step across a slope parts planes as soon as the g
     }
   }
   CHECK(wrong <= 24);  // of those that the step crosses
+}
+
+TEST_CASE(
+    "segmentation: a low step across a slope parts planes whatever way the slope falls, against it a little later") {
+  const int quarters = GENERATE(0, 1, 2, 3);
+  const auto regions_after = [=](double slope, int passes) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    test::Noise noise;
+    for (int pass = 0; pass < passes; ++pass) {
+      fill(stages->dem, [&](double x, double y) {
+        for (int k = 0; k < quarters; ++k) std::swap(x, y), x = 2.4 - x;
+        return slope * x + (x + 4.0 * y > 6.0 ? 0.022 : 0.0) + 0.003 * noise.normal();
+      });
+      stages->infer();
+    }
+    return regions(*stages).size();
+  };
+  CHECK(regions_after(0.13, 2) == 2);
+  CHECK(regions_after(-0.13, 6) == 2);
 }
 
 TEST_CASE("segmentation: a region splits again when new cells show a step") {

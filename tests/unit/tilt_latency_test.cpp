@@ -287,5 +287,25 @@ TEST_CASE("tilt latency: a standard deviation of 0 turns it off") {
   CHECK(latency.offset_s() == 0.0f);
 }
 
+TEST_CASE("tilt latency: a line waits for its tilt as long as the later of this sweep and the next may be") {
+  TiltLatency latency = started();
+  test::Noise noise(5);
+  CHECK(latency.latest_offset_s() == 0.0f);
+  for (int k = 0; k < 3; ++k) {
+    sweep(latency, true, -0.004f, noise);
+    if (k > 0) CHECK(latency.latest_offset_s() == Approx(0.02).margin(0.0015));
+    sweep(latency, false, 0.02f, noise);
+    CHECK(latency.latest_offset_s() == Approx(0.02).margin(0.0015));
+  }
+  Sweeps drive{true};  // the next sweep's is that of all, but for a little
+  for (int k = 0; k < 12; ++k) {
+    drive.sweep(0.012f);
+    CHECK(drive.latency.latest_offset_s() >= drive.latency.offset_s());
+  }
+  drive.sweep(0.009f);
+  CHECK(drive.latency.offset_s() < 0.0105f);
+  CHECK(drive.latency.latest_offset_s() > drive.latency.offset_s() + 0.0005f);
+}
+
 }  // namespace
 }  // namespace curbline
