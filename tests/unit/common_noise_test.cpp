@@ -5,6 +5,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "support/small_map.hpp"
@@ -237,6 +238,28 @@ TEST_CASE("common noise: it lies between the least share and that of the setting
   test::fill(rough.dem, Unevenness(0.01, 0.5, 0.5));
   rough.infer(true);
   CHECK(share_of(rough, prior) == prior.common_share);
+}
+
+TEST_CASE("common noise: a patch of which a triangle alone is seen shares no more, however its plane is tilted") {
+  const auto shared_m2 = [](double tilt_x, double tilt_y) {
+    const Unevenness off(0.004, 0.5, 0.5);
+    PatchResiduals patch;
+    const auto above_m = [&](int i, int j) {
+      return static_cast<float>(off(0.1 * i + 0.05, 0.1 * j + 0.05) + tilt_x * i + tilt_y * j);
+    };
+    for (int i = 0; i < PatchResiduals::side; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        patch.add(static_cast<float>(i), static_cast<float>(j), above_m(i, j));
+        if (j < i) patch.add_rise(0, above_m(i, j) - above_m(i - 1, j));
+        if (j > 0) patch.add_rise(1, above_m(i, j) - above_m(i, j - 1));
+      }
+    }
+    return static_cast<double>(patch.common_m2());
+  };
+  const double level_m2 = shared_m2(0.0, 0.0);
+  CHECK(level_m2 > 1e-6);
+  for (const auto& [tilt_x, tilt_y] : {std::pair{0.004, 0.0}, {0.0, 0.004}, {0.003, -0.005}})
+    CHECK(shared_m2(tilt_x, tilt_y) == Approx(level_m2).epsilon(0.02));
 }
 
 }  // namespace

@@ -60,6 +60,39 @@ TEST_CASE("map comparison: points on ground of an earlier sweep tell how late th
   CHECK(late.latency.offset_s() == Approx(lag_s).margin(0.001));
 }
 
+TEST_CASE("map comparison: a point is compared where it lies, not where its cell has it, along the slope of any way") {
+  const float slope_x = GENERATE(0.1f, -0.1f), slope_y = GENERATE(0.15f, 0.0f);
+  const auto ground_m = [=](float x_m, float y_m) { return slope_x * x_m + slope_y * y_m; };
+  const auto stages = std::make_unique<Stages<>>(test::small_settings());
+  test::fill(stages->dem, [&](double x, double y) {
+    return static_cast<double>(ground_m(static_cast<float>(x), static_cast<float>(y)));
+  });
+  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->dem.begin_sweep();
+  const Settings settings = test::small_settings();
+  TiltLatency latency;
+  latency.init(settings.tilt, settings.pose);
+  PoseOffset offset;
+  offset.init(settings.pose);
+  latency.follow(0.2f, rate_rad_s, 0);
+  const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
+  for (std::uint32_t n = 1; n <= 20; ++n) {
+    latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
+    auto line = std::make_unique<ProjectedLine<small_limits>>();
+    for (int j = 0; j < 24; ++j) {
+      Point p{1.22f, 0.1f * static_cast<float>(j) + 0.08f, 0.0f, 1e-4f};
+      p.shift_x_m = 0.03f;  // the beams beside its own have it farther on
+      p.shift_y_m = -0.02f;
+      p.z_m = ground_m(p.x_m, p.y_m) - growth_m_s * (lag_s - latency.offset_s());
+      p.growth_m_s = growth_m_s;
+      line->add(p);
+    }
+    map.follow_latency(*line, {}, offset, latency);
+    latency.end_line(-rate_rad_s);
+  }
+  CHECK(latency.offset_s() == Approx(lag_s).margin(0.001));
+}
+
 TEST_CASE("map comparison: what a jump of the poses adds to variances is common to a line: many points tell no more") {
   LineMotion jumping;
   jumping.still = false;
