@@ -122,6 +122,17 @@ TEST_CASE("pose track: between two poses that are far apart there is none, as it
   CHECK_FALSE(track.at(t0 + 5000 * ms, pose));
 }
 
+TEST_CASE("pose track: soon after a pose, or before the next, there is one, however far apart these are") {
+  Track track = track_of(1);
+  REQUIRE(track.push(driving(t0 + 2000 * ms)));
+  Pose pose;
+  REQUIRE(track.at(t0 + 20 * ms, pose));
+  CHECK(pose.x_m == Approx(0.02).margin(1e-4));
+  REQUIRE(track.at(t0 + 1980 * ms, pose));
+  CHECK(pose.x_m == Approx(1.98).margin(1e-4));
+  CHECK_FALSE(track.at(t0 + 1000 * ms, pose));
+}
+
 TEST_CASE("pose track: without a pose there is none, with one the robot stands there") {
   Track track = track_of(0);
   Pose pose;
