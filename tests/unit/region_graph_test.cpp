@@ -116,6 +116,38 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "region graph: on a hill, too, pairs of cells show a kerb by what they rise beyond the hill, along either axis") {
+  const int axis = GENERATE(0, 1);
+  const double hill = GENERATE(0.1, -0.1);
+  test::Noise noise;
+  const auto patch = [&](double from, double to, double first, double last) {
+    const auto height_m = [=](double x, double y) {
+      const double across = axis == 0 ? x : y;
+      return hill * across + (across < 2.0 ? 0.0 : 0.025 + 0.022 * (across - 2.0));
+    };
+    const test::Patch along_x{from, to, first, last}, along_y{first, last, from, to};
+    return test::of_points(test::sample(axis == 0 ? along_x : along_y, 0.1, 0.007, noise, height_m));
+  };
+  const PlaneMoments road = patch(0, 2, 0, 4), right = patch(2, 4, 0, 2), left = patch(2, 4, 2, 4);
+  const auto merges = [&](double jump_m) {
+    const auto graph = std::make_unique<Graph>();
+    graph->clear(0.1f, 0.1f);
+    const auto p = add(*graph, right), r = add(*graph, road), q = add(*graph, left);
+    REQUIRE(graph->link(p, q) != Graph::none);
+    const auto to_p = graph->link(r, p), to_q = graph->link(r, q);
+    for (int k = 0; k < 20; ++k) {
+      for (const auto end : {to_p, to_q}) graph->add_pair(end, axis, static_cast<float>(0.1 * hill + jump_m));
+    }
+    graph->merge(PlaneEvidence{});
+    CHECK(graph->root(p) == graph->root(q));
+    return graph->root(r) == graph->root(p);
+  };
+  CHECK(merges(0.001));
+  CHECK(merges(-0.02));
+  CHECK_FALSE(merges(0.02));
+}
+
 TEST_CASE("region graph: a full store refuses nodes") {
   constexpr Limits three{.regions = 3, .links = 8};
   const auto graph = std::make_unique<RegionGraph<three>>();
