@@ -436,10 +436,10 @@ TEST_CASE("ground: what is ground is so whatever way the window lies, and on wha
         }) == 2);
 }
 
-//  ________           _
-//                ____| |
-//          \\             \\        below the road behind it: a gutter; above the pavement: a kerb stone
-//            \\ ___        |____
+//  ______                       _
+//        |      __        _____| `-|
+//        |_`-__|                   |____       lower than the road behind it, a gutter; higher than the pavement, a
+//                                              kerb stone
 TEST_CASE("ground: what lies in the shadow of a step down, but not between both sides, is no veil of it") {
   const auto strip = [](double z_m) {  // falls a third as steeply as the rays
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.2 * (x - 1.4) : -0.2; };
@@ -481,7 +481,7 @@ TEST_CASE("ground: a step that the laser is straight above has no shadow") {
 
 //  ________
 //             \\         what parts a strip from the planes beside it is not seen
-//               \\ ...
+//                 .
 //                     _____
 TEST_CASE("ground: a strip that lies farther from a step's sides than a face is wide is no veil between them") {
   const auto apart = [](double before_m, double behind_m) {
