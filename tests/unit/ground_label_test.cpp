@@ -86,5 +86,28 @@ TEST_CASE_METHOD(GroundLabelTest, "ground label: of a cell that is not seen ther
   CHECK(ground_label(unseen.dem, unseen.mixture, unseen.field, {}, 3, 3) == no_label);
 }
 
+TEST_CASE("ground label: the ground under a cell is told wherever the window lies, of steps along x as well") {
+  Settings settings = test::small_settings();
+  settings.window.origin_x_m = -10.0f;
+  settings.window.origin_y_m = 30.0f;
+  Stages<small_limits> stages(settings);
+  test::fill(stages.dem, [](double, double y) { return y < 31.4 ? 0.0 : -0.12; });
+  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  const Label near = stages.label_at(0, 0), far = stages.label_at(0, 23);
+  REQUIRE(near != far);
+  const auto at = [&](int j, float step_y_m) {
+    Curb curb{.x0_m = -9.5f, .y0_m = step_y_m, .x1_m = -8.0f, .y1_m = step_y_m, .kind = CurbKind::step_down};
+    curb.near_label = near;
+    curb.far_label = far;
+    return ground_label(stages.dem, stages.mixture, stages.field, std::span<const Curb>(&curb, 1), 10, j);
+  };
+  CHECK(at(13, 31.32f) == far);  // its middle at 31.35
+  CHECK(at(13, 31.37f) == near);
+  CHECK(at(12, 31.32f) == near);
+  CHECK(at(14, 31.48f) == near);
+  CHECK(at(12, 31.07f) == far);   // 18 cm away
+  CHECK(at(12, 31.03f) == near);  // more than two cells
+}
+
 }  // namespace
 }  // namespace curbline

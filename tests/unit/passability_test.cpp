@@ -2,6 +2,7 @@
 #include "curbline/passability.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "support/small_map.hpp"
 
@@ -57,6 +58,68 @@ TEST_CASE("passability: a curb is crossed if it is low enough for sure, a ramp's
   const Curb edge{.kind = CurbKind::ramp_edge};
   CHECK(passable(edge, level, ramp, {0.0f, 0.11f}));
   CHECK_FALSE(passable(edge, level, ramp, {0.0f, 0.09f}));
+}
+
+TEST_CASE("passability: a plane is passable up to its angle in any direction, one that has died is not") {
+  const auto on = [](float slope_x, float slope_y, float cells = 100.0f) {
+    Plane plane;
+    plane.cells = cells;
+    plane.slope_x = slope_x;
+    plane.slope_y = slope_y;
+    return plane;
+  };
+  const Mobility up_to_45_degrees{0.05f, 0.7854f};
+  for (const float sign : {-1.0f, 1.0f}) {
+    CHECK(passable(on(sign * 0.98f, 0.0f), up_to_45_degrees));
+    CHECK(passable(on(0.0f, sign * 0.98f), up_to_45_degrees));
+    CHECK_FALSE(passable(on(sign * 1.02f, 0.0f), up_to_45_degrees));
+    CHECK_FALSE(passable(on(0.0f, sign * 1.02f), up_to_45_degrees));
+    CHECK_FALSE(passable(on(sign * 0.8f, 0.8f), up_to_45_degrees));
+  }
+  CHECK_FALSE(passable(on(0.0f, 0.0f, 0.0f), up_to_45_degrees));
+  const Curb edge{.kind = CurbKind::ramp_edge}, up{.height_m = 0.04f, .height_sd_m = 0.004f, .kind = CurbKind::step_up};
+  CHECK_FALSE(passable(edge, on(0.2f, 0.0f), on(0.0f, 0.0f), {0.0f, 0.1f}));
+  CHECK_FALSE(passable(edge, on(0.0f, 0.0f), on(0.2f, 0.0f), {0.0f, 0.1f}));
+  CHECK(passable(up, on(0.0f, 0.0f), on(0.0f, 0.0f), {0.049f, 0.0f}));
+  CHECK_FALSE(passable(up, on(0.0f, 0.0f), on(0.0f, 0.0f), {0.047f, 0.0f}));
+}
+
+TEST_CASE("passability: a step beside a cell is in the way on any side of it, across a cell that is not seen, too") {
+  const int to_x = GENERATE(-1, 0, 1), to_y = GENERATE(-1, 0, 1);
+  if ((to_x == 0) == (to_y == 0)) return;
+  const auto beside = [=](int away) {
+    Stages<small_limits> stages(small_settings());
+    const auto at = [](double m, int cell) { return static_cast<int>(m * 10.0) == cell; };
+    fill(stages.dem, [=](double x, double y) {
+      for (int k = 1; k < away; ++k) {
+        if (at(x, 12 + k * to_x) && at(y, 12 + k * to_y)) return std::nan("");
+      }
+      return at(x, 12 + away * to_x) && at(y, 12 + away * to_y) ? 0.12 : 0.0;
+    });
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    const auto& s = stages;
+    CHECK(passable(s.dem, s.mixture, s.field, 12, 12, {0.15f, 0.1f}));
+    return passable(s.dem, s.mixture, s.field, 12, 12, {0.05f, 0.1f});
+  };
+  CHECK_FALSE(beside(1));
+  CHECK_FALSE(beside(2));
+  CHECK(beside(3));
+}
+
+TEST_CASE("passability: what spreads within a cell by more than the step is in the way, noise is not") {
+  const auto with_spread = [](double spread_m, float max_step_m) {
+    Stages<small_limits> stages(small_settings());
+    fill(stages.dem, [](double, double) { return 0.0; });
+    for (int k = 0; k < 400; ++k) {
+      stages.dem.add({1.23f + 0.0001f * static_cast<float>(k), 1.25f,
+                      static_cast<float>(spread_m * ((k % 20) / 19.0 - 0.5)), 1e-4f});
+    }
+    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    return passable(stages.dem, stages.mixture, stages.field, 12, 12, {max_step_m, 0.1f});
+  };
+  CHECK(with_spread(0.03, 0.02f));  // of a laser of 1 cm
+  CHECK(with_spread(0.16, 0.17f));
+  CHECK_FALSE(with_spread(0.16, 0.13f));
 }
 
 }  // namespace
