@@ -1,6 +1,6 @@
 // What the pipeline dropped, refused or ran into, and how much work it did. Everything only grows, and begins anew at
 // 2^32, points of 1081 beams after a day: a reader takes the difference of two snapshots. A healthy robot sees nothing
-// but the first group, `no_returns` and `cells_deferred` move.
+// but the first group, `no_returns`, `echoes_alone` and `cells_deferred` move.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@ struct Counters {
   std::uint32_t messages = 0;   ///< belief messages that label visits stand for, four each
   // Bad data.
   std::uint32_t no_returns = 0;          ///< beams without a usable range: into the open, too
+  std::uint32_t echoes_alone = 0;        ///< in the window, off both beams beside: rain, dust, sun, noise; left out
   std::uint32_t lines_dropped = 0;       ///< see Status of take()
   std::uint32_t beams_without_tilt = 0;  ///< beyond extrapolation or in a gap between readings
   std::uint32_t beams_extrapolated = 0;  ///< beyond the last tilt reading, within the bound

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <new>
 #include <span>
+#include <utility>
 
 #include "curbline/counters.hpp"
 #include "curbline/frames.hpp"
@@ -66,9 +67,9 @@ class LineProjection {
   [[gnu::cold]] void init(const Settings& settings);
 
   /// Adds a point to `out` for each beam that returned from within bounds. `tilt` is not read with a fixed tilt.
-  /// The line has at most limits.beams.
+  /// The line has at most limits.beams. What stands alone is left out, unless it did in the line before too.
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, const Bounds& bounds,
-               Counters& counters, ProjectedLine<limits>& out) const;
+               Counters& counters, ProjectedLine<limits>& out);
 
   const LaserSettings& laser() const { return laser_; }
   const TiltSettings& tilt() const { return tilt_; }
@@ -78,11 +79,19 @@ class LineProjection {
   bool returned(float range_m) const {
     return range_m > 0.0f && range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
-  /// How much farther than a beam the two beside it see, on the mean, as long as all three see one surface, agreeing
-  /// with each other within three standard deviations; else 0. What did not return does not agree.
-  static float beside_m(float before_m, float own_m, float after_m, float three_sd_m2) {
-    const float apart = after_m - before_m, off = 0.5f * (before_m + after_m) - own_m;
-    return apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2 ? off : 0.0f;
+  /// How a beam lies to the two beside it, by three standard deviations.
+  struct Beside {
+    float farther_m = 0.0f;  ///< they see, on the mean, as long as all three agree: one surface
+    bool alone = false;      ///< it is nearer than both, or farther. What did not return is neither.
+  };
+  Beside beside(float before_m, float own_m, float after_m, float three_sd_m2) const {
+    const float to_before = before_m - own_m, to_after = after_m - own_m;
+    const float apart = to_after - to_before, off = 0.5f * (to_before + to_after);
+    if (apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2) return {off, false};
+    if ((to_before > 0.0f) != (to_after > 0.0f) || to_before * to_before <= 2.0f * three_sd_m2 ||
+        to_after * to_after <= 2.0f * three_sd_m2)
+      return {};
+    return {0.0f, returned(before_m) && returned(after_m)};
   }
   /// Of the map's x, y or z in the tilt axis' frame.
   Eigen::Vector3f gradient(const LineMotion& motion, int axis) const {
@@ -99,8 +108,9 @@ class LineProjection {
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
   Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(),
-                  laser_y_ = Eigen::Vector3f::UnitY();  ///< the laser's axes, in the tilt frame
-  std::array<SinCos, limits.beams> bearing_;            ///< of each beam
+                  laser_y_ = Eigen::Vector3f::UnitY();           ///< the laser's axes, in the tilt frame
+  std::array<SinCos, limits.beams> bearing_;                     ///< of each beam
+  std::array<std::uint32_t, (limits.beams + 31) / 32> alone_{};  ///< which beams stood alone in the last line, bits
 };
 
 template <Limits limits>
@@ -113,6 +123,7 @@ void LineProjection<limits>::init(const Settings& settings) {
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
   laser_x_ = T_tilt_laser_.rotation.col(0);
   laser_y_ = T_tilt_laser_.rotation.col(1);
+  alone_.fill(0);
   for (int i = 0; i < laser_.beams; ++i) {
     bearing_[static_cast<std::size_t>(i)] =
         sin_cos(laser_.first_bearing_rad + static_cast<float>(i) * laser_.bearing_step_rad);
@@ -122,15 +133,17 @@ void LineProjection<limits>::init(const Settings& settings) {
 /// Of a point outside the bounds nothing more is asked than where it lies: most are, above the ground or far away.
 template <Limits limits>
 void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion,
-                                     const Bounds& bounds, Counters& counters, ProjectedLine<limits>& out) const {
+                                     const Bounds& bounds, Counters& counters, ProjectedLine<limits>& out) {
   const std::span<const float> ranges_m = line.ranges_m;
   const std::size_t beams = ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
   const Eigen::Vector3f x_axis = gradient(motion, 0), y_axis = gradient(motion, 1), up_axis = gradient(motion, 2);
   const float three_sd_m2 = gate * laser_.range_sd_m * laser_.range_sd_m;
   NearSinCos near;
+  std::uint32_t alone_before = 0;
   std::int64_t time_ns = line.time_ns;
   for (std::size_t i = 0; i < beams; ++i, time_ns += beam_interval_ns_) {
+    if (i % 32 == 0) alone_before = std::exchange(alone_[i / 32], 0);
     const float range = ranges_m[i];
     if (!returned(range)) {
       ++counters.no_returns;
@@ -155,11 +168,18 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
       p_map = first + (static_cast<float>(i) * step) * (last - first);
     }
     const bool within = i > 0 && i + 1 < beams;
-    const float beside = within ? beside_m(ranges_m[i - 1], range, ranges_m[i + 1], three_sd_m2) : 0.0f;
-    const float shift_x_m = beside * dot(x_axis, along), shift_y_m = beside * dot(y_axis, along);
+    const Beside b = within ? beside(ranges_m[i - 1], range, ranges_m[i + 1], three_sd_m2) : Beside{};
+    const float shift_x_m = b.farther_m * dot(x_axis, along), shift_y_m = b.farther_m * dot(y_axis, along);
     if (!bounds.hold(p_map.x() + shift_x_m, p_map.y() + shift_y_m, p_map.z())) {
       out.leave_out();
       continue;
+    }
+    if (b.alone) {
+      alone_[i / 32] |= 1u << i % 32;
+      if ((alone_before >> i % 32 & 1) == 0) {
+        ++counters.echoes_alone;
+        continue;
+      }
     }
     const Eigen::Vector3f across = y * bearing.cos - x * bearing.sin;
     const float by_tilt = up_axis.x() * p_axis.z() - up_axis.z() * p_axis.x();

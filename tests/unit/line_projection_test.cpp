@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "support/terrain.hpp"
@@ -100,6 +102,7 @@ TEST_CASE("line projection: any mount, tilt and bearing give the point of the ch
     const auto bench = std::make_unique<Bench>(s);
     std::vector<float> ranges(361);
     for (float& r : ranges) r = static_cast<float>(0.2 + 9.0 * noise.uniform());
+    bench->project(ranges);  // what stands alone is left out once
     const auto points = bench->project(ranges);
     REQUIRE(points.size() == 361);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -162,6 +165,7 @@ TEST_CASE("line projection: a beam's point goes where the beams beside it have i
   ranges[100] = 3.05f;                                                          // by more than chance: something else
   for (int i = 250; i < 361; ++i) ranges[static_cast<std::size_t>(i)] = 3.05f;  // another surface
   ranges[20] = std::numeric_limits<float>::quiet_NaN();
+  bench->project(ranges);  // what stands alone is left out once
   const auto points = bench->project(ranges);
   REQUIRE(points.size() == 360);
   const auto shift_m = [&](std::size_t beam) {
@@ -172,6 +176,60 @@ TEST_CASE("line projection: a beam's point goes where the beams beside it have i
   CHECK(shift_m(180) == Approx(-0.03).margin(5e-4));
   CHECK(shift_m(179) == Approx(0.015).margin(5e-4));
   for (const std::size_t alone : {100u, 99u, 101u, 249u, 250u, 0u, 360u, 19u, 21u}) CHECK(shift_m(alone) == 0.0);
+}
+
+/// Lines of a laser of 10 mm that looks at a wall all around.
+struct Alone {
+  Alone() : bench(settings()) {}
+  static Settings settings() {
+    Settings s = base_settings();
+    s.tilt.fixed = true;
+    s.laser.max_range_m = 30.0f;
+    s.laser.range_sd_m = 0.01f;
+    return s;
+  }
+  /// Is the beam's point left, of a line of level ranges but for some beams?
+  bool kept(std::size_t beam, std::initializer_list<std::pair<std::size_t, float>> others) {
+    std::vector<float> ranges(361, 3.0f);
+    for (const auto& [i, range_m] : others) ranges[i] = range_m;
+    const double bearing = bearing_of(bench.settings, beam);
+    for (const Point& p : bench.project(ranges)) {
+      if (std::abs(std::atan2(p.y_m, p.x_m) - bearing) < 1e-3) return true;
+    }
+    return false;
+  }
+
+  Bench bench;
+};
+
+TEST_CASE("line projection: a drop of rain, dust or a flash of the sun, in a single beam, is left out and counted") {
+  const auto alone = std::make_unique<Alone>();
+  const float range_m = GENERATE(0.3f, 2.9f, 3.1f, 20.0f);
+  CHECK(alone->kept(100, {}));
+  CHECK_FALSE(alone->kept(100, {{100, range_m}}));
+  CHECK(alone->bench.counters.echoes_alone == 1);
+  CHECK(alone->kept(100, {}));  // nor is there anything left of it
+  CHECK_FALSE(alone->kept(100, {{100, range_m}}));
+  CHECK(alone->bench.counters.echoes_alone == 2);
+}
+
+TEST_CASE("line projection: a post that is as wide as a beam loses no more than its first line") {
+  const auto alone = std::make_unique<Alone>();
+  CHECK_FALSE(alone->kept(100, {{100, 1.5f}}));
+  for (int line = 0; line < 5; ++line) CHECK(alone->kept(100, {{100, 1.5f}}));
+  CHECK(alone->bench.counters.echoes_alone == 1);
+}
+
+TEST_CASE("line projection: what two beams see, chance, an edge, and what stands before the sky are not left out") {
+  const auto alone = std::make_unique<Alone>();
+  CHECK(alone->kept(100, {{100, 1.5f}, {101, 1.5f}}));
+  CHECK(alone->kept(100, {{100, 3.04f}}));
+  CHECK(alone->kept(100, {{98, 2.0f}, {99, 2.0f}, {100, 2.5f}}));
+  CHECK(alone->kept(100, {{99, 30.0f}, {100, 1.5f}, {101, 30.0f}}));
+  CHECK(alone->kept(100, {{99, std::numeric_limits<float>::quiet_NaN()}, {100, 1.5f}}));
+  CHECK(alone->kept(0, {{0, 1.5f}}));
+  CHECK(alone->kept(360, {{360, 1.5f}}));
+  CHECK(alone->bench.counters.echoes_alone == 0);
 }
 
 TEST_CASE("line projection: where the ground ceases to be seen the points of a cell are not all too high") {
@@ -345,6 +403,7 @@ TEST_CASE("line projection: of the points those within the bounds are kept as th
   Noise noise;
   std::vector<float> ranges(361);
   for (float& r : ranges) r = static_cast<float>(0.2 + 9.0 * noise.uniform());
+  bench.project(ranges);  // what stands alone is left out once
   const std::vector<Point> all = bench.project(ranges);
   REQUIRE(all.size() == ranges.size());
   CHECK(bench.outside == 0);

@@ -79,6 +79,40 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   CHECK(pipeline->counters().lines == 200);
 }
 
+TEST_CASE("pipeline: rain in one beam of fifty moves no curb, makes none, and takes little of the ground to drive on") {
+  const auto dry = started(), wet = started();
+  NoddingLaser laser, same;
+  stand(*dry, laser, {2.0, 0.04}, 0, 200);
+  test::Noise rain(5);
+  for (int line = 0; line < 200; ++line) {
+    add_tilts(*wet, line);
+    auto ranges = same.ranges({2.0, 0.04}, line, [](double) { return 0.0; });
+    for (float& range_m : ranges) {
+      const bool drop = rain.uniform() < 0.02;
+      const auto drop_m = static_cast<float>(0.3 + 2.7 * rain.uniform());
+      if (drop && drop_m < range_m) range_m = drop_m;
+    }
+    REQUIRE(wet->take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
+  }
+  float length_m = 0.0f;
+  for (const Curb& curb : wet->curbs()) {
+    INFO(to_string(curb.kind) << " of " << curb.height_m << " m at " << curb.x0_m << ", " << curb.y0_m);
+    CHECK(curb.x0_m == Approx(2.0).margin(0.01));
+    CHECK(curb.x1_m == Approx(2.0).margin(0.01));
+    CHECK(curb.height_m == Approx(0.04).margin(0.005));
+    length_m += std::abs(curb.y1_m - curb.y0_m);
+  }
+  CHECK(length_m > 3.5f);
+  const auto passable = [](const FullPipeline& pipeline) {
+    int cells = 0;
+    for (int i = 0; i < pipeline.dem().rows(); ++i)
+      for (int j = 0; j < pipeline.dem().cols(); ++j) cells += pipeline.passable(i, j, 0.1f, 0.1f);
+    return cells;
+  };
+  CHECK(passable(*wet) > 0.9 * passable(*dry));
+  CHECK(wet->counters().echoes_alone > 500);
+}
+
 TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatever the robot takes") {
   const auto pipeline = started();
   std::vector<Point> face;  // of a kerb, from x = 1.2 to 1.5 m

@@ -77,6 +77,7 @@ nlohmann::json summary_of(const Replay& replay) {
           {"points", c.points},
           {"outside", c.outside},
           {"no_returns", c.no_returns},
+          {"echoes_alone", c.echoes_alone},
           {"can_frames", can.frames},
           {"can_malformed", can.malformed},
           {"can_without_sync", can.without_sync},
