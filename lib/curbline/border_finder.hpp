@@ -19,6 +19,7 @@
 #include "curbline/ground_end.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/plane_mixture.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {

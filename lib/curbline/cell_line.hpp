@@ -1,9 +1,12 @@
 // A row or column of the window, cell by cell.
 #pragma once
 
+#include <cstdint>
+
 #include "curbline/cell.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 

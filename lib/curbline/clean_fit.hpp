@@ -2,7 +2,6 @@
 // would tilt the plane of a small region toward the other. PlaneMixture says which cells these are.
 #pragma once
 
-#include "curbline/cell.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {
@@ -15,8 +14,8 @@ struct CleanFit {
   bool wide = false, steep = false;
   float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
   float cells = 0.0f, points = 0.0f;  ///< of the region
-  PlaneMoments inner{}, beside{};     ///< of clean cells: of those beside a step apart
-  float bias_m2 = 0.0f;               ///< of these, each by its weight
+  PlaneMoments inner{}, beside{};     ///< of clean cells away from steps, and of those beside one
+  float bias_m2 = 0.0f;               ///< of those, each by its weight
 
   /// A clean cell that lies beside a step, or of which one crosses it; of none the step is 0.
   void add(PlaneMoments cell, float step_m) {

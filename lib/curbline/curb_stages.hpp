@@ -5,6 +5,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/label_field.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/plane_mixture.hpp"

@@ -19,6 +19,7 @@
 #include "curbline/curb.hpp"
 #include "curbline/curb_maker.hpp"
 #include "curbline/curb_piece.hpp"
+#include "curbline/curb_stages.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/label_field.hpp"
 #include "curbline/line_fit.hpp"

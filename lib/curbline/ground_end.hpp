@@ -4,7 +4,7 @@
 //   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
 //     or belong to what stands there, follow the ground, away from the laser, and lie below it. They fall as far as is
 //     seen of the step.
-// Cost: a look at each cell of a face and a veil.
+// Cost: a look at each cell of a face, a veil and an obstacle.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "curbline/cell_line.hpp"
 #include "curbline/curb_stages.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {
@@ -30,7 +31,7 @@ class GroundEnds {
   /// face, or does not end in the window.
   std::optional<Border> of_face(const Line& line, const LabelledCell& first, int toward) const;
   /// Before a cell, if that is the first of a veil, as the laser sees it. What stands on the ground does not lie below
-  /// it: a cell of an obstacle that does, as far as it was seen over the edge, mixes what lies behind that, as a veil.
+  /// it: a cell of an obstacle that does, if it was seen over the edge, mixes what lies behind that, as a veil.
   std::optional<Border> brink(const Line& line, int first_of_veil) const;
 
  private:
@@ -84,7 +85,8 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   const auto below = [&](int along) { return line.above_m(along, plane) < 0.0f && !on_plane(along, label); };
   const auto may_fall = [&](int along) {
     const int s = line.slot(along);
-    return stages_.is_veil(s) || (below(along) && line.away(line.dem.seen_from(s, stages_.view), along) == toward);
+    return stages_.is_veil(s) || (stages_.mixture.covered(s) && below(along) &&
+                                  line.away(line.dem.seen_from(s, stages_.view), along) == toward);
   };
   if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
   int last = first_of_veil;

@@ -39,8 +39,8 @@ struct LineMotion {
   }
 };
 
-/// The points of a line, in the order of the beams; those that did not return, or lie outside the bounds that are asked
-/// for, are left out.
+/// The points of a line, in the order of the beams; those that did not return, stand alone or lie outside the bounds
+/// that are asked for, are left out.
 template <Limits limits>
 class ProjectedLine {
  public:
@@ -80,14 +80,14 @@ class LineProjection {
     return range_m > 0.0f && range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
   /// How a beam lies to the two beside it, by three standard deviations.
-  struct Beside {
+  struct Neighbours {
     float farther_m = 0.0f;  ///< they see, on the mean, as long as all three agree: one surface
     bool alone = false;      ///< it is nearer than both, or farther. What did not return is neither.
   };
-  Beside beside(float before_m, float own_m, float after_m, float three_sd_m2) const {
-    const float to_before = before_m - own_m, to_after = after_m - own_m;
-    const float apart = to_after - to_before, off = 0.5f * (to_before + to_after);
+  Neighbours neighbours(float before_m, float own_m, float after_m, float three_sd_m2) const {
+    const float apart = after_m - before_m, off = 0.5f * (before_m + after_m) - own_m;
     if (apart * apart <= 2.0f * three_sd_m2 && off * off <= 1.5f * three_sd_m2) return {off, false};
+    const float to_before = before_m - own_m, to_after = after_m - own_m;
     if ((to_before > 0.0f) != (to_after > 0.0f) || to_before * to_before <= 2.0f * three_sd_m2 ||
         to_after * to_after <= 2.0f * three_sd_m2)
       return {};
@@ -168,13 +168,13 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
       p_map = first + (static_cast<float>(i) * step) * (last - first);
     }
     const bool within = i > 0 && i + 1 < beams;
-    const Beside b = within ? beside(ranges_m[i - 1], range, ranges_m[i + 1], three_sd_m2) : Beside{};
-    const float shift_x_m = b.farther_m * dot(x_axis, along), shift_y_m = b.farther_m * dot(y_axis, along);
+    const Neighbours beside = within ? neighbours(ranges_m[i - 1], range, ranges_m[i + 1], three_sd_m2) : Neighbours{};
+    const float shift_x_m = beside.farther_m * dot(x_axis, along), shift_y_m = beside.farther_m * dot(y_axis, along);
     if (!bounds.hold(p_map.x() + shift_x_m, p_map.y() + shift_y_m, p_map.z())) {
       out.leave_out();
       continue;
     }
-    if (b.alone) {
+    if (beside.alone) {
       alone_[i / 32] |= 1u << i % 32;
       if ((alone_before >> i % 32 & 1) == 0) {
         ++counters.echoes_alone;
@@ -188,6 +188,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     if (!motion.still) variance_m2 += motion.blur_m2(p_map.x(), p_map.y());
     out.add({p_map.x(), p_map.y(), p_map.z(), variance_m2, by_tilt * angle.rate_rad_s, shift_x_m, shift_y_m});
   }
+  for (std::size_t word = (beams + 31) / 32; word < alone_.size(); ++word) alone_[word] = 0;  // of a longer line before
 }
 
 template <Limits limits>

@@ -2,8 +2,8 @@
 // slope of more than 45 degrees; and the top of one: level, higher above the ground than a kerb or a stair, smaller
 // than a square metre or narrower than shoulders, and no way that leads on. A way has beside it, as high above the
 // ground, one that is no top, or lies higher or lower by as much as the next step of a stair does. What reaches the
-// window's end may be larger than it looks, and wider what begins there or where nothing is seen before it, or ends
-// where nothing is seen from there on.
+// window's end may be larger than it looks. So may what begins where nothing is seen before it and, of a robot that
+// drives, what ends where nothing is seen from there on: it may not have looked there yet.
 // Cost: a pass over the window, and two more where there may be tops.
 #pragma once
 
@@ -154,24 +154,24 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
 }
 
 /// Is the run of cells through (i, j) whose regions bear `label`, along x or y, shorter than shoulders? Not one that
-/// goes on beyond the window's end, or perhaps where nothing is seen: toward the laser; or away from it, if nothing is
-/// seen farther on that would tell that the laser has looked there yet.
+/// goes on beyond the window's end, or perhaps where nothing is seen: toward the laser; or away from that of a robot
+/// that drives, if nothing is seen farther on that would tell that it has looked there yet.
 template <Limits limits>
 bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
   const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
   const int count = dem_.cells_along(static_cast<int>(axis)), at = axis == 0 ? i : j;
   const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
+  const bool drives = view_.end_x_m > 0.0f;
   int length = 1;
   for (const int step : {toward, -toward}) {
     int last = at;
     for (int k = at + step;; k += step) {
       if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= count) return false;
       const int slot = axis == 0 ? dem_.slot(k, j) : dem_.slot(i, k);
-      if (!dem_.cell(slot).valid()) {
-        if (step == toward) return false;
-        continue;
-      }
-      if (region_label_[slot] != label) break;
+      const bool seen = dem_.cell(slot).valid();
+      if (!seen && step == toward) return false;
+      if (!seen && drives) continue;
+      if (!seen || region_label_[slot] != label) break;
       length += step * (k - last);
       last = k;
     }

@@ -11,7 +11,7 @@
 
 namespace curbline {
 
-/// One T for each cell. What it holds at first is what an array would.
+/// One T for each cell. Not set until filled, unless made with {}.
 template <typename T, Limits limits>
 class PerCell {
  public:

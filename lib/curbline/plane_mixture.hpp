@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "curbline/clean_fit.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/ground.hpp"
+#include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/region_ranking.hpp"

@@ -9,6 +9,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/plane_mixture.hpp"
 
 namespace curbline {

@@ -9,7 +9,9 @@
 
 #include "curbline/counters.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/region_graph.hpp"
 #include "curbline/segmentation.hpp"
 
 namespace curbline {

@@ -9,6 +9,7 @@
 #include "curbline/cell.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"

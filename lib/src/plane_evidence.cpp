@@ -1,5 +1,7 @@
 #include "curbline/plane_evidence.hpp"
 
+#include <cstddef>
+
 #include "curbline/math.hpp"
 
 namespace curbline {
@@ -41,7 +43,7 @@ bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const 
 }
 
 /// Does the ground jump along the border, up if `toward` is above 0, else down? Where it is one bent surface it rises
-/// there by the mean of both planes' fit.
+/// there by the mean of both planes' slopes.
 bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const {
   if (!(border.pairs > 0.0f)) return false;
   const float share_m2 = prior_.common_m2();

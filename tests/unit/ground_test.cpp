@@ -186,8 +186,10 @@ TEST_CASE("ground: a high pavement of which the laser has seen the front alone, 
       return x < 1.2 ? 0.0 : x < 1.5 ? 0.22 : x < from_x_m || x > to_x_m ? 0.0 : std::nan("");
     };
   };
-  CHECK(borne_from({0.0f, 1.2f, 1.0f}, seen(1.5, 9.0)) == 2);
-  CHECK(borne_from({0.0f, 1.2f, 1.0f}, seen(1.5, 2.0)) == 2);  // the ground before it and behind
+  const Viewpoint driving{0.0f, 1.2f, 1.0f, 2.4f, 2.4f}, standing{0.0f, 1.2f, 1.0f};
+  CHECK(borne_from(driving, seen(1.5, 9.0)) == 2);
+  CHECK(borne_from(driving, seen(1.5, 2.0)) == 2);   // the ground before it and behind
+  CHECK(borne_from(standing, seen(1.5, 9.0)) == 1);  // it has looked everywhere: a wall that hides what lies behind
 }
 
 //             ______

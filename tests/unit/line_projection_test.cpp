@@ -213,6 +213,13 @@ TEST_CASE("line projection: a drop of rain, dust or a flash of the sun, in a sin
   CHECK(alone->bench.counters.echoes_alone == 2);
 }
 
+TEST_CASE("line projection: what stood alone in a longer line before the last is forgotten") {
+  const auto alone = std::make_unique<Alone>();
+  CHECK_FALSE(alone->kept(300, {{300, 1.5f}}));
+  alone->bench.project(std::vector<float>(100, 3.0f));
+  CHECK_FALSE(alone->kept(300, {{300, 1.5f}}));
+}
+
 TEST_CASE("line projection: a post that is as wide as a beam loses no more than its first line") {
   const auto alone = std::make_unique<Alone>();
   CHECK_FALSE(alone->kept(100, {{100, 1.5f}}));
