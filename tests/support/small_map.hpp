@@ -77,6 +77,10 @@ struct Stages {
     mix();
     label(all);
   }
+  /// As often as labels take to stay as they are on such a map.
+  void settle() {
+    for (int pass = 0; pass < 3; ++pass) infer(true);
+  }
   void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
     tracer.trace(dem, mixture, field, {robot_x_m, robot_y_m, view.z_m}, work.curbs(), counters);
   }

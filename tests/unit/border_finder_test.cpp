@@ -158,7 +158,7 @@ Curb curb_of(double drop, double from, double to, bool face_seen) {
       }
     }
   }
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace(0.0f, 1.2f);
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb curb = stages->tracer.curbs()[0];
@@ -209,7 +209,7 @@ struct Street {
       }
     }
     stages->view = turned ? Viewpoint{1.2f, 2.4f - laser_x_m, laser_z_m} : Viewpoint{laser_x_m, 1.2f, laser_z_m};
-    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->settle();
     stages->trace(stages->view.x_m, stages->view.y_m);
     return stages;
   }
@@ -308,7 +308,7 @@ TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, 
       if (x < 1.4 || x > to_m || in_drain(x, y)) stages.dem.add(p);
     }
     stages.view.y_m = 1.2f;
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(0.0f, 1.2f);
     return std::vector<Curb>(stages.tracer.curbs().begin(), stages.tracer.curbs().end());
   };
@@ -335,7 +335,7 @@ TEST_CASE("border finder: a veil before an obstacle hides a step as one beside i
     return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
   });
   stages.view.y_m = 1.2f;
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   stages.trace(0.0f, 1.2f);
   for (const double y : {1.75, 2.0, 2.25}) {
     CHECK(std::any_of(stages.tracer.curbs().begin(), stages.tracer.curbs().end(), [&](const Curb& curb) {
@@ -359,7 +359,7 @@ TEST_CASE("border finder: a step down right before an obstacle is told by what l
       return second_half(y) && (x > 1.4 || second_half(x)) ? 0.4 : -drop_m;
     });
     stages.view.y_m = 1.2f;
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(0.0f, 1.2f);
     return std::vector<Curb>(stages.tracer.curbs().begin(), stages.tracer.curbs().end());
   };
@@ -381,7 +381,7 @@ TEST_CASE("border finder: the face of a step up is no step down for a robot that
        test::sample({1.2, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, [](double x, double) { return x < 1.25 ? -0.3 : 0.0; })) {
     stages.dem.add(p);
   }
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   stages.dem.look_from(2.3f, 1.2f);
   stages.trace(2.3f, 1.2f);
   CHECK(stages.tracer.curbs().empty());
@@ -399,7 +399,7 @@ TEST_CASE("border finder: an edge that the spots of rays askew blur is a step do
     Stages<small_limits> stages(small_settings());
     test::fill(stages.dem, [](double, double y) { return y < 2.2 ? 0.0 : -0.3 * (y - 2.2); });
     stages.view = view;
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(view.x_m, view.y_m);
     return std::count_if(stages.tracer.curbs().begin(), stages.tracer.curbs().end(), [](const Curb& curb) {
       return curb.kind == CurbKind::step_down && std::abs(curb.y0_m - 2.2f) < 0.05f && curb.x1_m - curb.x0_m > 2.0f;
@@ -416,7 +416,7 @@ TEST_CASE("border finder: what falls over the shadow of an edge and the spot on 
     Stages<small_limits> stages(small_settings());
     test::fill(stages.dem, [](double, double y) { return y < 1.2 ? 0.0 : y < 1.6 ? -0.14 * (y - 1.2) : -0.056; });
     stages.view = {1.2f, laser_y_m, 1.3f};
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(stages.view.x_m, stages.view.y_m);
     std::set<CurbKind> found;
     for (const Curb& curb : stages.tracer.curbs()) found.insert(curb.kind);
@@ -450,7 +450,7 @@ std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool t
     }
   }
   stages.view = turned ? Viewpoint{1.2f, 2.4f, 1.0f} : Viewpoint{0.0f, 1.2f, 1.0f};
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   stages.trace(stages.view.x_m, stages.view.y_m);
   return {stages.tracer.curbs().begin(), stages.tracer.curbs().end()};
 }
@@ -497,7 +497,7 @@ TEST_CASE("border finder: a face that the window cuts has no end on any side, of
   const auto one_sided = [](int rows, int cols) {  // the window's end cuts the face, along its shorter side
     Stages<small_limits> stages(small_settings(rows, cols));
     test::fill(stages.dem, [=](double x, double y) { return 0.4 * std::max((rows < cols ? x : y) - 1.3, 0.0); });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(0.0f, 0.0f);
     REQUIRE(!stages.tracer.curbs().empty());  // its foot
     return std::count_if(stages.tracer.curbs().begin(), stages.tracer.curbs().end(),
@@ -520,7 +520,7 @@ std::unique_ptr<Stages<small_limits>> traced(Height&& height_m) {
   auto stages = std::make_unique<Stages<small_limits>>(small_settings());
   stages->view = {0.0f, 1.2f, 1.0f};
   test::fill(stages->dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace(0.0f, 1.2f);
   return stages;
 }
@@ -592,7 +592,7 @@ std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& heig
   stages->view = {0.0f, 1.2f, 1.0f};
   stages->dem.look_from(0.0f, 1.2f);
   test::fill(stages->dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->dem.look_from(robot_x_m, 1.2f);
   stages->view.x_m = robot_x_m;
   stages->trace(robot_x_m, 1.2f);
@@ -629,7 +629,7 @@ TEST_CASE("border finder: a step down is told, however much it hides and however
       if (post && post_m > 0.0) return map_m - 0.4 + (static_cast<int>(y * 100) % 10 < 5 ? 0.0 : post_m);
       return x > 1.2 && x < 1.8 ? std::nan("") : x < 1.2 ? map_m : map_m - 0.5;
     });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(0.0f, 1.2f);
     REQUIRE(stages.tracer.curbs().size() == 1);
     CHECK(stages.tracer.curbs()[0].kind == CurbKind::step_down);
@@ -670,7 +670,7 @@ TEST_CASE("border finder: where in a cell an edge lies is told by readings that 
         }
       }
     }
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
     REQUIRE(stages.tracer.curbs().size() == 1);
     const Curb& curb = stages.tracer.curbs()[0];

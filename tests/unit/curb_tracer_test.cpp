@@ -25,7 +25,7 @@ std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f
                                        const Settings& settings = small_settings()) {
   auto stages = std::make_unique<Stages<limits>>(settings);
   fill(stages->dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace(robot_x_m, robot_y_m);
   return stages;
 }
@@ -90,7 +90,7 @@ std::unique_ptr<Stages<>> seen_over_an_edge() {
   for (const Point& p : test::sample({0.0, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, height_m)) {
     if (p.x_m < 1.2f || p.x_m > 1.2 + hidden_m) stages->dem.add(p);
   }
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   return stages;
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("curb tracer: a step that was seen from below casts no shadow for a ro
   auto stages = std::make_unique<Stages<>>(small_settings());
   stages->dem.look_from(-0.8f, 1.2f);
   fill(stages->dem, up);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->dem.look_from(2.3f, 1.2f);
   stages->trace(2.3f, 1.2f);
   REQUIRE(stages->tracer.curbs().size() == 1);
@@ -253,7 +253,7 @@ TEST_CASE("curb tracer: where a shadow hides one of its sides a curb stays where
     const bool hidden = x > 1.4 && x < 1.7 && y > 2.3;
     return hidden ? std::nan("") : x > 1.4 ? 0.12 : 0.0;
   });
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   stages.trace(0.0f, 1.2f);
   REQUIRE(stages.tracer.curbs().size() == 1);
   const Curb& curb = stages.tracer.curbs()[0];
@@ -411,7 +411,7 @@ TEST_CASE("curb tracer: one edge is told once, though cells that it crosses bear
       return beside > 0.0 ? 0.055 : along < 0.0 ? 0.0 : -0.06 * along;
     };
     for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.03, 0.008, noise, ground)) stages.dem.add(p);
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(2.4f, 0.0f);
     const auto curbs = stages.tracer.curbs();
     for (const Curb& one : curbs) {
@@ -441,7 +441,7 @@ TEST_CASE("curb tracer: the height of a step is less certain where few points te
   const auto deviation_m = [](int scans) {
     Stages<> stages(small_settings());
     for (int scan = 0; scan < scans; ++scan) fill(stages.dem, up);
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.dem.set_common(1e-8f, 1e-3f);
     stages.tracer.trace(stages.dem, stages.mixture, stages.field, {0.0f, 1.2f, 1.0f, 2.4f, 2.4f}, stages.work.curbs(),
                         stages.counters);
@@ -513,7 +513,7 @@ TEST_CASE("curb tracer: a curb keeps its number as long as it is found, a new on
   CHECK(id > 0);
   for (int more = 0; more < 4; ++more)
     fill(stages->dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 2.0 ? 0.12 : 0.18; });
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace();
   REQUIRE(stages->tracer.curbs().size() == 2);
   int same = 0;
@@ -558,7 +558,7 @@ TEST_CASE("curb tracer: clutter makes no curb, the ground beside it does") {
   Noise noise;
   auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [&](double x, double y) { return x < 0.8 ? 0.0 : y < 1.2 ? 0.3 * noise.uniform() : 0.12; });
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace();
   REQUIRE_FALSE(stages->tracer.curbs().empty());
   for (const Curb& curb : stages->tracer.curbs()) {
@@ -590,7 +590,7 @@ TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across 
   for (const Point& p :
        test::sample({1 + 0.1 * gap, 2.4, 0, 2.4}, 0.05, 0.003, noise, [](double, double) { return 0.12; }))
     stages->dem.add(p);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace();
   if (gap == 5) {
     CHECK(stages->tracer.curbs().empty());
@@ -625,7 +625,7 @@ TEST_CASE("curb tracer: a curb goes on for two cells where one side is not seen,
     map({1.4, 2.4, 0, 1.6}, {.height_m = 0.12});
     map({0, 1.4, 1.6, 2.4}, near);
     map({1.4, 2.4, 1.6, 2.4}, far);
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     stages.trace(0.0f, 1.2f);
     float furthest_m = 0.0f;
     for (const Curb& curb : stages.tracer.curbs()) {
@@ -659,7 +659,7 @@ TEST_CASE(
   for (const Point& p :
        test::sample({1.4, 2.4, 0, kerb.seen_to_m}, 0.05, 0.0005, noise, [&](double, double y) { return step_m(y); }))
     stages.dem.add(p);
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   stages.trace(0.0f, 1.2f);
   float end_m = 0.0f;
   for (const Curb& curb : stages.tracer.curbs()) {
@@ -761,7 +761,7 @@ TEST_CASE("curb tracer: the probability of a curb is that of the cells beside it
       Noise noise(seed);
       const auto ground = [=](double x, double) { return x < 1.2 ? 0.0 : step_m; };
       for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, noise_m, noise, ground)) stages.dem.add(p);
-      for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+      stages.settle();
       stages.trace(0.0f, 1.2f);
       for (const Curb& curb : stages.tracer.curbs()) {
         sum += length_m(curb) * curb.probability;
@@ -784,7 +784,7 @@ TEST_CASE(
     auto stages = std::make_unique<Stages<>>(small_settings());
     stages->dem.look_from(1.2f, 0.0f);
     fill(stages->dem, ground);
-    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->settle();
     stages->dem.look_from(1.2f, robot_y_m);
     stages->trace(1.2f, robot_y_m);
     REQUIRE(stages->tracer.curbs().size() == 1);
@@ -851,7 +851,7 @@ TEST_CASE("curb tracer: an edge along x lies before its shadow from where it was
        test::sample({0.0, 2.4, 0.0, 2.4}, 0.02, 0.005, noise, [](double, double y) { return y < 1.2 ? 0.12 : 0.0; })) {
     if (p.y_m < 1.2f || p.y_m > 1.2 + hidden_m) stages->dem.add(p);
   }
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   for (const float robot_y_m : {-0.8f, 0.9f, 1.9f}) {
     stages->dem.look_from(1.2f, robot_y_m);
     stages->trace(1.2f, robot_y_m);
@@ -871,7 +871,7 @@ TEST_CASE("curb tracer: from a table that it stands on a robot is told the drops
           const double along = turned ? y : x;
           return map_m + (along > 0.8 && along < 1.6 ? 0.35 : 0.0);
         });
-        for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+        stages.settle();
         stages.trace(turned ? 1.2f : static_cast<float>(robot_m), turned ? static_cast<float>(robot_m) : 1.2f);
         for (const Curb& curb : stages.tracer.curbs()) CHECK(curb.kind == CurbKind::step_down);
         return stages.tracer.curbs().size();
@@ -913,7 +913,7 @@ TEST_CASE("curb tracer: an oblique face is as wide as across it") {
   Noise noise;
   const auto face = [=](double x, double y) { return 1.2 * std::clamp(nx * (x - 1.2) + ny * (y - 1.2), 0.0, 0.1); };
   for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, face)) stages->dem.add(p);
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->trace(0.0f, 0.0f);
   const auto curbs = stages->tracer.curbs();
   const auto longest = std::max_element(curbs.begin(), curbs.end(),

@@ -19,7 +19,7 @@ class GroundLabelTest {
  public:
   GroundLabelTest() : stages_(test::small_settings()) {
     test::fill(stages_.dem, [](double x, double) { return x < 1.4 ? 0.0 : -0.12; });
-    for (int pass = 0; pass < 3; ++pass) stages_.infer(true);
+    stages_.settle();
     near_ = stages_.label_at(0, 0);
     far_ = stages_.label_at(23, 0);
     REQUIRE(near_ != far_);
@@ -92,7 +92,7 @@ TEST_CASE("ground label: the ground under a cell is told wherever the window lie
   settings.window.origin_y_m = 30.0f;
   Stages<small_limits> stages(settings);
   test::fill(stages.dem, [](double, double y) { return y < 31.4 ? 0.0 : -0.12; });
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   const Label near = stages.label_at(0, 0), far = stages.label_at(0, 23);
   REQUIRE(near != far);
   const auto at = [&](int j, float step_y_m) {

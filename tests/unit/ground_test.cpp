@@ -22,7 +22,7 @@ std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
   stages.view = view;
   fill(stages.dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   std::set<int> labels;
   stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
   return labels.size();
@@ -68,7 +68,7 @@ TEST_CASE("ground: a strip that rises is ground, not the face of a curb, however
       return x < from_x_m ? 0.0 : x < 1.3 ? 0.05 * (x - from_x_m) / (1.3 - from_x_m) : 0.05;
     };
     for (int scan = 0; scan < 16; ++scan) fill(stages.dem, rising, 0.01);
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     return stages.mixture.on_ground(stages.dem.slot(12, 12));
   };
   CHECK(is_ground(1.0));
@@ -269,7 +269,7 @@ TEST_CASE("ground: readings in the shadow of a step stay what they are when the 
     fill(stages.dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; });
     stages.dem.look_from(robot_x_m, 1.2f);
     stages.view.x_m = robot_x_m;
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     std::set<int> labels;
     stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
     return labels.size();
@@ -316,7 +316,7 @@ TEST_CASE(
     see(false);
     look_from(robot_x_m);
     see(true);
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     std::set<int> labels;
     stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
     return labels.size();
@@ -332,7 +332,7 @@ TEST_CASE("ground: the face of a curb is one in a window that is longer than wid
       return (along < 0.55 ? 0.0 : 0.05) + (along > 1.2 && across > 0.55 ? 0.05 : 0.0);
     };
     fill(stages.dem, [&](double x, double y) { return rows > cols ? ground(x, y) : ground(y, x); });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     std::set<int> labels;
     stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
     return labels.size();
@@ -391,7 +391,7 @@ TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is 
     Stages<small_limits> stages(small_settings());
     stages.view = {0.0f, 1.2f, 1.0f, 8.0f, 8.0f};
     fill(stages.dem, [=](double x, double) { return x < 2.0 ? -hill * x : -hill * 2.0 + 0.06 - strip * (x - 2.0); });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     return stages.mixture.may_be_veil(stages.label_at(22, 12));
   };
   CHECK(may_blur(0.0, 0.15));
@@ -565,7 +565,7 @@ bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_
   Stages<small_limits> stages(small_settings());
   stages.view = view;
   fill(stages.dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   const Label label =
       stages.mixture.region_label(stages.dem.slot_within(static_cast<float>(x_m), static_cast<float>(y_m)));
   REQUIRE(label != no_label);
@@ -621,7 +621,7 @@ TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fr
       if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
       return x < 0.9 ? 0.0 : 0.05 + lean * (x - 1.05);
     });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     REQUIRE(stages.mixture.region_label(stages.dem.slot(10, 12)) != no_label);
     return stages.mixture.covered(stages.dem.slot(10, 12));
   };
@@ -713,7 +713,7 @@ TEST_CASE("ground: what stands on the ground is measured against the largest pla
   stages.infer(true);
   const int platform = stages.label_at(2, 12);
   fill(stages.dem, [&](double x, double y) { return x < 0.4 ? std::nan("") : box_and_platform(x, y); });
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   CHECK(stages.label_at(2, 12) == platform);
   REQUIRE(stages.label_at(20, 2) != platform);
   CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells bear the road

@@ -215,7 +215,7 @@ TEST_CASE("label field: the ground below an obstacle is that of the cells around
     if (stands(x, y)) return 0.3 + (static_cast<int>(y * 100) % 10 < 5 ? -0.2 : 0.2);
     return x < 1.0 ? 0.10 : 0.0;
   });
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   const auto road = stages.label_at(20, 2);
   CHECK(stages.label_at(2, 2) != road);
   int on_road = 0;

@@ -102,7 +102,7 @@ TEST_CASE("line intake: ground that a localisation has stepped to above the ceil
   settings.pose = test::noisy_poses();
   Intake in(settings);
   test::fill(in.stages->dem, [](double, double) { return 0.043; });  // of 41 to 46 mm, as the laser sees it
-  for (int pass = 0; pass < 3; ++pass) in.stages->infer(true);
+  in.stages->settle();
   add_poses(in, 0.3f);
   REQUIRE(in.place(141 * ms) == Status::ok);
   REQUIRE(in.intake->pose_offset().undecided());

@@ -23,7 +23,7 @@ float slope_m(float x_m) {
 struct Late {
   Late() {
     test::fill(stages->dem, [](double x, double) { return static_cast<double>(slope_m(static_cast<float>(x))); });
-    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->settle();
     stages->dem.begin_sweep();
     const Settings settings = test::small_settings();
     latency.init(settings.tilt, settings.pose);
@@ -67,7 +67,7 @@ TEST_CASE("map comparison: a point is compared where it lies, not where its cell
   test::fill(stages->dem, [&](double x, double y) {
     return static_cast<double>(ground_m(static_cast<float>(x), static_cast<float>(y)));
   });
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   stages->dem.begin_sweep();
   const Settings settings = test::small_settings();
   TiltLatency latency;
@@ -136,7 +136,7 @@ TEST_CASE("map comparison: points above the ceiling and beside the window are as
 struct Jumping {
   Jumping() {
     test::fill(stages->dem, [](double, double) { return 0.0; });
-    for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+    stages->settle();
     stages->dem.begin_marking();
     const Settings settings = test::small_settings();
     latency.init(settings.tilt, settings.pose);

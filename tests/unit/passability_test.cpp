@@ -18,7 +18,7 @@ template <typename Height>
 bool cell_passable(Height&& height_m, int i, const Mobility& mobility) {
   Stages<small_limits> stages(small_settings());
   fill(stages.dem, height_m);
-  for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+  stages.settle();
   return passable(stages.dem, stages.mixture, stages.field, i, 12, mobility);
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("passability: a step beside a cell is in the way on any side of it, ac
       }
       return at(x, 12 + away * to_x) && at(y, 12 + away * to_y) ? 0.12 : 0.0;
     });
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     const auto& s = stages;
     CHECK(passable(s.dem, s.mixture, s.field, 12, 12, {0.15f, 0.1f}));
     return passable(s.dem, s.mixture, s.field, 12, 12, {0.05f, 0.1f});
@@ -114,7 +114,7 @@ TEST_CASE("passability: what spreads within a cell by more than the step is in t
       stages.dem.add({1.23f + 0.0001f * static_cast<float>(k), 1.25f,
                       static_cast<float>(spread_m * ((k % 20) / 19.0 - 0.5)), 1e-4f});
     }
-    for (int pass = 0; pass < 3; ++pass) stages.infer(true);
+    stages.settle();
     return passable(stages.dem, stages.mixture, stages.field, 12, 12, {max_step_m, 0.1f});
   };
   CHECK(with_spread(0.03, 0.02f));  // of a laser of 1 cm

@@ -328,7 +328,7 @@ TEST_CASE("plane mixture: something stands where a box's level top is, and where
     if (x > 1.8 && x < 2.0 && y > 0.4 && y < 0.6) return static_cast<int>(y * 100) % 10 < 5 ? 0.0 : 0.3;
     return y < 1.8 ? 0.0 : 0.12;
   });
-  for (int pass = 0; pass < 3; ++pass) stages->infer(true);
+  stages->settle();
   const auto obstructed = [&](int i, int j) { return stages->mixture.obstructed(stages->dem, stages->dem.slot(i, j)); };
   CHECK(obstructed(12, 12));
   CHECK(obstructed(18, 4));
