@@ -15,6 +15,7 @@
 #include "curbline/tilt_reading.hpp"     // in: a servo angle
 #include "curbline/tilt_track.hpp"       // they over time
 #include "curbline/tilt_watch.hpp"       // whether the servo is alive
+#include "curbline/line_clock.hpp"       // lines that bear the time of their arrival
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt
 #include "curbline/sweep_turns.hpp"      // where the servo turns round
 #include "curbline/tilt_latency.hpp"     // how late they are, found on the way
