@@ -108,6 +108,7 @@ void Daemon::run() {
   started_ns_ = now.steady_ns;
   if (log_ && tilt_settings_.fixed) fixed_offset_ns_ = log_->front_ns() - now.host_ns;
   if (scanner_) scanner_->start();
+  if (log_ && !log_->remarks().empty()) say(log_->remarks());
   if (!clock_.guess().empty()) say(clock_.guess());
   if (has_bus_ && tilt_settings_.fixed && !can_out_) say("the tilt is fixed: nothing is read from --can");
   say("ready, curbs at ", server_.address());

@@ -1,13 +1,13 @@
 #include "scan_log.hpp"
 
+#include "formats/laser_log.hpp"
+
 namespace curbline::daemon {
 
 ScanLog::ScanLog(const std::string& path, const LaserSettings& laser) : laser_(laser) {
-  tools::CarmenReader reader(path);
-  while (auto line = reader.next()) {
-    check_geometry(*line, laser, reader.path(), reader.line());
-    lines_.push_back(std::move(*line));
-  }
+  tools::LaserLog log(path, laser);
+  while (auto line = log.next()) lines_.push_back(std::move(*line));
+  remarks_ = log.remarks();
 }
 
 std::int64_t ScanLog::due_ns() const {

@@ -27,10 +27,13 @@ class ScanLog {
 
   ScanLine take();
 
+  const std::string& remarks() const { return remarks_; }  ///< LaserLog::remarks()
+
  private:
   std::vector<tools::CarmenLine> lines_;
   std::size_t next_ = 0;
   LaserSettings laser_;
+  std::string remarks_;
 };
 
 }  // namespace curbline::daemon

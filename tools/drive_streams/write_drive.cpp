@@ -8,7 +8,7 @@
 #include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/can_log.hpp"
-#include "formats/carmen.hpp"
+#include "formats/laser_log.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 
@@ -40,7 +40,7 @@ void clear_room(std::optional<T>& value) {
 class DriveWriter {
  public:
   explicit DriveWriter(const DriveFiles& files)
-      : robot_(read_robot(files.robot)), scans_(files.scans), out_(files.out) {
+      : robot_(read_robot(files.robot)), scans_(files.scans, robot_.laser), out_(files.out) {
     if (!files.poses.empty()) robot_.pose.still = false;
     if (!robot_.tilt.fixed && files.can.empty())
       throw BadInput("no tilt log for a laser that nods; expected --can LOG");
@@ -58,7 +58,6 @@ class DriveWriter {
     clear_room(setup.tilt_sync_id);
     put(RecordKind::setup, setup);
     while (const auto line = scans_.next()) {
-      check_geometry(*line, robot_.laser, scans_.path(), scans_.line());
       const std::int64_t last_beam_ns = line->time_ns + robot_.laser.duration_ns(line->ranges_m.size());
       put_frames(last_beam_ns +
                  static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
@@ -110,7 +109,7 @@ class DriveWriter {
   }
 
   Robot robot_;
-  CarmenReader scans_;
+  LaserLog scans_;
   std::optional<CanLogReader> can_;
   std::optional<TrajectoryReader> poses_;
   AtomicFile out_;

@@ -200,6 +200,7 @@ std::string Replay::remarks() const {
   const auto say = [&](const std::string& log, const std::string& what) {
     text += (text.empty() ? "" : "\n") + log + ": " + what;
   };
+  if (const std::string of_scans = scans_->remarks(); !of_scans.empty()) text += (text.empty() ? "" : "\n") + of_scans;
   const auto add = [&](const std::string& log, long count, const std::string& what) {
     if (count > 0) say(log, std::to_string(count) + " of " + what);
   };

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "formats/bad_input.hpp"
+#include "formats/laser_log.hpp"
 #include "scanner/live_scanner.hpp"
 
 namespace curbline::tools {
@@ -38,17 +39,13 @@ class InterruptWatch {
 
 class LogSource final : public ScanSource {
  public:
-  LogSource(const std::string& path, const LaserSettings& laser) : reader_(path), laser_(laser) {}
+  LogSource(const std::string& path, const LaserSettings& laser) : log_(path, laser) {}
 
-  std::optional<CarmenLine> next() override {
-    auto line = reader_.next();
-    if (line) check_geometry(*line, laser_, reader_.path(), reader_.line());
-    return line;
-  }
+  std::optional<CarmenLine> next() override { return log_.next(); }
+  std::string remarks() const override { return log_.remarks(); }
 
  private:
-  CarmenReader reader_;
-  LaserSettings laser_;
+  LaserLog log_;
 };
 
 class LiveSource final : public ScanSource {

@@ -1,4 +1,5 @@
-// Where replay has its scan lines from: a CARMEN log, or a scanner that is read live over its own protocol:
+// Where replay has its scan lines from: a CARMEN log (laser_log.hpp), or a scanner that is read live over its own
+// protocol:
 //   scip2:HOST[:PORT]   Hokuyo SCIP 2.0 over TCP (port 10940)
 //   cola:HOST[:PORT]    SICK CoLa B over TCP (port 2112)
 //   lms200:DEVICE       SICK LMS2xx on a serial line
@@ -30,6 +31,9 @@ class ScanSource {
   /// CarmenReader does, for a scanner that sends nothing within a few seconds, and where the beams are others than the
   /// robot's.
   virtual std::optional<CarmenLine> next() = 0;
+
+  /// What a user should know at the end of how lines came; empty if all is well.
+  virtual std::string remarks() const { return {}; }
 };
 
 /// `log_time_ns`: a time in the logs that belong to the lines; nothing if there is none, or CAN is live. Throws

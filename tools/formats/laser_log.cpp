@@ -1,0 +1,28 @@
+#include "formats/laser_log.hpp"
+
+namespace curbline::tools {
+
+LaserLog::LaserLog(const std::string& path, const LaserSettings& laser) : reader_(path), laser_(laser) {
+  clock_.init(laser);
+}
+
+std::optional<CarmenLine> LaserLog::next() {
+  while (auto line = reader_.next()) {
+    check_geometry(*line, laser_, reader_.path(), reader_.line());
+    const auto time_ns = clock_.time_of(line->time_ns);
+    if (!time_ns) continue;
+    line->time_ns = *time_ns;
+    return line;
+  }
+  return std::nullopt;
+}
+
+std::string LaserLog::remarks() const {
+  if (clock_.set_back() + clock_.left_out() == 0) return {};
+  std::string text = reader_.path() + ": the stamps of " + std::to_string(clock_.set_back()) +
+                     " scan lines are late, and were set back to the laser's turns";
+  if (clock_.left_out() > 0) text += "; " + std::to_string(clock_.left_out()) + " were left out, of no turn for sure";
+  return text;
+}
+
+}  // namespace curbline::tools
