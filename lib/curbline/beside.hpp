@@ -30,6 +30,26 @@ struct Beside {
   }
 };
 
+/// How far the ground of a side lies above its plane, as cells tell that lie a little farther from the border than
+/// those that may mix both sides: a plane may hold more than one surface, as a crease too weak to part leaves it, and
+/// lies off both, all along a curb.
+struct GroundAlong {
+  /// Cells from the one that a border lies in.
+  static constexpr int nearest = 2, farthest = 5;
+
+  float above_m = 0.0f;      ///< what chance makes, two standard deviations, is taken off
+  float share = 0.0f;        ///< of what they say: that much of how well the plane is known is how well they know it
+  float variance_m2 = 0.0f;  ///< of what they say, each cell one observation
+
+  /// Of their number and the sum of how far they lie above the plane.
+  static GroundAlong of(float cells, float above_m, const Plane& plane) {
+    if (!(cells > 0.0f)) return {};
+    const float mean_m = above_m / cells, variance_m2 = plane.fit_variance_m2 / cells;
+    const float share = square(mean_m) > 4.0f * variance_m2 ? 1.0f - 4.0f * variance_m2 / square(mean_m) : 0.0f;
+    return {share * mean_m, share, variance_m2};
+  }
+};
+
 /// By how much the ground of a side lies farther from the other side than its plane does, on the mean of the borders,
 /// and the variance of that. Below 0 it lies nearer.
 struct Deviation {

@@ -190,15 +190,10 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
 /// than the side's plane may lie before them.
 template <Limits limits>
 Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
-  const PlaneMixture<limits>& mixture = stages_.mixture;
-  const Plane& plane = mixture.plane(label);
+  const Plane& plane = stages_.mixture.plane(label);
   const float slope_m2 = line.dem.slope_m2(plane);
   const auto lies_alone = [&](int along) {
-    if (along < 0 || along >= line.cells()) return false;
-    const int s = line.slot(along);
-    const Cell& cell = line.dem.cell(s);
-    return cell.valid() && stages_.field.label(s) == label && mixture.region_label(s) != no_label &&
-           mixture.on_ground(s) && !line.dem.mixed(cell, slope_m2);
+    return along >= 0 && along < line.cells() && stages_.holds_alone(line.slot(along), label, slope_m2);
   };
   const float border = border_m / line.pitch_m();
   int nearer = static_cast<int>(border) + toward;

@@ -1,9 +1,10 @@
 // Makes a curb of a straight part of a chain of borders: what kind it is and how high, by its planes and by the ground
 // beside it; where it lies, which of a step down is before its shadow; and how well all of that is known. Cost: 60
-// operations a border, and a pass over the window where there is a deep drop.
+// operations a border, eight cells beside each border of a step, and a pass over the window where there is a deep drop.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "curbline/curb.hpp"
 #include "curbline/curb_piece.hpp"
 #include "curbline/curb_stages.hpp"
+#include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -46,13 +49,14 @@ class CurbMaker {
   Curb as_planes_tell(const Piece& piece) const;
   float leave_shadow(const Part& part, Curb& curb, Piece& piece) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
+  GroundAlong ground_along(const Part& part, Label label) const;
+  void follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const;
   void follow_ground_beside(const Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const;
   struct Deviations {
     Deviation low, high;
   };
   Deviations deviations_of(const Piece& piece, float height_m, float shadow_m) const;
-  float height_variance_m2(const Piece& piece, float hidden_m) const;
-  float more_from_afar_m2(const Plane& plane, const Piece& piece) const;
+  float plane_variance_m2(const Plane& plane, const Piece& piece) const;
   static float place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2);
   bool obstacle(const Curb& curb, const Piece& piece);
   const Plane& nearest_ground();
@@ -71,13 +75,21 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   Curb curb = as_planes_tell(piece);
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a row's or column's alone is no line
-  float variance_m2 = height_variance_m2(piece, one_sided ? curb.height_m : 0.0f);
+  // The errors of a plane are common to the piece: they do not average out. Behind a brink as much again as is seen may
+  // be hidden, or less, evenly.
+  float variance_m2 = plane_variance_m2(piece.planes.low, piece) + plane_variance_m2(piece.planes.high, piece) +
+                      (one_sided ? square(curb.height_m) * (1.0f / 3) : 0.0f);
   float shadow_m = 0.0f;
   if (is_step(curb)) {
-    if (!one_sided) shadow_m = leave_shadow(part, curb, piece);
+    if (!one_sided) {
+      shadow_m = leave_shadow(part, curb, piece);
+      follow_ground(part, piece, curb, variance_m2);
+    }
     follow_ground_beside(piece, shadow_m, curb, variance_m2);
   }
   if (obstacle(curb, piece)) return std::nullopt;
+  // Planes of different slope differ as much as the borders' place does.
+  variance_m2 += square(piece.planes.slope_across(piece.line)) * piece.place_variance_m2;
   curb.position_sd_m = square_root(place_variance_m2(piece, curb, variance_m2));
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;
@@ -98,7 +110,7 @@ Curb CurbMaker<limits>::as_planes_tell(const Piece& piece) const {
   const float height_m = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
   const Deviations sides = deviations_of(piece, height_m, 0.0f);
   const float too_far_m2 = sides.low.too_far_m2(piece.borders) + sides.high.too_far_m2(piece.borders);
-  const float height_sd_m = square_root(piece.variance_m2 + too_far_m2);
+  const float height_sd_m = square_root(piece.variance_m2(low) + piece.variance_m2(high) + too_far_m2);
   curb.kind =
       kind_of(low, high, piece.line,
               {height_m, height_sd_m, piece.half_gap_m, piece.place_variance_m2, stages_.dem.prior().texture_m2});
@@ -139,6 +151,44 @@ float CurbMaker<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) {
   return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
 }
 
+/// As the cells of a side tell that lie a little farther from the borders of a piece.
+template <Limits limits>
+GroundAlong CurbMaker<limits>::ground_along(const Part& part, Label label) const {
+  const Dem<limits>& dem = stages_.dem;
+  const Plane& plane = stages_.mixture.plane(label);
+  const float slope_m2 = dem.slope_m2(plane);
+  float cells = 0.0f, above_m = 0.0f;
+  for (const Border& border : part) {
+    const auto d = static_cast<std::size_t>(direction(border.axis, label == border.high ? border.sign : -border.sign));
+    int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
+    for (int k = 1; k <= GroundAlong::farthest; ++k) {
+      i += step_i[d];
+      j += step_j[d];
+      if (!dem.contains(i, j)) break;
+      const int s = dem.slot(i, j);
+      if (k < GroundAlong::nearest || !stages_.holds_alone(s, label, slope_m2)) continue;
+      cells += 1.0f;
+      above_m += dem.above_m(i, j, dem.cell(s), plane);
+    }
+  }
+  return GroundAlong::of(cells, above_m, plane);
+}
+
+/// A step is as high as the ground along it, where that lies off the planes. What the cells next to it lie off is then
+/// told from there.
+template <Limits limits>
+void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const {
+  for (const bool high : {false, true}) {
+    const Plane& plane = high ? piece.planes.high : piece.planes.low;
+    const GroundAlong ground = ground_along(part, high ? piece.first.high : piece.first.low);
+    curb.height_m += high == piece.low_is_near ? ground.above_m : -ground.above_m;
+    variance_m2 += ground.share * (ground.variance_m2 - plane_variance_m2(plane, piece));
+    Beside& beside = high ? piece.beside_high : piece.beside_low;
+    beside.off_m -= beside.borders * ground.above_m;
+  }
+  curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
+}
+
 /// A step is as high as the ground beside it, where that lies off the planes, and as well known.
 template <Limits limits>
 void CurbMaker<limits>::follow_ground_beside(const Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const {
@@ -161,24 +211,12 @@ auto CurbMaker<limits>::deviations_of(const Piece& piece, float height_m, float 
           deviation(piece.beside_high, piece.planes.high, up, beyond_cells, common_m2)};
 }
 
-/// The errors of a plane are common to the piece: they do not average out. Planes of different slope differ as much as
-/// the border's place does. Behind a brink as much again as is seen, `hidden_m`, may be hidden, or less, evenly.
+/// Of a plane's height beside a piece. Its fit takes what cells share for the same wherever they lie: it is no less
+/// than how far and how often they were seen makes it.
 template <Limits limits>
-float CurbMaker<limits>::height_variance_m2(const Piece& piece, float hidden_m) const {
-  const auto [low, high] = piece.planes;
-  const float slope =
-      (high.slope_x - low.slope_x) * piece.line.normal_x + (high.slope_y - low.slope_y) * piece.line.normal_y;
-  return piece.variance_m2 + more_from_afar_m2(low, piece) + more_from_afar_m2(high, piece) +
-         square(slope) * piece.place_variance_m2 + square(hidden_m) * (1.0f / 3);
-}
-
-/// By how much more a plane errs beside a piece than its fit says, which takes what cells share for the same wherever
-/// they lie.
-template <Limits limits>
-float CurbMaker<limits>::more_from_afar_m2(const Plane& plane, const Piece& piece) const {
+float CurbMaker<limits>::plane_variance_m2(const Plane& plane, const Piece& piece) const {
   const float reach_m2 = stages_.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
-  const float more_m2 = stages_.dem.common_m2(reach_m2) - plane.fit_variance_m2;
-  return more_m2 > 0.0f ? more_m2 / plane.fit_variance_m2 * plane.height_variance_m2(piece.x_m, piece.y_m) : 0.0f;
+  return std::max(1.0f, stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2) * piece.variance_m2(plane);
 }
 
 /// Of a piece's middle, across it.

@@ -30,6 +30,10 @@ struct PlanePair {
     const float change_m = (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
     return change_m >= -most_change_m && change_m <= most_change_m;
   }
+  /// How much steeper the one is across a line: where that lies tells how far they differ there.
+  float slope_across(const LineFit::Segment& line) const {
+    return (high.slope_x - low.slope_x) * line.normal_x + (high.slope_y - low.slope_y) * line.normal_y;
+  }
 };
 
 /// Borders that lie on one line; means of what they tell.
@@ -47,8 +51,8 @@ struct CurbPiece {
   const Border& first;  ///< all of them part the same planes
   PlanePair planes;
   LineFit::Segment line{};
-  float x_m = 0.0f, y_m = 0.0f;             ///< mean of the borders
-  float drop_m = 0.0f, variance_m2 = 0.0f;  ///< of a brink; of the height of the one plane above the other
+  float x_m = 0.0f, y_m = 0.0f;  ///< mean of the borders
+  float drop_m = 0.0f;           ///< of a brink
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
   float borders;                       ///< how many
@@ -71,6 +75,8 @@ struct CurbPiece {
   bool one_sided() const { return first.high == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
   float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
+  /// Of a plane's height in the middle.
+  float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
 
   enum class End : std::uint8_t { first, second };  ///< of its line
   /// Where one of its sides is not seen no border tells of a line. From the end of a chain it goes on cell by cell, as
@@ -128,8 +134,6 @@ void CurbPiece<limits>::take_means(const Part& part) {
   for (const Border& border : part) {
     const float each = part.share(border) / observations;
     drop_m += each * border.drop_m;
-    variance_m2 += each * (planes.high.height_variance_m2(border.x_m, border.y_m) +
-                           planes.low.height_variance_m2(border.x_m, border.y_m));
     probability += each * border.probability;
     half_gap_m += each * border.half_gap_m;
     beside_low.add(border.beside_low);

@@ -32,6 +32,13 @@ struct CurbStages {
     const Label label = field.label(slot);
     return mixture.on_ground(slot) ? label != no_label && mixture.may_be_veil(label) : !mixture.covered(slot);
   }
+  /// Does a cell bear a plane, and do its heights spread no more than noise and the plane's slope (Dem::slope_m2())
+  /// make them? Then it holds nothing else.
+  [[gnu::noinline]] bool holds_alone(int slot, Label label, float slope_m2) const {
+    const Cell& cell = dem.cell(slot);
+    return cell.valid() && field.label(slot) == label && mixture.region_label(slot) != no_label &&
+           mixture.on_ground(slot) && !dem.mixed(cell, slope_m2);
+  }
   /// Within three standard deviations.
   [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const {  // as CellLine::slot()
     const float residual = dem.above_m(i, j, cell, plane);

@@ -53,5 +53,18 @@ TEST_CASE("beside: what the cells beside one border say is no doubt about all th
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).too_far_m2(10.0f) == 0.0f);
 }
 
+TEST_CASE("beside: cells along a border tell how far the ground lies off its plane, less two deviations of chance") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  const GroundAlong ground = GroundAlong::of(4.0f, 4 * 0.002f, plane);
+  CHECK(ground.variance_m2 == Approx(0.25e-6));
+  CHECK(ground.share == Approx(0.75));  // 1 - 4 * 0.25 / 2^2
+  CHECK(ground.above_m == Approx(0.0015));
+  CHECK(GroundAlong::of(4.0f, -4 * 0.002f, plane).above_m == Approx(-0.0015));
+  CHECK(GroundAlong::of(4.0f, 4 * 0.00099f, plane).above_m == 0.0f);
+  CHECK(GroundAlong::of(4.0f, 4 * 0.00099f, plane).share == 0.0f);
+  CHECK(GroundAlong::of(0.0f, 0.0f, plane).share == 0.0f);
+}
+
 }  // namespace
 }  // namespace curbline
