@@ -83,7 +83,7 @@ void PoseOffset::open(const PoseShift& stepped, float height_variance_m2, float 
 }
 
 void PoseOffset::settle() {
-  if (undecided_ && evidence_ > 0.0f) offset_ = stepped_;
+  if (likelier_) offset_ = stepped_;
   undecided_ = likelier_ = false;
 }
 
