@@ -52,7 +52,7 @@ class LineIntake {
   /// The points of a line that has been placed, compared with ground that was mapped before: whose a jump of the poses
   /// was, and how late the tilt is. What the latency turns out to be moves the map. False if the line was measured as
   /// poses jumped, and the map says that it does not lie where they have it: a ridge as high as the jump, of a single
-  /// line.
+  /// line. Where the map says nothing points that may be one are left out.
   bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                Counters& counters);
 
@@ -145,8 +145,11 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
   if (!motion.jumps.any()) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
-  } else if (!pose_track_.climbs() && map.lies_off(work.projected, motion.jumps, tilt_latency_, pose_offset_)) {
-    return false;
+  } else {
+    using JumpLine = typename MapComparison<limits>::JumpLine;
+    const JumpLine lies = map.check_jump(work.projected, motion, tilt_latency_, pose_offset_);
+    counters.lines_off_map += lies != JumpLine::on_map;
+    if (lies == JumpLine::off_map) return false;
   }
   if (line_projection_.tilt().fixed) return true;
   map.follow_latency(work.projected, motion, pose_offset_, tilt_latency_);

@@ -47,6 +47,16 @@ class ProjectedLine {
   ProjectedLine() {}
   void add(const Point& point) { ::new (static_cast<void*>(points_.data() + count_++)) Point(point); }
   void leave_out() { ++outside_; }
+  /// Leaves out the points of which that is true; false if it is of none.
+  template <typename Of>
+  bool leave_out_if(Of&& of) {
+    const std::size_t before = count_;
+    count_ = 0;
+    for (std::size_t i = 0; i < before; ++i) {
+      if (!of(points_[i])) points_[count_++] = points_[i];
+    }
+    return count_ < before;
+  }
   std::span<const Point> points() const { return {points_.data(), count_}; }
   std::span<Point> points() { return {points_.data(), count_}; }
   /// How many have returned from outside the bounds.

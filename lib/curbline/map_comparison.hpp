@@ -28,9 +28,12 @@ class MapComparison {
   /// the line back by what is known then.
   void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
 
-  /// Of a line that is measured while poses jump: do points lie off the map, the same way, by as much as they jump?
-  bool lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps, const TiltLatency& latency,
-                const PoseOffset& offset) const;
+  /// Where does a line lie that is measured while poses jump? Off the map if all of it is off, the same way, by as much
+  /// as they jump. If too little of it lies where the map knows the ground, in part: points are left out that may be
+  /// off by more than the points of a place share of their noise.
+  enum class JumpLine : unsigned char { on_map, in_part, off_map };
+  JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, const TiltLatency& latency,
+                      const PoseOffset& offset) const;
 
   /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
   void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
@@ -64,12 +67,15 @@ void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, const TiltL
 }
 
 template <Limits limits>
-bool MapComparison<limits>::lies_off(const ProjectedLine<limits>& line, const PoseJumps& jumps,
-                                     const TiltLatency& latency, const PoseOffset& offset) const {
-  PoseOffset suspect = offset.suspecting(jumps);
+auto MapComparison<limits>::check_jump(ProjectedLine<limits>& line, const LineMotion& motion,
+                                       const TiltLatency& latency, const PoseOffset& offset) const -> JumpLine {
+  PoseOffset suspect = offset.suspecting(motion.jumps);
   compare(line, latency, suspect);
   suspect.end_line();
-  return suspect.likelier();
+  if (suspect.compared()) return suspect.likelier() ? JumpLine::off_map : JumpLine::on_map;
+  const float common_m2 = dem_.prior().common_m2();
+  const bool any = line.leave_out_if([&](const Point& p) { return motion.blur_m2(p.x_m, p.y_m) > common_m2; });
+  return any ? JumpLine::in_part : JumpLine::on_map;
 }
 
 template <Limits limits>

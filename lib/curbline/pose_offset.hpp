@@ -47,6 +47,8 @@ class PoseOffset {
 
   /// The line is over. What is to be added to its heights, about where the robot is.
   PoseShift end_line();
+  /// Of the line that has ended: did half of it lie on ground that was mapped before?
+  bool compared() const { return compared_; }
 
   /// What is added to poses, about where the robot is.
   const PoseShift& offset() const { return likelier_ ? stepped_ : offset_; }
@@ -78,7 +80,8 @@ class PoseOffset {
   bool undecided_ = false;
   bool confirmed_ = false;  ///< it was a step
   bool likelier_ = false;   ///< the localisation has made it
-  float evidence_ = 0.0f;   ///< ln of how much likelier that is
+  bool compared_ = false;
+  float evidence_ = 0.0f;  ///< ln of how much likelier that is
   Sums seen_{};
   int points_ = 0;  ///< of the line in hand
   float height_variance_m2_ = 0.0f, attitude_variance_ = 0.0f;

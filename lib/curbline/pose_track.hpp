@@ -91,8 +91,6 @@ class PoseTrack {
   /// What the next of the poses not asked yet says of a step; nothing if none says anything, as far as they are not
   /// later than a line's first beam. O(1) a pose.
   std::optional<PoseStepNews> next_step(std::int64_t until_ns);
-  /// By the poses that were asked: do they jump on end, as a robot's do that climbs?
-  bool climbs() const { return moves_; }
 
   const Pose& newest() const { return back(0); }
 

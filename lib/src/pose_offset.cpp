@@ -142,7 +142,8 @@ PoseShift PoseOffset::end_line() {
   const int points = points_;
   seen_ = Sums{};
   points_ = 0;
-  if (s.points == 0 || 2 * s.points < points) return {};
+  compared_ = s.points > 0 && 2 * s.points >= points;
+  if (!compared_) return {};
   const PoseShift before = offset();
   const float x = s.x / s.w, y = s.y / s.w, z = s.z / s.w;
   const float xx = s.xx - s.x * x, xy = s.xy - s.x * y, yy = s.yy - s.y * y;

@@ -143,15 +143,30 @@ struct Jumping {
     offset.init(test::noisy_poses());
     offset.follow(0.0f, 1.2f);
   }
-  /// Is a line across, with its points so high, off the map?
-  bool off(float above_m, float slope_y = 0.0f) const {
-    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
-    auto line = std::make_unique<ProjectedLine<small_limits>>();
+  using Line = ProjectedLine<small_limits>;
+  using JumpLine = MapComparison<small_limits>::JumpLine;
+  /// A line across, with its points so high.
+  static std::unique_ptr<Line> line(float above_m, float slope_y = 0.0f) {
+    auto line = std::make_unique<Line>();
     for (int j = 0; j < 24; ++j) {
       const float y_m = 0.1f * static_cast<float>(j) + 0.05f;
       line->add({1.25f, y_m, above_m + slope_y * (y_m - 1.2f), 1e-4f});
     }
-    return map.lies_off(*line, {square(0.02f), square(0.007f)}, latency, offset);
+    return line;
+  }
+  JumpLine check(Line& line, float attitude_rad = 0.007f, float height_m = 0.02f) const {
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
+    LineMotion motion;
+    motion.still = false;
+    motion.jumps = {square(height_m), square(attitude_rad)};
+    motion.T_map_base_first.translation.y() = 1.2f;
+    return map.check_jump(line, motion, latency, offset);
+  }
+  bool off(float above_m, float slope_y = 0.0f) const {
+    const auto across = line(above_m, slope_y);
+    const JumpLine lies = check(*across);
+    CHECK(across->points().size() == 24);
+    return lies == JumpLine::off_map;
   }
 
   std::unique_ptr<Stages<>> stages = std::make_unique<Stages<>>(test::small_settings());
@@ -169,10 +184,32 @@ TEST_CASE("map comparison: a line that was measured as poses jumped is off the m
   CHECK_FALSE(jumping.offset.undecided());
 }
 
-TEST_CASE("map comparison: of a line on ground that has been seen since alone nothing is known") {
+TEST_CASE(
+    "map comparison: of a line on ground that has been seen since alone nothing is known: what may be off is left "
+    "out") {
   const Jumping jumping;
   test::fill(jumping.stages->dem, [](double, double) { return 0.0; });
-  CHECK_FALSE(jumping.off(0.02f));
+  const auto little = Jumping::line(0.02f), much = Jumping::line(0.02f);
+  CHECK(jumping.check(*little, 0.001f, 0.01f) == Jumping::JumpLine::on_map);
+  CHECK(little->points().size() == 24);
+  CHECK(jumping.check(*much, 0.02f, 0.0f) == Jumping::JumpLine::in_part);
+  // 0.02 rad / sqrt 6 at 1.25 m ahead is 10 mm, more than the 7 mm that the points of a cell share.
+  CHECK(much->points().empty());
+}
+
+TEST_CASE(
+    "map comparison: of a line that a turn alone may move, where there is no map the points near the robot stay") {
+  const Jumping jumping;
+  test::fill(jumping.stages->dem, [](double, double) { return 0.0; });
+  const auto line = std::make_unique<Jumping::Line>();
+  for (int i = 0; i < 24; ++i) line->add({0.1f * static_cast<float>(i) + 0.05f, 1.2f, 0.0f, 1e-4f});
+  const float turn_rad = 0.02f, common_m2 = jumping.stages->dem.prior().common_m2();
+  const float far_m = square_root(6.0f * common_m2) / turn_rad;
+  CHECK(jumping.check(*line, turn_rad, 0.0f) == Jumping::JumpLine::in_part);
+  REQUIRE(!line->points().empty());
+  CHECK(line->points().front().x_m == Approx(0.05));
+  CHECK(line->points().back().x_m < far_m);
+  CHECK(line->points().back().x_m > far_m - 0.1f);
 }
 
 }  // namespace

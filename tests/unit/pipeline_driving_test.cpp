@@ -299,12 +299,24 @@ TEST_CASE("pipeline: a line is left out of the map if a localisation has stepped
   CHECK(bumped.pipeline->counters().lines_off_map == 0);
 }
 
-TEST_CASE("pipeline: a line that is measured while the robot climbs is taken, and counts for less") {
-  const Rise climbs = rise({0.02f, 0.05f, 0.1f}, 0.1);
+/// Of a robot that climbs: the last of its poses, and how high it is half way between the last two.
+const std::vector<float> climb{0.05f, 0.1f};
+constexpr double half_way_m = 0.075;
+
+TEST_CASE(
+    "pipeline: a line that is measured while the robot climbs is taken where the map has it, and counts for less") {
+  const Rise climbs = rise(climb, half_way_m);
   REQUIRE(climbs.points.size() > 200);
+  CHECK(climbs.pipeline->counters().lines_off_map == 0);
   const float jump_m = 0.1f - 0.05f - 0.05f / 4;  // off where the four poses before it lead
   CHECK(std::all_of(climbs.points.begin(), climbs.points.end(),
                     [&](const Point& p) { return p.variance_m2 > square(jump_m) / 6; }));
+}
+
+TEST_CASE("pipeline: a line that is measured while the robot climbs is left out if its poses are late") {
+  const Rise late = rise(climb, half_way_m + 0.05);
+  CHECK(late.points.empty());
+  CHECK(late.pipeline->counters().lines_off_map == 1);
 }
 
 }  // namespace

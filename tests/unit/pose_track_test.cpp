@@ -334,27 +334,6 @@ TEST_CASE("pose track: poses that come many at a time say of steps what they say
   CHECK(told_until(track, t0 + 20 * ms * 9).empty());
 }
 
-TEST_CASE("pose track: a robot climbs while poses jump on end, and not by one that jumps") {
-  const auto climbing = [](auto&& z_m) {
-    std::string told;
-    Track track;
-    track.init(noisy_poses());
-    for (int k = 0; k < 10; ++k) {
-      Pose pose = on_ramp(k);
-      pose.z_m += z_m(k);
-      REQUIRE(track.push(pose));
-      told_until(track, pose.time_ns);
-      told += track.climbs() ? 'c' : '.';
-    }
-    return told;
-  };
-  CHECK(climbing([](int k) { return k >= 5 ? 0.02f : 0.0f; }) == "..........");
-  const std::string rises =
-      climbing([](int k) { return k < 4 ? 0.0f : 0.02f * static_cast<float>(std::min(k, 7) - 3); });
-  CHECK(rises.substr(0, 7) == ".....cc");
-  CHECK(rises.back() == '.');
-}
-
 TEST_CASE("pose track: a step is told in the map's frame, whatever way the robot heads") {
   Track track;
   track.init(noisy_poses());
