@@ -1,7 +1,9 @@
 // Fits a plane of ground anew to those cells of its region that hold nothing else: what mixes both sides of a step
-// would tilt the plane of a small region toward the other. PlaneMixture says which cells these are.
+// would tilt the plane of a small region toward the other. PlaneMixture says which cells these are. Grass and gravel
+// spread in every cell: how rough the ground is all cells of a region tell together.
 #pragma once
 
+#include "curbline/cell.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {
@@ -12,11 +14,29 @@ struct CleanFit {
 
   bool wanted = false;  ///< of no other plane anything is counted
   bool wide = false, steep = false;
-  float slope_m2 = 0.0f;              ///< Dem::slope_m2() of the region's plane
-  float cells = 0.0f, points = 0.0f;  ///< of the region
-  PlaneMoments inner{}, beside{};     ///< of clean cells away from steps, and of those beside one
-  float bias_m2 = 0.0f;               ///< of those, each by its weight
+  float slope_m2 = 0.0f;                             ///< Dem::slope_m2() of the region's plane
+  float cells = 0.0f, points = 0.0f, weight = 0.0f;  ///< of the region
+  float sure = 0.0f, precision_1_m2 = 0.0f;          ///< sums over cells of what look_at() tells
+  PlaneMoments inner{}, beside{};                    ///< of clean cells away from steps, and of those beside one
+  float bias_m2 = 0.0f;                              ///< of those, each by its weight
 
+  /// Each cell of the region, before any is added. What mixes both sides of a step spreads more than the others, by any
+  /// amount: so the precisions that cells tell are averaged, not the variances. Of n points that is (n - 3) / scatter,
+  /// its relative variance 2 / (n - 5).
+  void look_at(const Cell& cell) {
+    cells += 1.0f;
+    points += cell.points;
+    weight += cell.weight;
+    const float sureness = cell.points - 5.0f;
+    if (!(sureness > 0.0f)) return;
+    sure += sureness;
+    precision_1_m2 += sureness * (cell.points - 3.0f) / cell.scatter_m2;
+  }
+  /// Variance of the heights within a cell beyond what the expected noise and the slope make.
+  float rough_m2(float expected_m2) const {
+    const float beyond_m2 = (sure / precision_1_m2 - expected_m2) * points / weight - slope_m2;
+    return beyond_m2 > 0.0f ? beyond_m2 : 0.0f;  // 0 if no cell tells, too
+  }
   /// A clean cell that lies beside a step, or of which one crosses it; of none the step is 0.
   void add(PlaneMoments cell, float step_m) {
     if (!steep) cell.zz = 0.0f;
@@ -31,9 +51,11 @@ struct CleanFit {
     if (inner.cells + beside.cells < min_cells) return;
     if (bias_m2 > prior.noise_m2) beside.scale(prior.noise_m2 / bias_m2);
     inner.add(beside);
-    Plane anew = steep ? fit_plane(inner, prior) : fit_plane_to_means(inner, prior, common_m2);
+    const float share_m2 = common_m2 * (1.0f + plane.rough_m2 / prior.noise_m2);
+    Plane anew = steep ? fit_plane(inner, prior) : fit_plane_to_means(inner, prior, share_m2);
     anew.variance_m2 = plane.variance_m2;
     anew.points_a_cell = plane.points_a_cell;
+    anew.rough_m2 = plane.rough_m2;
     plane = anew;
   }
 };

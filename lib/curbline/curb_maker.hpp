@@ -88,8 +88,10 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
     follow_ground_beside(piece, shadow_m, curb, variance_m2);
   }
   if (obstacle(curb, piece)) return std::nullopt;
-  // Planes of different slope differ as much as the borders' place does.
-  variance_m2 += square(piece.planes.slope_across(piece.line)) * piece.place_variance_m2;
+  // Planes of different slope differ as much as the borders' place does. Rough ground hangs over its edge, anywhere
+  // within its roughness, evenly.
+  variance_m2 += square(piece.planes.slope_across(piece.line)) * piece.place_variance_m2 +
+                 (piece.planes.low.rough_m2 + piece.planes.high.rough_m2) * (1.0f / 3);
   curb.position_sd_m = square_root(place_variance_m2(piece, curb, variance_m2));
   curb.height_sd_m = square_root(variance_m2);
   const float width_m = piece.gap_m - piece.cell_m - shadow_m;

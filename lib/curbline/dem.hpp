@@ -136,10 +136,10 @@ class Dem : public Window<limits> {
   }
   /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
   /// its plane make? Then it holds more than the plane.
-  bool mixed(const Cell& cell, float slope_m2) const {
-    const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
-    const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / prior_.noise_m2 - freedom;
-    return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
+  bool mixed(const Cell& cell, float slope_m2) const { return spreads(cell, slope_m2, prior_.noise_m2); }
+  /// The same on rough ground.
+  bool mixed(const Cell& cell, float slope_m2, float rough_m2) const {
+    return spreads(cell, slope_m2, prior_.noise_m2 + rough_m2 * cell.weight / cell.points);
   }
 
   // When and from where it was seen last.
@@ -191,6 +191,12 @@ class Dem : public Window<limits> {
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
   static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
+  /// Beyond slope and noise.
+  static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
+    const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
+    const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / noise_m2 - freedom;
+    return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
+  }
   void clear_all(std::uint8_t bit) {
     for (std::uint8_t& seen : seen_) seen &= static_cast<std::uint8_t>(~bit);
   }

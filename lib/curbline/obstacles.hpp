@@ -1,10 +1,11 @@
 // What stands on the ground: which planes are of obstacles. A region within whose cells the heights spread as on a
-// slope of more than 45 degrees; and the top of one: level, higher above the ground than a kerb or a stair, smaller
-// than a square metre or narrower than shoulders, and no way that leads on. A way has beside it, as high above the
-// ground, one that is no top, or lies higher or lower by as much as the next step of a stair does. What reaches the
-// window's end may be larger than it looks. So may what begins where nothing is seen before it and, of a robot that
-// drives, what ends where nothing is seen from there on: it may not have looked there yet.
-// Cost: a pass over the window, and two more where there may be tops.
+// slope of more than 45 degrees, unless they spread over less than a step and the region is wider than a wall: then it
+// is rough ground, grass or rubble, for anything as steep and as wide would rise higher; and the top of one: level,
+// higher above the ground than a kerb or a stair, smaller than a square metre or narrower than shoulders, and no way
+// that leads on. A way has beside it, as high above the ground, one that is no top, or lies higher or lower by as much
+// as the next step of a stair does. What reaches the window's end may be larger than it looks. So may what begins where
+// nothing is seen before it and, of a robot that drives, what ends where nothing is seen from there on: it may not have
+// looked there yet. Cost: a pass over the window, and two more where there may be tops.
 #pragma once
 
 #include <array>
@@ -54,6 +55,9 @@ class Obstacles {
 
     bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
   };
+  /// Is a region narrower than shoulders, by how far its cells lie from its centroid? Those of a rectangle a x b have
+  /// variances of a^2 / 12 and b^2 / 12.
+  static bool narrow(const Plane& plane) { return (plane.pxx + plane.pyy) * plane.cells * square(shoulders_m) > 12.0f; }
   using Extents = std::array<Extent, limits.planes>;
 
   void add_tops();
@@ -84,8 +88,9 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
     weight[label] += dem_.cell(s).weight;
   });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
-    is_[l] = dem_.steep(spread[l], weight[l]);
-    high_[l] = is_[l] && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+    const bool steep = dem_.steep(spread[l], weight[l]);
+    high_[l] = steep && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+    is_[l] = steep && (high_[l] || narrow(planes_[l]));
     if (!planes_[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
   }

@@ -90,6 +90,7 @@ struct Plane {
   float fit_variance_m2 = 0.0f;              ///< of what a cell that it is fitted to counts for: a point, or their mean
   float cells = 0.0f;                        ///< how many these are; 0: no such plane
   float points_a_cell = 1.0f;                ///< of its region, on the mean
+  float rough_m2 = 0.0f;                     ///< variance within a cell beyond noise and slope, as CleanFit found it
   float scatter_m2 = 0.0f;                   ///< mean square of how far the cells lie from the centroid
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 

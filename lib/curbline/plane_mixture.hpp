@@ -175,20 +175,22 @@ template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
                                   const CellSet<limits>& crossed, LabelOf&& label_of) {
   std::array<CleanFit, limits.planes> fits{};
+  dem.for_each_valid([&](int, int, int s) {
+    if (region_label(s) != no_label) fits[region_label(s)].look_at(dem.cell(s));
+  });
   for (std::size_t l = 0; l < fits.size(); ++l) {
     fits[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
     fits[l].wide = planes_[l].cells >= CleanFit::wide_cells;
     fits[l].steep = planes_[l].steeper_than_ramp();
     fits[l].slope_m2 = dem.slope_m2(planes_[l]);
+    planes_[l].rough_m2 = fits[l].rough_m2(dem.prior().noise_m2);
   }
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = region_label(s);
     if (label == no_label || !fits[label].wanted) return;
     CleanFit& fit = fits[label];
     const Cell& cell = dem.cell(s);
-    fit.cells += 1.0f;
-    fit.points += cell.points;
-    if (dem.mixed(cell, fit.slope_m2)) return;
+    if (dem.mixed(cell, fit.slope_m2, planes_[label].rough_m2)) return;
     const bool is_crossed = crossed.contains(s);
     if (fit.wide && is_crossed) return;
     const Label borne = label_of(s);

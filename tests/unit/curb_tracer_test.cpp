@@ -402,6 +402,29 @@ TEST_CASE(
   }
 }
 
+//               .:'.    grass, 3 cm rough
+//  ____________|
+TEST_CASE(
+    "curb tracer: a kerb between a road and rough ground is told, its height less certain than beside a smooth one") {
+  const auto kerb_to = [](double rough_m) {
+    auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise;
+    const auto ground = [&](double x, double) { return x < 1.4 ? 0.0 : 0.08 + rough_m * noise.normal(); };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages->dem.add(p);
+    stages->settle();
+    stages->trace();
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    return stages->tracer.curbs()[0];
+  };
+  const Curb smooth = kerb_to(0.0), rough = kerb_to(0.03);
+  CHECK(rough.kind == CurbKind::step_up);
+  CHECK(length_m(rough) == Approx(2.4).margin(0.05));
+  CHECK(rough.x0_m == Approx(1.4).margin(0.02));
+  CHECK(rough.height_m == Approx(0.08).margin(2 * rough.height_sd_m));
+  CHECK(smooth.height_sd_m < 0.003f);
+  CHECK(rough.height_sd_m == Approx(0.03 / std::sqrt(3.0)).epsilon(0.2));
+}
+
 TEST_CASE("curb tracer: a low step through the middle of cells is told as high as it is") {
   double rise_m2 = 0.0, along_m = 0.0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {

@@ -95,6 +95,21 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
   CHECK(borne(until(1.2)) == 1);
 }
 
+//
+//           .:'.:'       grass of 10 cm, or rubble; an edging as low; a hedge
+//  ________|
+TEST_CASE("ground: wide ground is ground however rough it is, as long as it is lower than a step; no wall is as wide") {
+  const auto rough = [](double begin, double end, double half_m) {
+    return [=](double x, double y) {
+      return x < begin || x >= end ? 0.0 : 0.05 + (static_cast<int>(y * 100) % 10 < 5 ? -half_m : half_m);
+    };
+  };
+  CHECK(borne(rough(1.2, 2.4, 0.05)) == 2);
+  CHECK(borne(rough(1.2, 2.1, 0.05)) == 2);
+  CHECK(borne(rough(1.2, 1.6, 0.05)) == 1);
+  CHECK(borne(rough(1.2, 2.4, 0.12)) == 1);
+}
+
 //           |
 //           /
 //         _/           the foot of a wall and the ground before it, in one reading
@@ -699,7 +714,7 @@ TEST_CASE("ground: a bank before rough grass that is lower than a kerb is no fri
       return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
     };
   };
-  CHECK(borne(before(0.075)) == 2);
+  CHECK(borne(before(0.075)) == 3);  // with the grass
   CHECK(borne(before(0.1)) == 1);
 }
 

@@ -62,6 +62,37 @@ TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the p
   }
 }
 
+//               .:'.    a pavement overgrown with grass, of which the window holds a strip
+//              |
+//  ____________|
+TEST_CASE("plane mixture: ground that is rough all over is told by all of its cells, not by the few that look even") {
+  double squares_m2 = 0.0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise(seed);
+    const auto ground = [&](double x, double) { return x < 2.0 ? 0.0 : 0.08 + 0.03 * noise.normal(); };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages->dem.add(p);
+    stages->infer();
+    const Plane& strip = stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(22, 12)));
+    CHECK(strip.cells > 80.0f);  // of 96
+    CHECK(strip.rough_m2 == Approx(0.03 * 0.03).epsilon(0.2));
+    squares_m2 += square(strip.height_m(2.2f, 1.2f) - 0.08f);
+  }
+  // Of 96 cells with 25 points each.
+  CHECK(squares_m2 / 20.0 < 2.0 * 0.03 * 0.03 / (96 * 25));
+}
+
+TEST_CASE("plane mixture: what holds both sides of a step makes no ground rough") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  for (const Point& p :
+       test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, [](double x, double) { return x < 2.05 ? 0.0 : 0.06; }))
+    stages->dem.add(p);
+  stages->infer();
+  CHECK(stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(22, 12))).rough_m2 == 0.0f);
+  CHECK(stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(4, 12))).rough_m2 == 0.0f);
+}
+
 //  o
 //  ____________
 //              |_       the first of two rows behind the edge: too high, by readings that mix it and the road
