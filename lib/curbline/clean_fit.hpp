@@ -11,6 +11,8 @@ namespace curbline {
 struct CleanFit {
   /// Of as many one in fourteen lies along a side: those that a step crosses are not missed.
   static constexpr float wide_cells = 200.0f;
+  /// A region narrower than that is all rim: what spreads in its cells may be a step that they lie on.
+  static constexpr float rim_cells = 3.0f;
 
   bool wanted = false;  ///< of no other plane anything is counted
   bool wide = false, steep = false;

@@ -49,7 +49,7 @@ class CurbMaker {
   Curb as_planes_tell(const Piece& piece) const;
   float leave_shadow(const Part& part, Curb& curb, Piece& piece) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
-  GroundAlong ground_along(const Part& part, Label label) const;
+  GroundAlong ground_along(const Part& part, const Piece& piece, Label label) const;
   void follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const;
   void follow_ground_beside(const Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const;
   struct Deviations {
@@ -75,18 +75,14 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   Curb curb = as_planes_tell(piece);
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a row's or column's alone is no line
+  const bool two_sided_step = is_step(curb) && !one_sided;
+  const float shadow_m = two_sided_step ? leave_shadow(part, curb, piece) : 0.0f;
   // The errors of a plane are common to the piece: they do not average out. Behind a brink as much again as is seen may
   // be hidden, or less, evenly.
   float variance_m2 = plane_variance_m2(piece.planes.low, piece) + plane_variance_m2(piece.planes.high, piece) +
                       (one_sided ? square(curb.height_m) * (1.0f / 3) : 0.0f);
-  float shadow_m = 0.0f;
-  if (is_step(curb)) {
-    if (!one_sided) {
-      shadow_m = leave_shadow(part, curb, piece);
-      follow_ground(part, piece, curb, variance_m2);
-    }
-    follow_ground_beside(piece, shadow_m, curb, variance_m2);
-  }
+  if (two_sided_step) follow_ground(part, piece, curb, variance_m2);
+  if (is_step(curb)) follow_ground_beside(piece, shadow_m, curb, variance_m2);
   if (obstacle(curb, piece)) return std::nullopt;
   // Planes of different slope differ as much as the borders' place does. Rough ground hangs over its edge, anywhere
   // within its roughness, evenly.
@@ -153,14 +149,17 @@ float CurbMaker<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) {
   return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
 }
 
-/// As the cells of a side tell that lie a little farther from the borders of a piece.
+/// As the cells of a side tell that lie a little farther from the borders of a piece, on those of rows and columns that
+/// lie more across it: each cell once.
 template <Limits limits>
-GroundAlong CurbMaker<limits>::ground_along(const Part& part, Label label) const {
+GroundAlong CurbMaker<limits>::ground_along(const Part& part, const Piece& piece, Label label) const {
   const Dem<limits>& dem = stages_.dem;
   const Plane& plane = stages_.mixture.plane(label);
   const float slope_m2 = dem.slope_m2(plane);
+  const int across = magnitude(piece.line.normal_x) < magnitude(piece.line.normal_y);
   float cells = 0.0f, above_m = 0.0f;
   for (const Border& border : part) {
+    if (border.axis != across) continue;
     const auto d = static_cast<std::size_t>(direction(border.axis, label == border.high ? border.sign : -border.sign));
     int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
     for (int k = 1; k <= GroundAlong::farthest; ++k) {
@@ -182,7 +181,7 @@ template <Limits limits>
 void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const {
   for (const bool high : {false, true}) {
     const Plane& plane = high ? piece.planes.high : piece.planes.low;
-    const GroundAlong ground = ground_along(part, high ? piece.first.high : piece.first.low);
+    const GroundAlong ground = ground_along(part, piece, high ? piece.first.high : piece.first.low);
     curb.height_m += high == piece.low_is_near ? ground.above_m : -ground.above_m;
     variance_m2 += ground.share * (ground.variance_m2 - plane_variance_m2(plane, piece));
     Beside& beside = high ? piece.beside_high : piece.beside_low;
@@ -208,7 +207,7 @@ template <Limits limits>
 auto CurbMaker<limits>::deviations_of(const Piece& piece, float height_m, float shadow_m) const -> Deviations {
   const float up = height_m < 0.0f ? -1.0f : 1.0f;
   const float beyond_cells = -0.5f * up * shadow_m / piece.cell_m;
-  const float common_m2 = stages_.dem.prior().common_m2();
+  const float common_m2 = stages_.dem.common_m2();
   return {deviation(piece.beside_low, piece.planes.low, -up, -beyond_cells, common_m2),
           deviation(piece.beside_high, piece.planes.high, up, beyond_cells, common_m2)};
 }

@@ -6,8 +6,9 @@
 //   scanner --> LineClock::time_of() --> LineQueue --> Pipeline::take()
 //
 //   - A stamp that lies on a turn is kept as it is: of a scanner whose stamps are exact nothing changes.
-//   - Where stamps lie anywhere between turns (another rate than the settings', delays of half a turn on the mean)
-//     turns cannot be counted, and stamps are kept too. So are the first, until there are enough to tell.
+//   - Where stamps lie anywhere between turns (delays of half a turn on the mean), or turns take more or less than
+//     1/200 from what the settings say, stamps are kept too. So are the first, until there are enough to tell.
+//   - A stamp that goes back is given out as it is: the pipeline drops and counts the line.
 //   - A line that is late by a turn or more looks like the next one after a loss. One that may be either has no time:
 //     it is better left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
 //
@@ -20,6 +21,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "curbline/rising_times.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -43,8 +45,14 @@ class LineClock {
   };
   static constexpr int capacity = 64;
 
+  struct Turns {
+    std::int64_t count = 0;
+    bool doubtful = false;  ///< or lines may have been lost, or a line have waited
+  };
+
   void restart(std::int64_t stamp_ns);
-  std::int64_t turns_to(std::int64_t stamp_ns);
+  Turns turns_to(std::int64_t stamp_ns);
+  bool take_back_lost(std::int64_t stamp_ns, std::int64_t turns);
   void add(std::int64_t turns, std::int64_t stamp_ns);
   void keep_newest(int count);
   void fit();
@@ -61,11 +69,12 @@ class LineClock {
   float newest_late_ns_ = 0.0f;                    ///< of the newest, as all of them tell it
   float slower_ns_ = 0.0f;                         ///< by which a turn takes longer than by the settings
   float mean_late_ns_ = 0.0f;                      ///< of all of them
+  bool steady_ = true;                             ///< turns take no other time than a motor's may
   std::int64_t usual_turns_ = 1, last_turns_ = 1;  ///< from line to line
   std::int64_t lost_turns_ = 0;                    ///< that were taken for lost before the newest
-  int waited_ = 0;                    ///< lines for which one may have waited: so many ago one had, by whole turns
-  bool doubtful_ = false;             ///< whether they were
-  int late_ = 0, turn_late_ = 0;      ///< arrivals on end that were later than usual, by a turn and more
+  int waited_ = 0;                ///< lines for which one may have waited: so many ago one had, by whole turns
+  int late_ = 0, turn_late_ = 0;  ///< arrivals on end that were later than usual, by a turn and more
+  RisingTimes stamps_{};
   std::int64_t time_ns_ = INT64_MIN;  ///< the newest that was given
   std::uint32_t set_back_ = 0, left_out_ = 0;
 };

@@ -60,11 +60,16 @@ class LineIntake {
   const PoseOffset& pose_offset() const { return pose_offset_; }
 
  private:
+  /// Over a kerb, wheels half a metre apart, at a quarter of a metre a second. Poses that jump for longer say nothing
+  /// of it: lines are taken where they have them, or there would be no map to compare any with.
+  static constexpr std::int64_t longest_climb_ns = 2'000'000'000;
+
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem);
 
-  float tilt_rate_rad_s_ = 0.0f;  ///< of the line in hand
-  bool jumped_ = false;           ///< poses, while the last line was measured
+  float tilt_rate_rad_s_ = 0.0f;     ///< of the line in hand
+  bool jumped_ = false;              ///< poses, while the last line was measured
+  std::int64_t jumps_since_ns_ = 0;  ///< and all before it, from that one on
   RisingTimes line_times_{};
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
@@ -133,6 +138,7 @@ void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bo
     begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
   }
   if ((jumping || begun) && !jumped_) dem.begin_marking();
+  if (jumping && !jumped_) jumps_since_ns_ = line_ns;
   jumped_ = jumping;
 }
 
@@ -145,7 +151,7 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
   if (!motion.jumps.any()) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
-  } else {
+  } else if (line.time_ns - jumps_since_ns_ <= longest_climb_ns) {
     using JumpLine = typename MapComparison<limits>::JumpLine;
     const JumpLine lies = map.check_jump(work.projected, motion, tilt_latency_, pose_offset_);
     counters.lines_off_map += lies != JumpLine::on_map;

@@ -55,9 +55,6 @@ class Obstacles {
 
     bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
   };
-  /// Is a region narrower than shoulders, by how far its cells lie from its centroid? Those of a rectangle a x b have
-  /// variances of a^2 / 12 and b^2 / 12.
-  static bool narrow(const Plane& plane) { return (plane.pxx + plane.pyy) * plane.cells * square(shoulders_m) > 12.0f; }
   using Extents = std::array<Extent, limits.planes>;
 
   void add_tops();
@@ -90,7 +87,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     const bool steep = dem_.steep(spread[l], weight[l]);
     high_[l] = steep && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
-    is_[l] = steep && (high_[l] || narrow(planes_[l]));
+    is_[l] = steep && (high_[l] || planes_[l].narrower_than(shoulders_m));
     if (!planes_[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
   }

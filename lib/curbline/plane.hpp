@@ -99,6 +99,8 @@ struct Plane {
 
   /// How far its centroid lies above another plane.
   float above_m(const Plane& other) const { return z_m - other.height_m(x_m, y_m); }
+  /// By how far its cells lie from the centroid: those of a rectangle a x b have variances of a^2 / 12 and b^2 / 12.
+  bool narrower_than(float width_m) const { return (pxx + pyy) * cells * square(width_m) > 12.0f; }
   /// What its slope is more than 1 in 20, as a plane through the origin.
   Plane lean() const;
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }

@@ -1,7 +1,7 @@
 // The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become
 // planes again and take the label with which their cells overlap most, so that a plane keeps its label while it grows,
 // is cut and merged; a label that no region took dies. Planes that are ground are then fitted to the cells that hold
-// nothing else. Cost: three passes over the window, K^3 for the matching, and ground.hpp.
+// nothing else. Cost: four passes over the window, K^3 for the matching, and ground.hpp.
 #pragma once
 
 #include <algorithm>
@@ -183,7 +183,8 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     fits[l].wide = planes_[l].cells >= CleanFit::wide_cells;
     fits[l].steep = planes_[l].steeper_than_ramp();
     fits[l].slope_m2 = dem.slope_m2(planes_[l]);
-    planes_[l].rough_m2 = fits[l].rough_m2(dem.prior().noise_m2);
+    const bool all_rim = planes_[l].narrower_than(CleanFit::rim_cells * std::max(dem.cell_x_m(), dem.cell_y_m()));
+    planes_[l].rough_m2 = all_rim ? 0.0f : fits[l].rough_m2(dem.prior().noise_m2);
   }
   dem.for_each_valid([&](int i, int j, int s) {
     const Label label = region_label(s);
@@ -259,6 +260,7 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
     if (!planes_[l].alive() || moments[l].cells < 3.0f) continue;
     Plane anew = fit_plane(moments[l], dem.prior());
     anew.points_a_cell = planes_[l].points_a_cell;
+    anew.rough_m2 = planes_[l].rough_m2;
     planes_[l] = anew;
   }
 }

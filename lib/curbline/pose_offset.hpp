@@ -5,7 +5,7 @@
 // meanwhile a Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if
 // that is likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less
 // than poses tremble, until both are one again. Cost: 60 operations a point of the lines that are measured as poses
-// begin to jump, and after a step until it is decided: mostly one.
+// jump, and after a step until it is decided: mostly one.
 #pragma once
 
 #include <array>

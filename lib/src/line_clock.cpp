@@ -37,13 +37,19 @@ void LineClock::init(const LaserSettings& laser) {
 }
 
 std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
-  if (turn_ns_ == 0 || !RisingTimes::is_time(stamp_ns)) return stamp_ns;
-  doubtful_ = false;
-  if (const std::int64_t turns = turns_to(stamp_ns); turns > 0) add(turns, stamp_ns);
-  const bool told = size_ >= enough_ && mean_late_ns_ <= most_mean * to_float(turn_ns_);
-  if (!told || stamp_ns != newest().stamp_ns || !(doubtful_ || newest_late_ns_ > exact_ns)) return time_ns_ = stamp_ns;
+  if (turn_ns_ == 0) return stamp_ns;
+  if (!stamps_.admits(stamp_ns)) {
+    const bool once_more = size_ > 0 && stamp_ns == newest().stamp_ns && stamp_ns != time_ns_;
+    return once_more ? std::nullopt : std::optional(stamp_ns);
+  }
+  stamps_.take(stamp_ns);
+  const Turns turns = turns_to(stamp_ns);
+  if (turns.count > 0) add(turns.count, stamp_ns);
+  const bool told = steady_ && size_ >= enough_ && mean_late_ns_ <= most_mean * to_float(turn_ns_);
+  if (!told || stamp_ns != newest().stamp_ns || !(turns.doubtful || newest_late_ns_ > exact_ns))
+    return time_ns_ = stamp_ns;
   const std::int64_t time_ns = stamp_ns - static_cast<std::int64_t>(newest_late_ns_);
-  if (doubtful_ || time_ns <= time_ns_) {
+  if (turns.doubtful || time_ns <= time_ns_) {
     ++left_out_;
     return std::nullopt;
   }
@@ -51,43 +57,46 @@ std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
   return time_ns_ = time_ns;
 }
 
-/// From the newest arrival; 0 if the line is not to be added: it is the first of new ones, or the newest once more.
-std::int64_t LineClock::turns_to(std::int64_t stamp_ns) {
+/// From the newest arrival; 0 if the line is not to be added: it is the first of new ones, or earlier than any.
+LineClock::Turns LineClock::turns_to(std::int64_t stamp_ns) {
   const std::int64_t since_ns = size_ > 0 ? stamp_ns - newest().stamp_ns : -1;
   if (since_ns < 0 || since_ns > most_turns * turn_ns_) {
     restart(stamp_ns);
-    return 0;
+    return {};
   }
-  if (since_ns == 0) return 0;
   if (size_ == 1) usual_turns_ = last_turns_ = std::max<std::int64_t>(1, (since_ns + turn_ns_ / 2) / turn_ns_);
   const float half = turn() / 2.0f;
   std::int64_t turns = usual_turns_;
   while (turns > 1 && late_ns(stamp_ns, turns) < -half) --turns;
-  const bool none_lost = lost_turns_ > 0 && late_ns(stamp_ns, turns) < -half;
-  if (none_lost) {  // the newest was late by as much
-    arrivals_[static_cast<std::size_t>(size_ - 1)].turn -= lost_turns_;
-    newest_late_ns_ += to_float(lost_turns_) * turn();
-    waited_ = capacity;
-  }
+  const bool none_lost = take_back_lost(stamp_ns, turns);
   if (waited_ > 0) --waited_;
-  lost_turns_ = 0;
   const float late = late_ns(stamp_ns, turns);
-  if (late < -half) return 0;
+  if (late < -half) return {};
   if (late < -usual * mean_late_ns_ - exact_ns) {  // earlier than any: what was held for a turn was late
     restart(stamp_ns);
-    return 0;
+    return {};
   }
   const std::int64_t lost = floor_to_int((late + exact_ns) / turn());
   turn_late_ = lost > 0 ? turn_late_ + 1 : 0;
-  if (lost == 0) return turns;
-  if (none_lost) return turns;  // what had waited comes in a bunch
+  if (lost == 0 || none_lost) return {turns};  // after one that has waited others come in a bunch
   const float rest = late - to_float(lost) * turn();
-  doubtful_ = (rest > exact_ns || waited_ > 0) && turns + lost != last_turns_;
-  if (rest > usual * mean_late_ns_) return turns;
-  if (to_float(turn_late_ * lost) * turn() <= seldom * mean_late_ns_) return turns;
+  const bool doubtful = (rest > exact_ns || waited_ > 0) && turns + lost != last_turns_;
+  if (rest > usual * mean_late_ns_) return {turns, doubtful};
+  if (to_float(turn_late_ * lost) * turn() <= seldom * mean_late_ns_) return {turns, doubtful};
   lost_turns_ = lost;
   turn_late_ = 0;
-  return turns + lost;
+  return {turns + lost, doubtful};
+}
+
+/// Does a line come too early for what was taken for lost before the newest? Then that was late by as much instead.
+bool LineClock::take_back_lost(std::int64_t stamp_ns, std::int64_t turns) {
+  const std::int64_t lost = lost_turns_;
+  lost_turns_ = 0;
+  if (lost == 0 || late_ns(stamp_ns, turns) >= -turn() / 2.0f) return false;
+  arrivals_[static_cast<std::size_t>(size_ - 1)].turn -= lost;
+  newest_late_ns_ += to_float(lost) * turn();
+  waited_ = capacity;  // as long as it is among the arrivals
+  return true;
 }
 
 void LineClock::restart(std::int64_t stamp_ns) {
@@ -97,7 +106,7 @@ void LineClock::restart(std::int64_t stamp_ns) {
   mean_late_ns_ = exact_ns;
   usual_turns_ = last_turns_ = 1;
   lost_turns_ = 0;
-  late_ = turn_late_ = 0;
+  waited_ = late_ = turn_late_ = 0;
 }
 
 void LineClock::add(std::int64_t turns, std::int64_t stamp_ns) {
@@ -152,7 +161,9 @@ void LineClock::fit() {
   while (edge + 2 < static_cast<std::size_t>(corners) && hull[edge + 1].turn < mean_turn) ++edge;
   const Place &a = hull[edge], &b = hull[edge + 1];
   const float most_ns = most_slower * to_float(turn_ns_);
-  slower_ns_ = std::clamp((b.late_ns - a.late_ns) / (b.turn - a.turn), -most_ns, most_ns);
+  const float slower_ns = (b.late_ns - a.late_ns) / (b.turn - a.turn);
+  slower_ns_ = std::clamp(slower_ns, -most_ns, most_ns);
+  steady_ = slower_ns == slower_ns_;
   float least_ns = 0.0f, sum_ns = 0.0f;  // above the line through the newest
   for (int k = 0; k < size_; ++k) {
     const Place& p = all[static_cast<std::size_t>(k)];

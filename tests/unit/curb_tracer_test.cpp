@@ -425,6 +425,35 @@ TEST_CASE(
   CHECK(rough.height_sd_m == Approx(0.03 / std::sqrt(3.0)).epsilon(0.2));
 }
 
+//  o
+//  ________
+//          |  .        what lies behind the shadow is cambered, and is known less well at the edge than in its middle
+//          |____.--
+TEST_CASE("curb tracer: a step down is no better known than its lower plane is at the edge, before the shadow") {
+  const double edge = 1.12, drop = 0.232, behind = edge + 0.284;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise(seed);
+    stages->view = {0.0f, 1.2f, 0.54f};
+    stages->dem.set_common(1e-6f, 0.0f);
+    for (int k = 0; k < 24 * 24 * 16; ++k) {
+      const double x = 2.4 * noise.uniform(), y = 2.4 * noise.uniform();
+      if (x >= edge && (x < behind || x > behind + 0.807)) continue;
+      const double z_m = x < edge ? 0.0 : -drop + 0.0666 * (x - behind) * (x - behind);
+      const double error_m = 0.0008 * noise.normal();
+      stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z_m + error_m), 1e-4f});
+    }
+    stages->settle();
+    stages->trace(0.0f, 1.2f);
+    for (const Curb& curb : stages->tracer.curbs()) {
+      if (curb.kind != CurbKind::step_down) continue;
+      const Plane& below = stages->mixture.plane(curb.far_label);
+      const float x = 0.5f * (curb.x0_m + curb.x1_m), y = 0.5f * (curb.y0_m + curb.y1_m);
+      CHECK(square(curb.height_sd_m) > 0.05f * below.height_variance_m2(x, y));
+    }
+  }
+}
+
 TEST_CASE("curb tracer: a low step through the middle of cells is told as high as it is") {
   double rise_m2 = 0.0, along_m = 0.0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {

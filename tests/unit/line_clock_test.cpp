@@ -143,7 +143,7 @@ TEST_CASE("line clock: a line that comes twice tells nothing new") {
 }
 
 TEST_CASE("line clock: stamps of another rate than the settings', or of none, are kept") {
-  for (const double turns : {1.33, 0.6, 1.6}) {
+  for (const double turns : {1.33, 0.6, 1.6, 0.98, 0.99, 1.0055, 1.007, 1.01, 1.02}) {
     std::vector<std::int64_t> stamps;
     for (int i = 0; i < 300; ++i) stamps.push_back(t0 + std::llround(i * 25e6 * turns));
     INFO("a line in " << turns << " turns");
@@ -155,6 +155,45 @@ TEST_CASE("line clock: stamps of another rate than the settings', or of none, ar
     stamps.push_back(stamps.back() + 25 * ms + static_cast<std::int64_t>(random() % 25) * ms);
   INFO("at any time");
   keeps(utm30lx, stamps);
+}
+
+TEST_CASE("line clock: lines of a motor that is a hundredth off, late besides, get no times that are worse") {
+  for (const double rate : {0.99, 1.01}) {
+    Laser slower = utm30lx;
+    slower.turn_ns *= rate;
+    INFO("rate " << rate);
+    LineClock clock = clock_of(utm30lx);
+    for (const Line& line : late_lines(slower, 0.3)) {
+      const auto time_ns = clock.time_of(line.stamp_ns);
+      REQUIRE(time_ns);
+      CHECK(*time_ns >= line.measured_ns - 2 * ms);
+    }
+  }
+}
+
+TEST_CASE("line clock: a line that comes once more has no time if it had none, and is not moved if it had another") {
+  LineClock clock = clock_of(utm30lx);
+  int refused = 0, moved = 0;
+  for (const Line& line : late_lines(utm30lx, 5.0, 0.05, 2000)) {
+    const auto time_ns = clock.time_of(line.stamp_ns);
+    const auto again_ns = clock.time_of(line.stamp_ns);
+    refused += !time_ns && again_ns;
+    moved += time_ns && again_ns && *again_ns != *time_ns;
+  }
+  CHECK(refused == 0);
+  CHECK(moved == 0);
+}
+
+TEST_CASE("line clock: a line that comes before its turn, out of order, leaves what is known of the others") {
+  LineClock clock = clock_of(utm30lx);
+  const auto lines = late_lines(utm30lx, 2.0, 0.0, 1000);
+  int off = 0;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const auto time_ns = clock.time_of(lines[k].stamp_ns);
+    off += k >= 32 && time_ns && std::abs(*time_ns - lines[k].measured_ns) > ms;
+    if (k % 20 == 19) clock.time_of(lines[k].stamp_ns - 3 * ms);
+  }
+  CHECK(off < 10);
 }
 
 TEST_CASE("line clock: a sensor without a beam interval does not turn, and keeps its stamps") {

@@ -319,5 +319,27 @@ TEST_CASE("pipeline: a line that is measured while the robot climbs is left out 
   CHECK(late.pipeline->counters().lines_off_map == 1);
 }
 
+TEST_CASE("pipeline: poses that jump all the time leave a map, as they have it") {
+  const auto pipeline = with_noisy_poses();
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  std::size_t points = 0;
+  int pose = 0;
+  for (int line = 0; line < 200; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    for (; 0.025 * pose < t + 0.055; ++pose) {  // two localisations in turn, 2 cm apart
+      const double time_s = 0.025 * pose;
+      const float z_m = pose % 2 == 0 ? 0.0f : 0.02f;
+      REQUIRE(pipeline->add_pose({NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, z_m}));
+    }
+    const auto ranges = laser.ranges({-1.0, 0.0}, line, x);
+    const std::uint32_t before = pipeline->counters().points;
+    pipeline->take({NoddingLaser::ns(t), ranges});
+    if (line >= 100) points += pipeline->counters().points - before;
+  }
+  CHECK(points > 100 * 150);
+}
+
 }  // namespace
 }  // namespace curbline

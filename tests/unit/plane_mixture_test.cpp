@@ -93,6 +93,21 @@ TEST_CASE("plane mixture: what holds both sides of a step makes no ground rough"
   CHECK(stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(4, 12))).rough_m2 == 0.0f);
 }
 
+TEST_CASE("plane mixture: of a strip that a step crosses aslant nothing is taken for roughness") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  Noise noise;
+  const auto ground = [](double x, double y) { return x < 2.2 + 0.1 * y ? 0.0 : 0.05; };
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages->dem.add(p);
+  stages->infer();
+  int strips = 0;
+  for (int l = 0; l < 16; ++l) {
+    const Plane& plane = stages->mixture.plane(l);
+    strips += plane.alive() && plane.x_m > 2.3f;
+    CHECK(plane.rough_m2 < 1e-6f);
+  }
+  CHECK(strips > 0);
+}
+
 //  o
 //  ____________
 //              |_       the first of two rows behind the edge: too high, by readings that mix it and the road
@@ -291,6 +306,21 @@ TEST_CASE("plane mixture: the M-step fits planes to cells by their responsibilit
   CHECK(plane.cells == Approx(324.0f));
   CHECK(stages->mixture.plane(high).z_m == Approx(0.12).margin(1e-5));
   CHECK(stages->mixture.plane(high).cells == Approx(252.0f));
+}
+
+TEST_CASE("plane mixture: ground is as rough to the M-step as to its region") {
+  Settings settings = small_settings();
+  settings.planes.update = PlaneUpdate::responsibilities;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  Noise noise;
+  const auto ground = [&](double, double) { return 0.03 * noise.normal(); };
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages->dem.add(p);
+  stages->infer(true);
+  const int label = stages->label_at(0, 0);
+  const float rough_m2 = stages->mixture.plane(label).rough_m2;
+  stages->mixture.maximise(stages->dem, [&](int, int, auto&& visit) { visit(label, 1.0f); });
+  CHECK(rough_m2 > 0.0f);
+  CHECK(stages->mixture.plane(label).rough_m2 == rough_m2);
 }
 
 TEST_CASE("plane mixture: the same share of every cell leaves a plane and its noise as they are") {

@@ -19,10 +19,8 @@ std::optional<CarmenLine> LaserLog::next() {
 
 std::string LaserLog::remarks() const {
   if (clock_.set_back() + clock_.left_out() == 0) return {};
-  std::string text = reader_.path() + ": the stamps of " + std::to_string(clock_.set_back()) +
-                     " scan lines are late, and were set back to the laser's turns";
-  if (clock_.left_out() > 0) text += "; " + std::to_string(clock_.left_out()) + " were left out, of no turn for sure";
-  return text;
+  return reader_.path() + ": scan lines came late, each by another time: " + std::to_string(clock_.set_back()) +
+         " were set back to the laser's turns, " + std::to_string(clock_.left_out()) + " left out, of no turn for sure";
 }
 
 }  // namespace curbline::tools
