@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   write->callback([&] {
     check_outputs({{"--out", files.out}},
                   {{"--robot", files.robot}, {"--scans", files.scans}, {"--can", files.can}, {"--poses", files.poses}});
-    write_drive(files);
+    if (const std::string remarks = write_drive(files); !remarks.empty()) std::cerr << remarks << '\n';
   });
   std::string results;
   auto* curbs = app.add_subcommand("curbs", "Results to the curbs after the last scan line, as CSV on stdout");

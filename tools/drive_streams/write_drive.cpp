@@ -66,6 +66,7 @@ class DriveWriter {
     }
     out_.commit();
   }
+  std::string remarks() const { return scans_.remarks(); }
 
  private:
   void put_bytes(std::span<const std::byte> bytes) {
@@ -119,8 +120,10 @@ class DriveWriter {
 
 }  // namespace
 
-void write_drive(const DriveFiles& files) {
-  DriveWriter(files).write();
+std::string write_drive(const DriveFiles& files) {
+  DriveWriter writer(files);
+  writer.write();
+  return writer.remarks();
 }
 
 }  // namespace curbline::tools
