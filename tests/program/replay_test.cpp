@@ -82,7 +82,8 @@ TEST_CASE("program: scan lines stamped 5 ms late on the mean tell the heights of
     stamp_on_arrival(logs);
     const Outcome outcome = curbline(logs.replay() + results(logs));
     REQUIRE(outcome.status == 0);
-    CHECK_THAT(outcome.err, Catch::StartsWith(logs.path("scans.carmen") + ": the stamps of "));
+    CHECK_THAT(outcome.err,
+               Catch::StartsWith(logs.path("scans.carmen") + ": scan lines came late, each by another time: "));
     const nlohmann::json figures = evaluate(logs);
     check_curbs(figures);
     CHECK(figures.at("height_error_median_m").get<double>() <= 0.0004);
