@@ -163,7 +163,6 @@ void LineClock::fit() {
   const float most_ns = most_slower * to_float(turn_ns_);
   const float slower_ns = (b.late_ns - a.late_ns) / (b.turn - a.turn);
   slower_ns_ = std::clamp(slower_ns, -most_ns, most_ns);
-  steady_ = slower_ns == slower_ns_;
   float least_ns = 0.0f, sum_ns = 0.0f;  // above the line through the newest
   for (int k = 0; k < size_; ++k) {
     const Place& p = all[static_cast<std::size_t>(k)];
@@ -173,6 +172,8 @@ void LineClock::fit() {
   }
   newest_late_ns_ = -least_ns;
   mean_late_ns_ = std::max(sum_ns / to_float(size_) - least_ns, exact_ns);
+  // By chance they tell a turn to a fraction of that over their number.
+  steady_ = to_float(size_) * magnitude(slower_ns - slower_ns_) <= mean_late_ns_;
 }
 
 }  // namespace curbline
