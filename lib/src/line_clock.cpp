@@ -172,8 +172,8 @@ void LineClock::fit() {
   }
   newest_late_ns_ = -least_ns;
   mean_late_ns_ = std::max(sum_ns / to_float(size_) - least_ns, exact_ns);
-  // By chance they tell a turn to a fraction of that over their number.
-  steady_ = to_float(size_) * magnitude(slower_ns - slower_ns_) <= mean_late_ns_;
+  // By chance they tell a turn to a fraction of that over the turns between them.
+  steady_ = to_float(newest().turn - arrival(0).turn) * magnitude(slower_ns - slower_ns_) <= mean_late_ns_;
 }
 
 }  // namespace curbline
