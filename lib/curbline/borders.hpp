@@ -11,6 +11,7 @@
 #include "curbline/beside.hpp"
 #include "curbline/cell_line.hpp"
 #include "curbline/dem.hpp"
+#include "curbline/grid.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane_mixture.hpp"
 
@@ -36,6 +37,10 @@ class Borders {
 
     /// In a line, which it lies off in half gaps.
     float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
+    /// The direction, of grid.hpp, in which the side of one of its planes lies.
+    std::size_t toward(Label label) const {
+      return static_cast<std::size_t>(direction(axis, label == high ? sign : -sign));
+    }
   };
 
   /// Borders of a chain that follow each other. Those of one shadow err alike: all open ones together weigh as one

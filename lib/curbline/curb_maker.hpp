@@ -160,7 +160,7 @@ GroundAlong CurbMaker<limits>::ground_along(const Part& part, const Piece& piece
   float cells = 0.0f, above_m = 0.0f;
   for (const Border& border : part) {
     if (border.axis != across) continue;
-    const auto d = static_cast<std::size_t>(direction(border.axis, label == border.high ? border.sign : -border.sign));
+    const std::size_t d = border.toward(label);
     int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
     for (int k = 1; k <= GroundAlong::farthest; ++k) {
       i += step_i[d];

@@ -224,7 +224,7 @@ void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
 template <Limits limits>
 int CurbPiece<limits>::cell_beside(const Stages& stages, const Border& border, int link_reach, Label own) {
   const Dem<limits>& dem = stages.dem;
-  const auto d = static_cast<std::size_t>(direction(border.axis, own == border.high ? border.sign : -border.sign));
+  const std::size_t d = border.toward(own);
   const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
   int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
   for (int g = 0; g <= reach && dem.contains(i, j); ++g) {

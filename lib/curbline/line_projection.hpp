@@ -3,6 +3,7 @@
 // operations a beam, 120 of one that returns from outside the map.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -50,12 +51,10 @@ class ProjectedLine {
   /// Leaves out the points of which that is true; false if it is of none.
   template <typename Of>
   bool leave_out_if(Of&& of) {
-    const std::size_t before = count_;
-    count_ = 0;
-    for (std::size_t i = 0; i < before; ++i) {
-      if (!of(points_[i])) points_[count_++] = points_[i];
-    }
-    return count_ < before;
+    const std::span<Point> all = points();
+    const auto end = std::remove_if(all.begin(), all.end(), of);
+    count_ = static_cast<std::size_t>(end - all.begin());
+    return end != all.end();
   }
   std::span<const Point> points() const { return {points_.data(), count_}; }
   std::span<Point> points() { return {points_.data(), count_}; }

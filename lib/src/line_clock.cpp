@@ -143,13 +143,15 @@ void LineClock::fit() {
   struct Place {
     float turn, late_ns;
   };
-  std::array<Place, capacity> all, hull;
+  const auto place = [this](int k) -> Place {
+    const std::int64_t turn = arrival(k).turn - newest().turn;
+    return {to_float(turn), to_float(arrival(k).stamp_ns - newest().stamp_ns - turn * turn_ns_)};
+  };
+  std::array<Place, capacity> hull;
   int corners = 0;
   float mean_turn = 0.0f;
   for (int k = 0; k < size_; ++k) {
-    const std::int64_t turn = arrival(k).turn - newest().turn;
-    const Place p{to_float(turn), to_float(arrival(k).stamp_ns - newest().stamp_ns - turn * turn_ns_)};
-    all[static_cast<std::size_t>(k)] = p;
+    const Place p = place(k);
     mean_turn += p.turn / to_float(size_);
     for (; corners >= 2; --corners) {
       const Place &a = hull[static_cast<std::size_t>(corners - 2)], &b = hull[static_cast<std::size_t>(corners - 1)];
@@ -165,7 +167,7 @@ void LineClock::fit() {
   slower_ns_ = std::clamp(slower_ns, -most_ns, most_ns);
   float least_ns = 0.0f, sum_ns = 0.0f;  // above the line through the newest
   for (int k = 0; k < size_; ++k) {
-    const Place& p = all[static_cast<std::size_t>(k)];
+    const Place p = place(k);
     const float above_ns = p.late_ns - slower_ns_ * p.turn;
     least_ns = std::min(least_ns, above_ns);
     sum_ns += above_ns;

@@ -197,10 +197,9 @@ void Replay::keep_leaving_curbs() {
 
 std::string Replay::remarks() const {
   std::string text = can_ ? can_->remarks() : std::string();
-  const auto say = [&](const std::string& log, const std::string& what) {
-    text += (text.empty() ? "" : "\n") + log + ": " + what;
-  };
-  if (const std::string of_scans = scans_->remarks(); !of_scans.empty()) text += (text.empty() ? "" : "\n") + of_scans;
+  const auto add_line = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
+  const auto say = [&](const std::string& log, const std::string& what) { add_line(log + ": " + what); };
+  if (const std::string of_scans = scans_->remarks(); !of_scans.empty()) add_line(of_scans);
   const auto add = [&](const std::string& log, long count, const std::string& what) {
     if (count > 0) say(log, std::to_string(count) + " of " + what);
   };
