@@ -253,6 +253,8 @@ TEST_CASE("robot: values out of range are refused with the range") {
   CHECK(error_in("[laser]\nscan_rate_hz = 100\n").starts_with("r.toml:1: laser.beam_interval_s times the beams"));
   CHECK(error_in("[laser]\nmin_range_m = 50\n")
             .starts_with("r.toml:1: laser.max_range_m is not above min_range_m; expected"));
+  CHECK(error_in("[simulated]\npose_jump_every_s = 1e-9\n") ==
+        "r.toml:2: simulated.pose_jump_every_s is below 1e-04; expected 0, never, or no oftener than poses may come");
   CHECK(error_in("[sweep]\nfrom_rad = 2\n").starts_with("r.toml:1: sweep.to_rad is not above from_rad; expected"));
   CHECK(error_in("[tilt.signal]\nservo = \"esc\"\n")
             .starts_with("r.toml:2: tilt.signal.servo is \"esc\"; expected cia402, "));

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "formats/bad_input.hpp"
+#include "formats/decimals.hpp"
 #include "robot/parts.hpp"
 
 namespace curbline::tools {
@@ -73,16 +74,20 @@ void read_sweep(TomlTable table, Sweep& sweep) {
 }
 
 void read_simulated(TomlTable table, SimulatedErrors& errors) {
+  constexpr double most_poses_hz = 10'000.0;
   table.read("dropout", errors.dropout, {0.0, 1.0});
   table.read("beam_divergence_rad", errors.beam_divergence_rad, {0.0, 0.1});
   table.read("tilt_rate_hz", errors.tilt_rate_hz, {0.1, 10'000.0});
   table.read("tilt_latency_s", errors.tilt_latency_s, {-1.0, 1.0});
   table.read("tilt_latency_sweep_sd_s", errors.tilt_latency_sweep_sd_s, {0.0, 1.0});
   table.read("tilt_jitter_s", errors.tilt_jitter_s, {0.0, 1.0});
-  table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, 10'000.0});
+  table.read("pose_rate_hz", errors.pose_rate_hz, {0.1, most_poses_hz});
   table.read("pose_position_sd_m", errors.pose_position_sd_m, {0.0, 1.0});
   table.read("pose_attitude_sd_rad", errors.pose_attitude_sd_rad, {0.0, 0.1});
   table.read("pose_jump_every_s", errors.pose_jump_every_s, {0.0, 86'400.0});
+  if (errors.pose_jump_every_s > 0 && errors.pose_jump_every_s < 1 / most_poses_hz)
+    table.refuse("pose_jump_every_s",
+                 "is below " + shortest(1 / most_poses_hz) + "; expected 0, never, or no oftener than poses may come");
   table.read("pose_jump_height_m", errors.pose_jump_height_m, {0.0, 1.0});
   table.read("pose_jump_attitude_rad", errors.pose_jump_attitude_rad, {0.0, 0.1});
   table.done();
