@@ -266,7 +266,13 @@ TEST_CASE("simulation: a sweep that the servo's signal cannot hold is refused wi
   robot.sweep = {-0.6, 0.5, 2.0};
   REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
                       "r.toml: sweep.from_rad is -0.6; expected an angle that tilt.signal holds, -0.5 at least");
-  robot.sweep.from_rad = -0.5;
+  robot.sweep = {0.6, 0.7, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.from_rad is 0.6; expected an angle that tilt.signal holds, 0.5 at most");
+  robot.sweep = {-0.7, -0.6, 2.0};
+  REQUIRE_THROWS_WITH(Simulation(scene_of(flat), robot, 1),
+                      "r.toml: sweep.from_rad is -0.7; expected an angle that tilt.signal holds, -0.5 at least");
+  robot.sweep = {-0.5, 0.5, 2.0};
   CHECK_NOTHROW(Simulation(scene_of(flat), robot, 1));
   robot.sweep.to_rad = 1.0;
   robot.tilt.fixed = true;

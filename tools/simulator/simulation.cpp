@@ -30,18 +30,18 @@ Eigen::Isometry3d transform(const MountSettings& mount) {
 /// A signal clips what it cannot hold.
 void check_sweep(const Robot& robot) {
   if (robot.tilt.fixed) return;
-  const auto check = [&](const char* key, double angle_rad, const char* bound) {
+  const auto check = [&](const char* key, double angle_rad) {
     can::Frame frame;
     can::encode(robot.tilt_signal, angle_rad, frame);
     const double held_rad = can::decode(robot.tilt_signal, frame).value_or(0);
     if (std::abs(held_rad - angle_rad) <= std::abs(robot.tilt_signal.scale)) return;
     std::ostringstream what;
     what << robot.file << ": sweep." << key << " is " << angle_rad << "; expected an angle that tilt.signal holds, "
-         << held_rad << " at " << bound;
+         << held_rad << (held_rad < angle_rad ? " at most" : " at least");
     throw BadInput(what.str());
   };
-  check("from_rad", robot.sweep.from_rad, "least");
-  check("to_rad", robot.sweep.to_rad, "most");
+  check("from_rad", robot.sweep.from_rad);
+  check("to_rad", robot.sweep.to_rad);
 }
 
 /// The last pose and the last beam come behind the end.
