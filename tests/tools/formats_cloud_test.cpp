@@ -127,6 +127,11 @@ TEST_CASE("cloud: a PCD that is not what its header says is refused") {
   CHECK(error(pcd_header(xyz_fields, 2, "ascii") + "1 2 3\n") == "a.pcd: the file ends after 1 points; expected 2");
   CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3\n1 2 3\n") ==
         "a.pcd:13: more points; expected 1 as the header has it");
+  CHECK(error(pcd_header(xyz_fields, 1, "binary") + bytes_of<float>({1, 2, 3, 4, 5, 6})) ==
+        "a.pcd: more points; expected 1 as the header has it");
+  CHECK(
+      read_cloud(dir.write("a.pcd", pcd_header(xyz_fields, 1, "binary") + bytes_of<float>({1, 2, 3}) + "\n")).size() ==
+      1);
   CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2\n") ==
         "a.pcd:12: the line ends before z; expected one field more");
   CHECK(error(pcd_header(xyz_fields, 1, "ascii") + "1 2 3 4\n").starts_with("a.pcd:12: more fields"));

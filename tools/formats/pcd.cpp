@@ -196,8 +196,11 @@ std::vector<Point3> read_pcd(const std::string& path) {
   const std::int64_t promised = header.width * header.height;
   std::vector<char> record(static_cast<std::size_t>(layout.bytes));
   std::vector<Point3> points;
+  const auto next_point = [&] {
+    return header.binary ? read_binary_point(source, layout, record) : read_ascii_point(source, layout);
+  };
   for (std::int64_t i = 0; i < promised; ++i) {
-    const auto xyz = header.binary ? read_binary_point(source, layout, record) : read_ascii_point(source, layout);
+    const auto xyz = next_point();
     if (!xyz) {
       throw BadInput(path + ": the file ends after " + std::to_string(i) + " points; expected " +
                      std::to_string(promised));
@@ -205,8 +208,10 @@ std::vector<Point3> read_pcd(const std::string& path) {
     const auto [x, y, z] = *xyz;
     points.push_back({x, y, z});
   }
-  if (!header.binary && read_ascii_point(source, layout)) {
-    source.fail("more points; expected " + std::to_string(promised) + " as the header has it");
+  if (next_point()) {
+    const std::string what = "more points; expected " + std::to_string(promised) + " as the header has it";
+    if (header.binary) throw BadInput(path + ": " + what);
+    source.fail(what);
   }
   return points;
 }
