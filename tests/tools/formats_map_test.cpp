@@ -96,6 +96,8 @@ TEST_CASE("labels and curbs: other columns and bad values are refused") {
   CHECK(label_error("x,y\n").starts_with("l.csv:1: other columns; expected"));
   CHECK(label_error(labels + "0,0,0,0,0,1,0.5\n").starts_with("l.csv:2: points is \"0\""));
   CHECK(label_error(labels + "0,0,0,0,1,1,1.5\n") == "l.csv:2: probability is \"1.500000\"; expected 0 to 1");
+  CHECK(label_error(labels + "0,0,0,-1,1,1,0.5\n") ==
+        "l.csv:2: variance_m2 is \"-1.000000\"; expected a number of 0 or more");
   CHECK(label_error(labels + "0,0,0,0,1,1\n") == "l.csv:2: the line ends before probability; expected one field more");
   CHECK(label_error(labels + "0,0,0,0,1,1,1,1\n").starts_with("l.csv:2: more fields"));
   const std::string curbs = "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind\n";
@@ -104,6 +106,8 @@ TEST_CASE("labels and curbs: other columns and bad values are refused") {
   };
   CHECK(curb_error(curbs + "0,0,0,0,0,0,0.5,kerb\n") ==
         "c.csv:2: kind is \"kerb\"; expected step_up, step_down, crease or ramp_edge");
+  CHECK(curb_error(curbs + "0,0,1,0,0.1,-0.01,0.5,crease\n") ==
+        "c.csv:2: height_sd_m is \"-0.010000\"; expected a number of 0 or more");
   CHECK(
       curb_error(curbs + "0,0,1e10,0,0,0,0.5,crease\n").starts_with("c.csv:2: x1_m is \"10000000000.000\"; expected"));
   CHECK(curb_error(curbs + "0,0,1,0,0,0,0.5,crease\n-9e3,0,9e3,0,0,0,0.5,crease\n") ==

@@ -28,6 +28,13 @@ double read_place(Fields& fields, std::string_view name) {
   return metres;
 }
 
+/// A variance or a standard deviation.
+double read_spread(Fields& fields, std::string_view name) {
+  const double value = fields.number(name);
+  if (!(value >= 0.0)) fields.fail(name, readable(value, places), "a number of 0 or more");
+  return value;
+}
+
 double read_probability(Fields& fields) {
   const double value = fields.number("probability");
   if (!(value >= 0.0 && value <= 1.0)) fields.fail("probability", readable(value, places), "0 to 1");
@@ -102,7 +109,7 @@ std::vector<LabelledCell> read_labels(const std::string& path) {
     row.x_m = read_place(fields, "x_m");
     row.y_m = read_place(fields, "y_m");
     row.cell.height_m = fields.number("height_m");
-    row.cell.variance_m2 = fields.number("variance_m2");
+    row.cell.variance_m2 = read_spread(fields, "variance_m2");
     row.cell.points = static_cast<int>(fields.whole("points", 1, most));
     row.cell.label = static_cast<int>(fields.whole("label", -1, most));
     row.cell.probability = read_probability(fields);
@@ -120,7 +127,7 @@ std::vector<MapCurb> read_curbs(const std::string& path) {
     if (const double length_m = std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m); length_m > longest_m)
       fields.fail("the length", decimals(length_m, 3), "a piece of curb of 10 km at most");
     curb.height_m = fields.number("height_m");
-    curb.height_sd_m = fields.number("height_sd_m");
+    curb.height_sd_m = read_spread(fields, "height_sd_m");
     curb.probability = read_probability(fields);
     curb.kind = fields.word("kind");
     if (curb.kind != "step_up" && curb.kind != "step_down" && curb.kind != "crease" && curb.kind != "ramp_edge") {
