@@ -37,6 +37,17 @@ TEST_CASE("atomic file: commit puts the whole file in place") {
   CHECK(files_in(dir) == 1);
 }
 
+TEST_CASE("atomic file: who may read the old file may read the new one, and nobody else") {
+  const TemporaryDirectory dir;
+  const auto of_owner = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(dir.write("a", "old"), of_owner);
+  AtomicFile file(dir.path("a"));
+  file.stream() << "new";
+  file.commit();
+  CHECK(read_file(dir.path("a")) == "new");
+  CHECK(fs::status(dir.path("a")).permissions() == of_owner);
+}
+
 TEST_CASE("atomic file: two files for one name do not mix") {
   const TemporaryDirectory dir;
   AtomicFile first(dir.path("a")), second(dir.path("a"));
