@@ -72,6 +72,13 @@ TEST_CASE("program: a window has an origin and a size") {
   check_wrong_usage(curbline({"map", "a.xyz", "--origin", "0", "--size", "4", "4"}), "--origin");
 }
 
+TEST_CASE("program: an origin that lies farther off than a robot's window may is wrong usage of replay") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.1"});
+  for (const Words& place : {Words{"200000", "0"}, {"0", "-1e9"}})
+    check_wrong_usage(curbline(logs.replay() + Words{"--origin"} + place + Words{"--size", "4", "4"}),
+                      "; expected metres in [-1e5, 1e5], of a robot's window\n");
+}
+
 TEST_CASE("program: no output takes the place of an input or of another output") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n"), new_file = dir.path("new.csv");

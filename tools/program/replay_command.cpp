@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "formats/csv.hpp"
+#include "formats/decimals.hpp"
 #include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "program/line_costs.hpp"
@@ -104,8 +106,18 @@ void check_files(const Options& o) {
                 {{"--scans", o.logs.scans}, {"--can", o.logs.can}, {"--poses", o.logs.poses}, {"--robot", o.robot}});
 }
 
+void check_origin(const MapOptions& options) {
+  constexpr auto furthest_m = static_cast<double>(WindowSettings::furthest_m);
+  for (const double metres : options.origin) {
+    if (std::abs(metres) > furthest_m)
+      throw CLI::ValidationError("--origin",
+                                 readable(metres, 3) + "; expected metres in [-1e5, 1e5], of a robot's window");
+  }
+}
+
 void run(const Options& o) {
   check_files(o);
+  check_origin(o.map);
   Pace pace(speed_of(o.speed, live_interface(o.logs.can).has_value()));
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
