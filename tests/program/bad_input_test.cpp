@@ -130,6 +130,13 @@ TEST_CASE("program: a CAN log without a frame of the servo is refused, with the 
   check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
 }
 
+TEST_CASE("program: a scale by which no frame holds an angle is refused with the angles that can be") {
+  const Recording logs = standing();
+  const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nscale = 1000.0\n");
+  check_refused(replay_with(logs, "robot", robot), logs.path("can.log") + ": ",
+                "none holds an angle; expected 6 bytes or more and at most 1e+06 rad\n");
+}
+
 TEST_CASE("program: tilt frames of a second interface are refused, other frames of it are not") {
   const Recording logs = standing();
   const auto with_twin = [&](const std::string& id) {

@@ -51,7 +51,8 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
   if (counters.malformed > 0) {
     return std::to_string(counters.malformed) + " of " + frames +
            " have the tilt signal's id and none holds an angle; expected " +
-           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more";
+           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more and at most " +
+           shortest(TiltReading::furthest_rad) + " rad";
   }
   return "none of " + frames + " is the tilt signal; expected " + frame_of(robot.tilt_signal) +
          " as the robot's description has it";
