@@ -213,7 +213,6 @@ void Daemon::take_line(const ScanLine& line) {
   const std::int64_t before_ns = scanner::steady_now_ns();
   const Status status = pipeline_->take(line);
   if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
-  last_line_ns_ = line.time_ns;
   give_curbs(line.time_ns);
   if (can_out_) send_curbs(status == Status::ok);
 }

@@ -33,7 +33,7 @@ namespace curbline::daemon {
 
 struct Options {
   std::string can;    ///< interface; empty for a robot with a fixed tilt
-  std::string scans;  ///< a log, or a scanner: curbline/scanner_link.hpp
+  std::string scans;  ///< a log, or a scanner: program/scanner_link.hpp
   std::string curbs;  ///< where clients connect: curb_server.hpp
   bool can_out = false;
 };
@@ -96,7 +96,6 @@ class Daemon {
   std::optional<std::int64_t> fixed_offset_ns_;  ///< log time less host time, where no frame tells it
 
   std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady
-  std::int64_t last_line_ns_ = 0;
   std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; the first CurbAhead has 0
   std::uint64_t heap_calls_before_ = 0;
   std::uint32_t curbs_left_out_ = 0;
