@@ -42,11 +42,7 @@ std::unique_ptr<tools::HostPipeline> pipeline_of(const tools::Robot& robot) {
     throw BadInput(robot.file +
                    ": the robot drives, and there is no live source of poses yet; expected pose.still = true");
   }
-  try {
-    return tools::make_host_pipeline(tools::pipeline_settings(robot));
-  } catch (const BadInput& error) {
-    throw BadInput(robot.file + ": " + error.what());
-  }
+  return tools::make_host_pipeline(robot);
 }
 
 }  // namespace

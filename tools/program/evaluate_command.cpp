@@ -20,7 +20,7 @@ void add_evaluate(CLI::App& app) {
       command
           ->add_option(
               "dir", o->truth.dir,
-              "directory that simulate wrote; labels.csv and curbs.csv in it are scored, or, without both or with "
+              "directory that simulate wrote; labels.csv and curbs.csv are scored where both are in it, else, or with "
               "--method, what its logs give")
           ->check(file_name());
   auto* paper =

@@ -94,7 +94,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   if (robot_file.empty()) return {};
   Robot robot = read_robot(robot_file);
   apply_window(paper_window(MapMethod::curbline), robot.window);
-  auto pipeline = make_host_pipeline(pipeline_settings(robot));
+  auto pipeline = make_host_pipeline(robot);
   struct Sweep {
     std::vector<Point> points;
     float mended_s;  ///< before the next
@@ -115,7 +115,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   for (Sweep& sweep : sweeps) {
     const float later_s = pipeline->tilt_latency().mended_s() - sweep.mended_s;
     for (Point& point : sweep.points) point.z_m += point.growth_m_s * later_s;
-    const auto alone = make_host_pipeline(pipeline_settings(robot));
+    const auto alone = make_host_pipeline(robot);
     alone->observe(sweep.points);
     alone->settle();
     maps.push_back(alone->map());

@@ -121,6 +121,14 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
                  std::to_string(largest_limits.cols));
 }
 
+std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot) {
+  try {
+    return make_host_pipeline(pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
 MapCurb to_map_curb(const Curb& curb) {
   return {curb.x0_m,          curb.y0_m,         curb.x1_m,        curb.y1_m,
           curb.height_m,      curb.height_sd_m,  curb.probability, to_string(curb.kind),

@@ -62,6 +62,8 @@ class HostPipeline {
 
 /// Throws BadInput if the settings are refused; one beyond the largest limits is too.
 std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings);
+/// The same, by the file's name.
+std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot);
 
 MapCurb to_map_curb(const Curb& curb);
 

@@ -33,14 +33,6 @@ std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs)
   return pose ? std::optional(pose->time_ns) : std::nullopt;
 }
 
-std::unique_ptr<HostPipeline> pipeline_of(const Robot& robot) {
-  try {
-    return make_host_pipeline(pipeline_settings(robot));
-  } catch (const BadInput& error) {
-    throw BadInput(robot.file + ": " + error.what());
-  }
-}
-
 /// Why a log gave no reading at all.
 std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
   const std::string frames = std::to_string(counters.frames) + " frames";
@@ -60,7 +52,7 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
 
 }  // namespace
 
-Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, pipeline_of(robot)) {}
+Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
     : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)) {
