@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 
 #include "evaluation/curbs.hpp"
 #include "formats/csv.hpp"
@@ -17,6 +19,7 @@ constexpr double found_share = 0.5;                 ///< of a curb's visible len
 constexpr double least_visible_m = 0.3;             ///< a few cells: less is nothing to judge by
 constexpr std::size_t most_reference_cells = 6400;  ///< the reference takes minutes for more
 constexpr double paper_v = 0.88;                    ///< in simulation, +- 0.05
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< of a table, where there is no figure
 
 /// All that is scored, and what it is scored with.
 struct Evaluation {
@@ -157,58 +160,57 @@ struct Scored {
   CurbScores curbs;
 };
 
+/// A row of the table that the reference has too.
+struct Row {
+  const char* name;
+  double (*value)(const Scored&);
+  double scale;
+  int decimals;
+  double paper = none;
+};
+
+constexpr std::array of_planes{
+    Row{"V-measure of labels", [](const Scored& s) { return s.planes.v; }, 1, 3, paper_v},
+    Row{"          of readings alone", [](const Scored& s) { return s.planes.v_readings; }, 1, 3},
+    Row{"cell heights, RMSE, mm", [](const Scored& s) { return s.planes.cell_rmse_m; }, 1e3, 1},
+    Row{"planes, RMSE, mm", [](const Scored& s) { return s.planes.plane_rmse_m; }, 1e3, 1},
+    Row{"planes, height error, median, mm", [](const Scored& s) { return s.planes.height_m.median; }, 1e3, 1},
+    Row{"planes, slope error, median, mrad", [](const Scored& s) { return s.planes.slope_rad.median; }, 1e3, 1},
+};
+
+constexpr std::array of_curbs{
+    Row{"recall of 2 to 4 cm at 0.1 m", [](const Scored& s) { return s.curbs.band[0].recall; }, 1, 3},
+    Row{"recall of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].recall; }, 1, 3},
+    Row{"precision of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].precision; }, 1, 3},
+    Row{"position error, median, cm", [](const Scored& s) { return s.curbs.position_m.median; }, 100, 1},
+    Row{"                95 %, cm", [](const Scored& s) { return s.curbs.position_m.most; }, 100, 1},
+    Row{"height error, median, cm", [](const Scored& s) { return s.curbs.height_m.median; }, 100, 1},
+    Row{"              95 %, cm", [](const Scored& s) { return s.curbs.height_m.most; }, 100, 1},
+    Row{"error / sd of positions, mean square",
+        [](const Scored& s) { return s.curbs.position_calibration.mean_square; }, 1, 2},
+    Row{"error / sd of heights, mean square", [](const Scored& s) { return s.curbs.calibration.mean_square; }, 1, 2},
+    Row{"              within 1 sd (0.68)", [](const Scored& s) { return s.curbs.calibration.within_1_sd; }, 1, 2},
+    Row{"              within 2 sd (0.95)", [](const Scored& s) { return s.curbs.calibration.within_2_sd; }, 1, 2},
+};
+
 void print_table(const Scored& here, const std::optional<Scored>& reference, const DetectionSummary& detection) {
-  const double none = std::nan("");
-  const auto line = [&](const char* name, auto value, double scale, int decimals, double paper) {
-    print_line(name, scale * value(here), reference ? scale * value(*reference) : none, paper, decimals);
+  const auto print = [&](const Row& row) {
+    print_line(row.name, row.scale * row.value(here), reference ? row.scale * row.value(*reference) : none, row.paper,
+               row.decimals);
   };
   std::printf("%-36s %10s %10s %10s\n", "", "here", "crf-em", "paper");
-  line(
-      "V-measure of labels", [](const Scored& s) { return s.planes.v; }, 1, 3, paper_v);
-  line(
-      "          of readings alone", [](const Scored& s) { return s.planes.v_readings; }, 1, 3, none);
-  line(
-      "cell heights, RMSE, mm", [](const Scored& s) { return s.planes.cell_rmse_m; }, 1e3, 1, none);
-  line(
-      "planes, RMSE, mm", [](const Scored& s) { return s.planes.plane_rmse_m; }, 1e3, 1, none);
-  line(
-      "planes, height error, median, mm", [](const Scored& s) { return s.planes.height_m.median; }, 1e3, 1, none);
-  line(
-      "planes, slope error, median, mrad", [](const Scored& s) { return s.planes.slope_rad.median; }, 1e3, 1, none);
+  for (const Row& row : of_planes) print(row);
   for (std::size_t k = 0; k < here.curbs.at.size(); ++k) {
+    const auto rate = [&](const char* name, double StepRates::*value) {
+      print_line(name, here.curbs.at[k].*value, reference ? reference->curbs.at[k].*value : none, none, 3);
+    };
     char name[64];
     std::snprintf(name, sizeof name, "steps at %.2f m: precision", here.curbs.at[k].tolerance_m);
-    line(
-        name, [k](const Scored& s) { return s.curbs.at[k].precision; }, 1, 3, none);
-    line(
-        "                 recall", [k](const Scored& s) { return s.curbs.at[k].recall; }, 1, 3, none);
-    line(
-        "                 F1", [k](const Scored& s) { return s.curbs.at[k].f1; }, 1, 3, none);
+    rate(name, &StepRates::precision);
+    rate("                 recall", &StepRates::recall);
+    rate("                 F1", &StepRates::f1);
   }
-  line(
-      "recall of 2 to 4 cm at 0.1 m", [](const Scored& s) { return s.curbs.band[0].recall; }, 1, 3, none);
-  line(
-      "recall of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].recall; }, 1, 3, none);
-  line(
-      "precision of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].precision; }, 1, 3, none);
-  line(
-      "position error, median, cm", [](const Scored& s) { return s.curbs.position_m.median; }, 100, 1, none);
-  line(
-      "                95 %, cm", [](const Scored& s) { return s.curbs.position_m.most; }, 100, 1, none);
-  line(
-      "height error, median, cm", [](const Scored& s) { return s.curbs.height_m.median; }, 100, 1, none);
-  line(
-      "              95 %, cm", [](const Scored& s) { return s.curbs.height_m.most; }, 100, 1, none);
-  line(
-      "error / sd of positions, mean square", [](const Scored& s) { return s.curbs.position_calibration.mean_square; },
-      1, 2, none);
-  line(
-      "error / sd of heights, mean square", [](const Scored& s) { return s.curbs.calibration.mean_square; }, 1, 2,
-      none);
-  line(
-      "              within 1 sd (0.68)", [](const Scored& s) { return s.curbs.calibration.within_1_sd; }, 1, 2, none);
-  line(
-      "              within 2 sd (0.95)", [](const Scored& s) { return s.curbs.calibration.within_2_sd; }, 1, 2, none);
+  for (const Row& row : of_curbs) print(row);
   print_line("seen to first told of, median, s", detection.time_s.median, none, none, 1);
   print_line("robot's distance then, median, m", detection.distance_m.median, none, none, 1);
 }
