@@ -69,8 +69,10 @@ class TiltSnapshot {
 /// Ring of the newest readings. One writer, one reader, neither ever waits.
 template <Limits limits>
 class TiltTrack {
-  static_assert(limits.tilt_samples > 1 && (limits.tilt_samples & (limits.tilt_samples - 1)) == 0,
-                "tilt_samples must be a power of two, 2 at least: the count of readings wraps");
+  static_assert(
+      limits.tilt_samples >= 4 && (limits.tilt_samples & (limits.tilt_samples - 1)) == 0,
+      "tilt_samples must be a power of two, for the count of readings wraps, and 4 at least: a snapshot leaves "
+      "one out, and a rate wants two");
 
  public:
   /// Forgets all readings. Before the interrupt that calls push() is enabled, or with it masked; not beside push() of
