@@ -8,15 +8,20 @@ ROOT = Path(__file__).resolve().parents[2]
 # Stage 0 is what is not the pipeline: the board, its port, the drive's records.
 STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
 HELPER = -1
-FILES = {
-    "signal.cpp": "tilt", "frame.hpp": "tilt", "tilt_decoder.hpp": "tilt", "tilt_decoder.cpp": "tilt", "pipeline.hpp": "pipeline",
-    "line_intake.hpp": "points", "line_projection.hpp": "points", "pose_track.hpp": "points", "pose_track.cpp": "points", "tilt_track.hpp": "points", "tilt_latency.hpp": "points", "sweep_turns.hpp": "points", "tilt_latency.cpp": "points",
-    "map_comparison.hpp": "points", "viewpoints.hpp": "cells", "pose_offset.hpp": "points", "pose_offset.cpp": "points",
-    "segmentation.hpp": "regions", "segmentation.cpp": "regions", "region_graph.hpp": "regions", "plane_mixture.hpp": "planes", "region_ranking.hpp": "planes", "clean_fit.hpp": "planes", "index_set.hpp": "planes", "common_noise.hpp": "planes", "common_noise.cpp": "planes",
-    "ground.hpp": "planes", "obstacles.hpp": "planes", "run.hpp": "planes", "strip_tally.hpp": "planes",
-    "label_field.hpp": "labels", "label_site.hpp": "labels", "planes_near_by.hpp": "labels", "curb_tracer.hpp": "curbs", "curb_piece.hpp": "curbs", "curb_maker.hpp": "curbs", "border_finder.hpp": "curbs", "ground_end.hpp": "curbs", "cell_line.hpp": "curbs", "curb_stages.hpp": "curbs", "border_finder.cpp": "curbs", "borders.hpp": "curbs",
-    "shadow.hpp": "curbs", "shadow.cpp": "curbs", "curb.hpp": "curbs", "curb.cpp": "curbs", "line_fit.hpp": "curbs", "line_fit.cpp": "curbs",
-}
+# Files of lib/ whose code is written for one stage; that of others belongs to the stage that calls it.
+FILES = {name: stage for stage, names in {
+    "tilt": "frame.hpp signal.cpp tilt_decoder.cpp tilt_decoder.hpp",
+    "pipeline": "pipeline.hpp",
+    "points": "line_intake.hpp line_projection.hpp map_comparison.hpp pose_offset.cpp pose_offset.hpp pose_track.cpp "
+              "pose_track.hpp sweep_turns.hpp tilt_latency.cpp tilt_latency.hpp tilt_track.hpp",
+    "cells": "viewpoints.hpp",
+    "regions": "region_graph.hpp segmentation.cpp segmentation.hpp",
+    "planes": "clean_fit.hpp common_noise.cpp common_noise.hpp ground.hpp index_set.hpp obstacles.hpp plane_mixture.hpp "
+              "region_ranking.hpp run.hpp strip_tally.hpp",
+    "labels": "label_field.hpp label_site.hpp planes_near_by.hpp",
+    "curbs": "border_finder.cpp border_finder.hpp borders.hpp cell_line.hpp curb.cpp curb.hpp curb_maker.hpp curb_piece.hpp "
+             "curb_stages.hpp curb_tracer.hpp ground_end.hpp line_fit.cpp line_fit.hpp shadow.cpp shadow.hpp",
+}.items() for name in names.split()}
 
 
 def run(line, text=None):
@@ -41,9 +46,7 @@ def stage_of_stack(frames):
     stage = None
     for function, path in frames:
         here = stage_of_frame(function, path)
-        if here == "outside":
-            return stage or here
-        if here == "pipeline":
+        if here in ("outside", "pipeline"):
             return stage or here
         if here is not None:
             stage = here
