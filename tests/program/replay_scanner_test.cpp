@@ -60,6 +60,20 @@ void check_same(const Recording& logs, Protocol protocol) {
   CHECK(read_file(logs.path("live.curbs.csv")) == read_file(logs.path("log.curbs.csv")));
 }
 
+TEST_CASE("program: a scanner refuses a log whose lines have other beams than the first, with the line") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.1"});
+  const std::string scans = read_file(logs.path("scans.carmen")), line = lines_of(scans)[1];
+  const auto refused = [&](const std::string& other) {
+    const std::string path = logs.directory().write("other.carmen", with_line(scans, 2, other));
+    CHECK(error_of([&] { ScanFeed::from_log(path).next(); }) ==
+          "other.carmen:2: not the beams of the first scan line; expected the same number, start_angle and "
+          "angular_resolution");
+  };
+  const std::string stamp = line.substr(line.find(" 0 1700"));
+  refused(line.substr(0, line.find(" 1081 ")) + " 1 5.000" + stamp);
+  refused("RAWLASER1 0 -1.5" + line.substr(line.find(' ', 12)));
+}
+
 TEST_CASE("program: lines over SCIP 2.0, beside their CAN log, give the log's curbs byte for byte") {
   const Recording logs("street", "utm30lx");
   check_same(logs, Protocol::scip2);

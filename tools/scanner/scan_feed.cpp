@@ -23,10 +23,31 @@ std::optional<CarmenLine> next_line(Simulation& simulation, const LaserSettings&
   return std::nullopt;
 }
 
+/// What misfit_of() compares others with.
+LaserSettings beams_of(const CarmenLine& line) {
+  LaserSettings laser;
+  laser.beams = static_cast<int>(line.ranges_m.size());
+  laser.first_bearing_rad = static_cast<float>(line.start_angle_rad);
+  laser.bearing_step_rad = static_cast<float>(line.angular_resolution_rad);
+  return laser;
+}
+
 }  // namespace
 
 ScanFeed ScanFeed::from_log(const std::string& path) {
-  return ScanFeed([reader = std::make_shared<CarmenReader>(path)] { return reader->next(); });
+  return ScanFeed([reader = std::make_shared<CarmenReader>(path), laser = LaserSettings{.beams = 0}]() mutable {
+    auto line = reader->next();
+    if (!line) return line;
+    if (laser.beams == 0) {
+      laser = beams_of(*line);
+    } else if (misfit_of(line->ranges_m.size(), line->start_angle_rad, line->angular_resolution_rad, laser) !=
+               Misfit::none) {
+      throw BadInput(reader->path(), reader->line(),
+                     "not the beams of the first scan line; expected the same number, start_angle and "
+                     "angular_resolution");
+    }
+    return line;
+  });
 }
 
 ScanFeed ScanFeed::from_scene(const Scene& scene, const Robot& robot) {

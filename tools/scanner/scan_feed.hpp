@@ -15,6 +15,7 @@ namespace curbline::tools {
 
 class ScanFeed {
  public:
+  /// All its lines must have the beams of the first.
   static ScanFeed from_log(const std::string& path);
   static ScanFeed from_scene(const Scene& scene, const Robot& robot);
 
