@@ -3,6 +3,7 @@
 #include "formats/whole_file.hpp"
 #include "simulator/truth.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace curbline::tools {
@@ -74,6 +75,20 @@ class Part {
     return out;
   }
   double number(const std::string& key) const { return at(key).number(); }
+  double place_m(const std::string& key) const { return at(key).place_m(); }
+  /// Farther off samples along a line could not be counted.
+  double place_m() const {
+    const double metres = number();
+    check(std::abs(metres) <= 1e6, "a place within 1000 km");
+    return metres;
+  }
+  /// Seconds that nanoseconds of 64 bits can be.
+  double time_s(const std::string& key) const {
+    const Part part = at(key);
+    const double seconds = part.number();
+    part.check(seconds >= 0 && seconds < 9.2e9, "a time");
+    return seconds;
+  }
   double number() const {
     check(json_.is_number(), "a number");
     return json_.get<double>();
@@ -94,7 +109,7 @@ class Part {
     for (const Part& corner : at(key).parts()) {
       const std::vector<Part> xy = corner.parts();
       corner.check(xy.size() == 2, "[x, y]");
-      out.push_back({xy[0].number(), xy[1].number()});
+      out.push_back({xy[0].place_m(), xy[1].place_m()});
     }
     return out;
   }
@@ -111,7 +126,7 @@ class Part {
 };
 
 void take(const Part& file, Truth& truth) {
-  truth.start_time_s = file.number("start_time_s");
+  truth.start_time_s = file.time_s("start_time_s");
   for (const Part& p : file.at("planes").parts()) {
     truth.planes.push_back({p.text("name"), {p.number("z0_m"), p.number("sx"), p.number("sy")}});
   }
@@ -119,8 +134,8 @@ void take(const Part& file, Truth& truth) {
     truth.regions.push_back({r.text("name"), r.polygon("polygon_m"), r.index("plane", truth.planes.size())});
   }
   for (const Part& c : file.at("curbs").parts()) {
-    truth.curbs.push_back({{c.number("x0_m"), c.number("y0_m")},
-                           {c.number("x1_m"), c.number("y1_m")},
+    truth.curbs.push_back({{c.place_m("x0_m"), c.place_m("y0_m")},
+                           {c.place_m("x1_m"), c.place_m("y1_m")},
                            c.number("step0_m"),
                            c.number("step1_m"),
                            c.number("left_z_m"),
