@@ -50,12 +50,16 @@ class CurbMaker {
   float leave_shadow(const Part& part, Curb& curb, Piece& piece) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const Part& part, const Piece& piece, Label label) const;
-  void follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const;
+  void follow_ground(const Part& part, Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const;
   void follow_ground_beside(const Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const;
   struct Deviations {
     Deviation low, high;
   };
-  Deviations deviations_of(const Piece& piece, float height_m, float shadow_m) const;
+  // Called: inlined three times it takes 320 bytes of flash more.
+  [[gnu::noinline]] Deviations deviations_of(const Piece& piece, float height_m, float shadow_m) const;
+  Deviations deviations_of(const Piece& piece, const Curb& curb, float shadow_m) const {
+    return deviations_of(piece, piece.low_is_near ? curb.height_m : -curb.height_m, shadow_m);
+  }
   float plane_variance_m2(const Plane& plane, const Piece& piece) const;
   static float place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2);
   bool obstacle(const Curb& curb, const Piece& piece);
@@ -81,7 +85,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   // be hidden, or less, evenly.
   float variance_m2 = plane_variance_m2(piece.planes.low, piece) + plane_variance_m2(piece.planes.high, piece) +
                       (one_sided ? square(curb.height_m) * (1.0f / 3) : 0.0f);
-  if (two_sided_step) follow_ground(part, piece, curb, variance_m2);
+  if (two_sided_step) follow_ground(part, piece, shadow_m, curb, variance_m2);
   if (is_step(curb)) follow_ground_beside(piece, shadow_m, curb, variance_m2);
   if (obstacle(curb, piece)) return std::nullopt;
   // Planes of different slope differ as much as the borders' place does. Rough ground hangs over its edge, anywhere
@@ -176,16 +180,20 @@ GroundAlong CurbMaker<limits>::ground_along(const Part& part, const Piece& piece
 }
 
 /// A step is as high as the ground along it, where that lies off the planes. What the cells next to it lie off is then
-/// told from there.
+/// told from there. Where those tell on their own they are nearer: of a gutter three cells wide and the road beside it
+/// the mean would be told.
 template <Limits limits>
-void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, Curb& curb, float& variance_m2) const {
+void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, float shadow_m, Curb& curb,
+                                      float& variance_m2) const {
+  const Deviations beside = deviations_of(piece, curb, shadow_m);
   for (const bool high : {false, true}) {
+    if ((high ? beside.high : beside.low).found()) continue;
     const Plane& plane = high ? piece.planes.high : piece.planes.low;
     const GroundAlong ground = ground_along(part, piece, high ? piece.first.high : piece.first.low);
     curb.height_m += high == piece.low_is_near ? ground.above_m : -ground.above_m;
     variance_m2 += ground.share * (ground.variance_m2 - plane_variance_m2(plane, piece));
-    Beside& beside = high ? piece.beside_high : piece.beside_low;
-    beside.off_m -= beside.borders * ground.above_m;
+    Beside& told = high ? piece.beside_high : piece.beside_low;
+    told.off_m -= told.borders * ground.above_m;
   }
   curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
 }
@@ -194,7 +202,7 @@ void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, Curb& curb
 template <Limits limits>
 void CurbMaker<limits>::follow_ground_beside(const Piece& piece, float shadow_m, Curb& curb, float& variance_m2) const {
   const float toward = curb.height_m < 0.0f ? -1.0f : 1.0f;
-  const auto [low, high] = deviations_of(piece, piece.low_is_near ? toward : -toward, shadow_m);
+  const auto [low, high] = deviations_of(piece, curb, shadow_m);
   for (const Deviation& side : {low, high}) {
     if (side.found()) curb.height_m += toward * side.away_m;
     variance_m2 += side.height_variance_m2();

@@ -365,6 +365,28 @@ TEST_CASE("curb tracer: a step from a gutter that bears the road's plane is as h
   CHECK(down->tracer.curbs()[0].height_m < -0.135f);
 }
 
+TEST_CASE(
+    "curb tracer: a step from a road that falls toward it is as high as from its foot, not from what lies along it") {
+  struct Fringe {
+    double width_m, depth_m;
+  };
+  const Fringe fringe = GENERATE(Fringe{0.7, 0.014}, Fringe{0.8, 0.017}, Fringe{0.8, 0.019});
+  constexpr Limits limits{.rows = 40, .cols = 40, .planes = 6, .beams = 181};
+  const auto ground = [=](double x, double) {
+    return x > 2.4 ? 0.12 : -fringe.depth_m * std::max(0.0, 1.0 - (2.4 - x) / fringe.width_m);
+  };
+  const auto stages = std::make_unique<Stages<limits>>(small_settings(40, 40));
+  const float known_m2 = 1e-5f;  // as a robot that drives finds it
+  stages->dem.set_common(known_m2, 0.0f);
+  Noise noise;
+  for (const Point& p : test::sample({0, 4.0, 0, 4.0}, 0.05, 0.005, noise, ground)) stages->dem.add(p);
+  stages->settle();
+  stages->trace(0.0f, 2.0f);
+  REQUIRE(stages->label_at(23, 20) == stages->label_at(0, 20));  // one plane
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  CHECK(stages->tracer.curbs()[0].height_m == Approx(0.12 + fringe.depth_m).margin(0.0015));
+}
+
 TEST_CASE("curb tracer: ground that rises toward a step, as what mixes both sides does, makes it no lower") {
   const auto stages = traced(with_gutter(-0.012));
   REQUIRE(stages->tracer.curbs().size() == 1);
