@@ -1,6 +1,8 @@
 // map: one cloud to labels, curbs, a picture and a summary.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "formats/csv.hpp"
 #include "program.hpp"
@@ -147,6 +149,26 @@ TEST_CASE("program: a cell may have two sides") {
   CHECK(cells.front().x_m == Approx(0.1));
   CHECK(cells.front().y_m == Approx(-1.95));
   CHECK(cells.front().cell.points == 32);
+}
+
+TEST_CASE("program: a cell is seen wherever a cloud in millimetres has a point on the line where it begins") {
+  const TemporaryDirectory dir;
+  const Files files(dir);
+  std::string text;
+  std::set<std::array<int, 2>> seen;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const double x_m = (3500 + 100 * i) / 1000.0, y_m = (-9500 + 100 * j) / 1000.0;
+      seen.insert({static_cast<int>((x_m - 3.5) / 0.1), static_cast<int>((y_m + 9.5) / 0.1)});
+      text += std::to_string(x_m) + " " + std::to_string(y_m) + " -0.9\n";
+    }
+  }
+  check_done(curbline(Words{"map", dir.write("cloud.xyz", text), "--origin", "3.5", "-9.5", "--size", "4", "4"} +
+                      files.options()));
+  std::set<std::array<int, 2>> told;
+  for (const LabelledCell& cell : read_labels(files.labels))
+    told.insert({static_cast<int>((cell.x_m - 3.5) / 0.1), static_cast<int>((cell.y_m + 9.5) / 0.1)});
+  CHECK(told == seen);
 }
 
 TEST_CASE("program: points above --max-height are ignored") {

@@ -79,6 +79,16 @@ MountSettings laser_seen_from(const Point3& place, double above_origin_m) {
           .z_m = static_cast<float>(share * way.z)};
 }
 
+/// A coordinate, a thousandth of a cell at least within the cell where numbers of twice as many digits have it. A cloud
+/// in millimetres has points on the very line between two cells, and the pipeline's floats would put them to either
+/// side: a cell that is seen would have no point. Cells begin at `first_m`. 500 m away floats lie off by a third of
+/// that.
+double within_cell(double at_m, double first_m, double side_m) {
+  constexpr double rim = 1e-3;
+  const double cells = (at_m - first_m) / side_m, cell = std::floor(cells);
+  return first_m + side_m * std::clamp(cells, cell + rim, cell + 1 - rim);
+}
+
 /// By the pipeline, with `place` as its map's origin.
 Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions options) {
   if (options.fixed()) options.origin = {options.origin[0] - place.x, options.origin[1] - place.y};
@@ -91,10 +101,12 @@ Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions opt
   // Nothing is known of the sensor: every point has the variance that the prior expects.
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;
+  const double first_x_m = grid.x0_m + place.x, first_y_m = grid.y0_m + place.y;
   std::vector<Point> points;
   points.reserve(cloud.size());
   for (const Point3& p : cloud) {
-    points.push_back({static_cast<float>(p.x - place.x), static_cast<float>(p.y - place.y),
+    points.push_back({static_cast<float>(within_cell(p.x, first_x_m, grid.dx_m) - place.x),
+                      static_cast<float>(within_cell(p.y, first_y_m, grid.dy_m) - place.y),
                       static_cast<float>(p.z - place.z), variance_m2});
   }
   const auto pipeline = make_host_pipeline(settings);
