@@ -51,8 +51,8 @@ class LineIntake {
 
   /// The points of a line that has been placed, compared with ground that was mapped before: whose a jump of the poses
   /// was, and how late the tilt is. What the latency turns out to be moves the map. False if the line was measured as
-  /// poses jumped, and the map says that it does not lie where they have it: a ridge as high as the jump, of a single
-  /// line. Where the map says nothing points that may be one are left out.
+  /// poses jumped, or the robot climbed, and the map says that it does not lie where they have it: a ridge as high as
+  /// the jump, of a single line. Where the map says nothing points that may be one are left out.
   bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                Counters& counters);
 
@@ -69,7 +69,7 @@ class LineIntake {
 
   float tilt_rate_rad_s_ = 0.0f;     ///< of the line in hand
   bool jumped_ = false;              ///< poses, while the last line was measured
-  std::int64_t jumps_since_ns_ = 0;  ///< and all before it, from that one on
+  std::int64_t jumps_since_ns_ = 0;  ///< and all before it, or the robot climbed, from that one on
   RisingTimes line_times_{};
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
@@ -128,17 +128,20 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
 }
 
 /// The robot is where a line begins. Lines that are measured while poses jump say nothing of where the ground was
-/// before, nor do those after.
+/// before, nor do those after, and as long as it climbs those between jumps.
 template <Limits limits>
 void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
   pose_offset_.follow(pose.x_m, pose.y_m);
+  const bool climbs = pose_track_.climbs() && line_ns - jumps_since_ns_ <= longest_climb_ns;
   bool begun = false;
   while (const auto step = pose_track_.next_step(line_ns)) {
     pose_offset_.follow(*step);
     begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
   }
-  if ((jumping || begun) && !jumped_) dem.begin_marking();
-  if (jumping && !jumped_) jumps_since_ns_ = line_ns;
+  if (!jumped_ && !climbs) {
+    if (jumping || begun) dem.begin_marking();
+    if (jumping) jumps_since_ns_ = line_ns;
+  }
   jumped_ = jumping;
 }
 
@@ -149,11 +152,12 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   // As long as it is not decided who has jumped, heights may be set back, to below the ceiling too.
   const float ceiling_m = pose_offset_.undecided() ? std::numeric_limits<float>::infinity() : map.ceiling_m();
   line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
-  if (!motion.jumps.any()) {
+  const bool climbs = pose_track_.climbs();
+  if (!motion.jumps.any() && !climbs) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
   } else if (line.time_ns - jumps_since_ns_ <= longest_climb_ns) {
     using JumpLine = typename MapComparison<limits>::JumpLine;
-    const JumpLine lies = map.check_jump(work.projected, motion, tilt_latency_, pose_offset_);
+    const JumpLine lies = map.check_jump(work.projected, motion, climbs, tilt_latency_, pose_offset_);
     counters.lines_off_map += lies != JumpLine::on_map;
     if (lies == JumpLine::off_map) return false;
   }

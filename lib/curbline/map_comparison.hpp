@@ -28,11 +28,11 @@ class MapComparison {
   /// the line back by what is known then.
   void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
 
-  /// Where does a line lie that is measured while poses jump? Off the map if all of it is off, the same way, by as much
-  /// as they jump. If too little of it lies where the map knows the ground, in part: points are left out that may be
-  /// off by more than the points of a place share of their noise.
+  /// Where does a line lie that is measured while poses jump, or between jumps of a robot that climbs? Off the map if
+  /// all of it is off, the same way, by as much as they jump. If too little of it lies where the map knows the ground,
+  /// in part: points are left out that may be off by more than the points of a place share of their noise.
   enum class JumpLine : unsigned char { on_map, in_part, off_map };
-  JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, const TiltLatency& latency,
+  JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,
                       const PoseOffset& offset) const;
 
   /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
@@ -40,8 +40,11 @@ class MapComparison {
                       TiltLatency& latency) const;
 
  private:
+  /// Of a step by which no pose tells how large it is: from farther away the ground beyond a kerb would look like one.
+  static constexpr int reach_of_climbs = 2;
+
   using Place = typename Dem<limits>::Place;
-  void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
+  void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach, PoseOffset& offset) const;
   /// What a cell says of the ground at a point.
   struct Ground {
     float above_m, variance_m2;  ///< how far the point lies above it; variance of the ground's own height
@@ -60,17 +63,17 @@ class MapComparison {
 template <Limits limits>
 void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency,
                                         PoseOffset& offset) const {
-  compare(line, latency, offset);
+  compare(line, latency, offset.climbed() ? reach_of_climbs : reach_, offset);
   const PoseShift shift = offset.end_line();
   if (!shift.any()) return;
   for (Point& p : line.points()) p.z_m += offset.at(shift, p.x_m, p.y_m);
 }
 
 template <Limits limits>
-auto MapComparison<limits>::check_jump(ProjectedLine<limits>& line, const LineMotion& motion,
+auto MapComparison<limits>::check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs,
                                        const TiltLatency& latency, const PoseOffset& offset) const -> JumpLine {
-  PoseOffset suspect = offset.suspecting(motion.jumps);
-  compare(line, latency, suspect);
+  PoseOffset suspect = offset.suspecting(motion.jumps, climbs);
+  compare(line, latency, reach_, suspect);
   suspect.end_line();
   if (suspect.compared()) return suspect.likelier() ? JumpLine::off_map : JumpLine::on_map;
   const float common_m2 = dem_.prior().common_m2();
@@ -79,14 +82,14 @@ auto MapComparison<limits>::check_jump(ProjectedLine<limits>& line, const LineMo
 }
 
 template <Limits limits>
-void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const TiltLatency& latency,
+void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach,
                                     PoseOffset& offset) const {
   Ground ground;
   for (const Point& p : line.points()) {
     if (p.z_m > ceiling_m_) continue;
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside()) continue;
-    const Place near = dem_.nearest_unmarked(place, reach_);
+    const Place near = dem_.nearest_unmarked(place, reach);
     if (!near.inside() || !ground_at(p, place, near, ground)) {
       offset.pass();
       continue;

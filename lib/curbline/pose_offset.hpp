@@ -5,7 +5,7 @@
 // meanwhile a Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if
 // that is likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less
 // than poses tremble, until both are one again. Cost: 60 operations a point of the lines that are measured as poses
-// jump, and after a step until it is decided: mostly one.
+// jump, and after a step or a climb until it is decided: mostly one.
 #pragma once
 
 #include <array>
@@ -27,12 +27,14 @@ class PoseOffset {
 
   /// Is it open who has made the last step?
   bool undecided() const { return undecided_; }
+  /// Is it a step that a localisation may have made while the robot climbed? By how much no pose tells.
+  bool climbed() const { return climbed_; }
   /// Does it seem to be the localisation?
   bool likelier() const { return likelier_; }
 
   /// With a step from now on of which no more is known than that it is about as large as poses have jumped: of a line
-  /// that is measured while they do.
-  PoseOffset suspecting(const PoseJumps& jumps) const;
+  /// that is measured while they do; or, between jumps of a robot that climbs, as poses tell of.
+  PoseOffset suspecting(const PoseJumps& jumps, bool climbs) const;
 
   /// A point of the line, and the ground there that was mapped before the step.
   struct Sighting {
@@ -70,6 +72,7 @@ class PoseOffset {
   };
   void see(const Row& of, float correction, float variance);
   void settle();
+  bool large() const;
   void open(const PoseShift& stepped, float height_variance_m2, float attitude_variance);
   float step_variance_m2(float dx_m, float dy_m) const;
 
@@ -79,6 +82,7 @@ class PoseOffset {
   std::array<Row, states> covariance_{};  ///< of that
   bool undecided_ = false;
   bool confirmed_ = false;  ///< it was a step
+  bool climbed_ = false;    ///< or the robot has climbed, and no pose could tell
   bool likelier_ = false;   ///< the localisation has made it
   bool compared_ = false;
   float evidence_ = 0.0f;  ///< ln of how much likelier that is

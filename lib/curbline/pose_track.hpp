@@ -38,9 +38,10 @@ struct PoseShift {
 /// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by
 /// going on from it as fast as they did, off where they lead it too. No robot does that, a localisation does; if poses
 /// come seldom a robot does, too. Until the next has come a pose that jumps may be either; one that jumps on, or back
-/// to the way before, withdraws the step.
+/// to the way before, withdraws the step. Those that jump on are a robot's that climbs; whether its localisation has
+/// stepped meanwhile no pose tells. It has climbed when they have gone on for a whole way without a jump.
 struct PoseStepNews {
-  enum class Kind { begun, confirmed, withdrawn } kind;
+  enum class Kind { begun, confirmed, withdrawn, climbed } kind;
   PoseShift by{};  ///< of one that has begun
 };
 
@@ -92,6 +93,9 @@ class PoseTrack {
   /// later than a line's first beam. O(1) a pose.
   std::optional<PoseStepNews> next_step(std::int64_t until_ns);
 
+  /// By the poses that were asked: does the robot climb?
+  bool climbs() const { return climbs_; }
+
   const Pose& newest() const { return back(0); }
 
  private:
@@ -116,7 +120,7 @@ class PoseTrack {
   void forget() {
     size_ = fresh_ = 0;
     since_jump_ = limits.poses;
-    moves_ = false;
+    moves_ = climbs_ = false;
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
@@ -129,9 +133,10 @@ class PoseTrack {
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
-  int fresh_ = 0;       ///< of the newest poses: as many have not been asked for steps
-  int since_jump_ = 0;  ///< of those that have: as many from the last that jumped on; limits.poses: long ago
-  bool moves_ = false;  ///< that one was not the first on end
+  int fresh_ = 0;        ///< of the newest poses: as many have not been asked for steps
+  int since_jump_ = 0;   ///< of those that have: as many from the last that jumped on; limits.poses: long ago
+  bool moves_ = false;   ///< that one was not the first on end
+  bool climbs_ = false;  ///< poses have jumped on end, and not gone on for a whole way since
   RisingTimes times_{};
 };
 
@@ -188,9 +193,14 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
     const bool stepped = since_jump_ == 1 && !moves_;
     const bool begins = by.jumps() && !stepped && !moves_;
     moves_ = by.jumps() && (stepped || moves_);
+    climbs_ = climbs_ || (moves_ && (!stepped || lies_off_before(age)));
     since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
     if (stepped) return PoseStepNews{by.jumps() || !lies_off_before(age) ? Kind::withdrawn : Kind::confirmed};
     if (begins) return PoseStepNews{Kind::begun, detail::shift_of(by, back(age))};
+    if (climbs_ && (since_jump_ > poses_of_a_way || since_jump_ == limits.poses)) {
+      climbs_ = false;
+      return PoseStepNews{Kind::climbed};
+    }
   }
   return {};
 }

@@ -9,11 +9,15 @@ namespace {
 constexpr float sure = 3.0f;
 
 /// ln of how much likelier a jump goes on as fast as before if it is a localisation's: of those of simulated robots
-/// that climb kerbs one in 31 does with poses of 50 Hz, one in 13 with 10 Hz (tools/streets --drive).
+/// that climb kerbs one in 31 does with poses of 50 Hz, one in 13 with 10 Hz (tools/streets --drive). And of how much
+/// likelier a localisation has not stepped while a robot climbed: poses that jump on end are the robot's.
 constexpr float rarely = 3.0f;
 
 /// Variance of a step that is told by five poses, in those of one (PoseTrack).
 constexpr float poses_of_a_step = 2.625f;
+
+/// Three standard deviations of such a step, squared: poses tell of those that are larger.
+constexpr float least_told = gate * poses_of_a_step;
 
 /// Of the line that is compared, and of those that have mapped the ground.
 constexpr float poses_compared = 2.0f;
@@ -62,13 +66,21 @@ void PoseOffset::follow(const PoseStepNews& step) {
     case PoseStepNews::Kind::withdrawn:
       undecided_ = likelier_ = false;
       break;
+    case PoseStepNews::Kind::climbed:
+      settle();
+      open(offset_, least_told * height_variance_m2_, least_told * attitude_variance_);
+      confirmed_ = climbed_ = true;
+      evidence_ = -rarely;
+      break;
   }
 }
 
-PoseOffset PoseOffset::suspecting(const PoseJumps& jumps) const {
+PoseOffset PoseOffset::suspecting(const PoseJumps& jumps, bool climbs) const {
   PoseOffset suspect = *this;
   suspect.settle();
-  suspect.open(suspect.offset_, jumps.height_m2, jumps.attitude_rad2);
+  const float least = climbs ? least_told : 0.0f;
+  suspect.open(suspect.offset_, jumps.height_m2 + least * height_variance_m2_,
+               jumps.attitude_rad2 + least * attitude_variance_);
   return suspect;
 }
 
@@ -78,7 +90,7 @@ void PoseOffset::open(const PoseShift& stepped, float height_variance_m2, float 
   covariance_[0][0] = height_variance_m2;
   covariance_[1][1] = covariance_[2][2] = attitude_variance;
   undecided_ = true;
-  confirmed_ = false;
+  confirmed_ = climbed_ = false;
   evidence_ = 0.0f;
 }
 
@@ -157,10 +169,17 @@ PoseShift PoseOffset::end_line() {
     see({0.0f, ux, uy}, (ux * (s.xz - s.x * z) + uy * (s.yz - s.y * z)) / greatest,
         1.0f / greatest + poses_compared * attitude_variance_);
   }
-  likelier_ = evidence_ > 0.0f;
+  likelier_ = climbed_ ? evidence_ >= sure && large() : evidence_ > 0.0f;
   const PoseShift after = offset();
-  if (confirmed_ && (evidence_ <= -sure || evidence_ >= sure)) settle();
+  if (confirmed_ && (evidence_ <= (climbed_ ? -sure - rarely : -sure) || evidence_ >= sure)) settle();
   return after - before;
+}
+
+/// Is the step as large as one of which poses tell?
+bool PoseOffset::large() const {
+  const PoseShift by = stepped_ - offset_;
+  return square(by.height_m) > least_told * height_variance_m2_ ||
+         square(by.slope_x) + square(by.slope_y) > least_told * attitude_variance_;
 }
 
 float PoseOffset::doubt_m2(float x_m, float y_m) const {

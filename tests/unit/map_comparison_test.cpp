@@ -160,7 +160,7 @@ struct Jumping {
     motion.still = false;
     motion.jumps = {square(height_m), square(attitude_rad)};
     motion.T_map_base_first.translation.y() = 1.2f;
-    return map.check_jump(line, motion, latency, offset);
+    return map.check_jump(line, motion, false, latency, offset);
   }
   bool off(float above_m, float slope_y = 0.0f) const {
     const auto across = line(above_m, slope_y);
@@ -210,6 +210,26 @@ TEST_CASE(
   CHECK(line->points().front().x_m == Approx(0.05));
   CHECK(line->points().back().x_m < far_m);
   CHECK(line->points().back().x_m > far_m - 0.1f);
+}
+
+TEST_CASE("map comparison: after a climb ground that is seen from farther than two cells away tells of no step") {
+  const auto follow = [](int rows_seen_since) {
+    Jumping jumping;
+    for (int i = -rows_seen_since; i <= rows_seen_since; ++i) {
+      for (int j = 0; j < 24; ++j)
+        jumping.stages->dem.add(
+            {1.25f + 0.1f * static_cast<float>(i), 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
+    }
+    jumping.offset.follow({PoseStepNews::Kind::climbed});
+    const MapComparison<small_limits> map(jumping.stages->dem, jumping.stages->mixture, jumping.stages->field, 1.0f,
+                                          10);
+    for (int k = 0; k < 3 && jumping.offset.undecided(); ++k)
+      map.follow_jump(*Jumping::line(0.03f), jumping.latency, jumping.offset);
+    return jumping.offset;
+  };
+  CHECK(follow(1).offset().any());
+  CHECK_FALSE(follow(2).offset().any());
+  CHECK(follow(2).undecided());
 }
 
 }  // namespace

@@ -259,6 +259,33 @@ TEST_CASE("pipeline: tells by what its map lies off the poses when a localisatio
   CHECK(after_m == Approx(-0.02).margin(0.003));
 }
 
+/// Drives over level ground at 0.5 m/s and, after five seconds, up by 16 cm in a twentieth of a second, while its
+/// localisation steps by so much. What the map lies off the poses by in the end.
+float offset_after_climb_m(float step_m) {
+  constexpr double climb_s = 5.0;
+  const auto pipeline = with_noisy_poses();
+  NoddingLaser laser;
+  const auto x = [](double time_s) { return 0.5 * time_s; };
+  const auto risen_m = [](double time_s) { return 0.16 * std::clamp(20.0 * (time_s - climb_s), 0.0, 1.0); };
+  for (int line = 0; line < 260; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    add_tilts(*pipeline, line);
+    for (const double time_s : {t, t + 0.0125}) {
+      const double off_m = time_s < climb_s + 0.02 ? 0.0 : step_m;
+      pipeline->add_pose(
+          {NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, static_cast<float>(risen_m(time_s) + off_m)});
+    }
+    pipeline->take({NoddingLaser::ns(t), laser.ranges({-1.0, -risen_m(t)}, line, x)});
+  }
+  return pipeline->pose_offset().height_m;
+}
+
+TEST_CASE("pipeline: a localisation that steps while the robot climbs is found out, one that does not is left alone") {
+  CHECK(offset_after_climb_m(0.03f) == Approx(-0.03).margin(0.006));
+  CHECK(offset_after_climb_m(-0.03f) == Approx(0.03).margin(0.006));
+  CHECK(offset_after_climb_m(0.0f) == 0.0f);
+}
+
 /// A pipeline that has been driven over level ground at 0.5 m/s until poses rise while a line is measured, and the
 /// points of that line. Heights of the last poses are given, 80 in a second; the last is later than the line. The robot
 /// itself rises to robot_m before it.

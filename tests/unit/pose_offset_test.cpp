@@ -154,6 +154,27 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   CHECK_FALSE(offset.offset().any());
 }
 
+TEST_CASE("pose offset: what a localisation has stepped by while the robot climbed is found by the lines after it") {
+  test::Noise lot(9);
+  PoseOffset offset = made();
+  offset.follow(0.0f, 0.0f);
+  offset.follow({PoseStepNews::Kind::climbed});
+  REQUIRE(offset.undecided());
+  for (int line = 0; line < 5; ++line) see_line(offset, 1.0 + 0.1 * line, jump, lot);
+  CHECK_FALSE(offset.undecided());
+  CHECK(offset.offset().at(1.0f, 0.0f) == Approx(-0.013).margin(0.003));
+  CHECK(offset.offset().slope_y == Approx(-0.007).margin(0.001));
+}
+
+TEST_CASE("pose offset: after a climb what lines lie off by poses' own errors is no step of a localisation") {
+  test::Noise lot(10);
+  PoseOffset offset = made();
+  offset.follow(0.0f, 0.0f);
+  offset.follow({PoseStepNews::Kind::climbed});
+  for (int line = 0; line < 100; ++line) see_line(offset, 1.0, {0.005f, 0.0f, 0.002f}, lot);
+  CHECK_FALSE(offset.offset().any());
+}
+
 /// A robot away from the origin, and lines that run at an angle: ahead of it, or askew.
 struct Elsewhere {
   double angle;

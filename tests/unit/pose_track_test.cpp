@@ -250,22 +250,27 @@ TEST_CASE("pose track: a drive, its turns and the noise that is told of are no j
   CHECK(jumps < 25);  // by chance, 3 in 1000 each of height and, of two angles, 11
 }
 
-/// What those poses say of steps that have not been asked: 'S' one begins, 'C' it is confirmed, 'W' it was none.
+/// What those poses say of steps that have not been asked: 'S' one begins, 'C' it is confirmed, 'W' it was none, 'E'
+/// the end of a climb.
 std::string told_until(Track& track, std::int64_t time_ns) {
   std::string told;
   while (const auto step = track.next_step(time_ns)) {
-    told += step->kind == PoseStepNews::Kind::begun ? 'S' : step->kind == PoseStepNews::Kind::confirmed ? 'C' : 'W';
+    using Kind = PoseStepNews::Kind;
+    told += step->kind == Kind::begun       ? 'S'
+            : step->kind == Kind::confirmed ? 'C'
+            : step->kind == Kind::withdrawn ? 'W'
+                                            : 'E';
   }
   return told;
 }
 
-/// The same of each of eight poses as it comes, '.' for nothing.
+/// The same of each of so many poses as it comes, '.' for nothing.
 template <typename Changed>
-std::string told_by_each(Changed&& changed) {
+std::string told_by_each(Changed&& changed, int poses = 8) {
   std::string told;
   Track track;
   track.init(noisy_poses());
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < poses; ++k) {
     Pose pose = on_ramp(k);
     changed(pose, k);
     REQUIRE(track.push(pose));
@@ -291,6 +296,23 @@ TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, no
     CHECK(told.substr(0, 6) == "....SW");
     CHECK(told.find('C') == std::string::npos);
   }
+}
+
+TEST_CASE(
+    "pose track: a robot has climbed when poses that jumped on end have gone on for a while, once, others have not") {
+  const auto climbs = [](Pose& pose, int k) {
+    pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
+  };
+  const auto stepped = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.04f : 0.0f; };
+  const auto wrong = [](Pose& pose, int k) { pose.z_m += k == 4 ? 0.02f : 0.0f; };
+  const std::string told = told_by_each(climbs, 30);
+  CHECK(told.substr(0, 6) == "....SW");
+  REQUIRE(told.find('E') != std::string::npos);
+  CHECK(told.find('E') == told.rfind('E'));
+  CHECK(told.find('E') > 8 + 4);  // after the last of the jumps by which it stops rising
+  CHECK(told.find('E') < 8 + 8);
+  CHECK(told_by_each(stepped, 30).find('E') == std::string::npos);
+  CHECK(told_by_each(wrong, 30).find('E') == std::string::npos);
 }
 
 TEST_CASE("pose track: a pose that lies off by its own error is no step, though the next one's is no jump back") {
