@@ -66,6 +66,8 @@ class LineIntake {
 
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem);
+  /// May its localisation step while the robot climbs, as it does now?
+  bool climbs() const { return pose_track_.climbs() && pose_offset_.localisation_steps(); }
 
   float tilt_rate_rad_s_ = 0.0f;     ///< of the line in hand
   bool jumped_ = false;              ///< poses, while the last line was measured
@@ -81,6 +83,7 @@ class LineIntake {
 template <Limits limits>
 void LineIntake<limits>::init(const Settings& settings) {
   jumped_ = false;
+  jumps_since_ns_ = 0;
   line_times_ = RisingTimes{};
   tilt_track_.init(settings.tilt);
   tilt_latency_.init(settings.tilt, settings.pose);
@@ -132,13 +135,13 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
 template <Limits limits>
 void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
   pose_offset_.follow(pose.x_m, pose.y_m);
-  const bool climbs = pose_track_.climbs() && line_ns - jumps_since_ns_ <= longest_climb_ns;
+  const bool climbed = climbs();
   bool begun = false;
   while (const auto step = pose_track_.next_step(line_ns)) {
     pose_offset_.follow(*step);
     begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
   }
-  if (!jumped_ && !climbs) {
+  if (!jumped_ && !(climbed && climbs())) {
     if (jumping || begun) dem.begin_marking();
     if (jumping) jumps_since_ns_ = line_ns;
   }
@@ -152,12 +155,11 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   // As long as it is not decided who has jumped, heights may be set back, to below the ceiling too.
   const float ceiling_m = pose_offset_.undecided() ? std::numeric_limits<float>::infinity() : map.ceiling_m();
   line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
-  const bool climbs = pose_track_.climbs();
-  if (!motion.jumps.any() && !climbs) {
+  if (!motion.jumps.any() && !climbs()) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
   } else if (line.time_ns - jumps_since_ns_ <= longest_climb_ns) {
     using JumpLine = typename MapComparison<limits>::JumpLine;
-    const JumpLine lies = map.check_jump(work.projected, motion, climbs, tilt_latency_, pose_offset_);
+    const JumpLine lies = map.check_jump(work.projected, motion, climbs(), tilt_latency_, pose_offset_);
     counters.lines_off_map += lies != JumpLine::on_map;
     if (lies == JumpLine::off_map) return false;
   }

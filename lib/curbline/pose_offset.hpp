@@ -5,7 +5,9 @@
 // meanwhile a Kalman filter finds out by how much exactly a localisation has stepped. Poses are set back by the step if
 // that is likelier: the map goes on where it was, and its z is that of the poses but for the offset. That fades by less
 // than poses tremble, until both are one again. Cost: 60 operations a point of the lines that are measured as poses
-// jump, and after a step or a climb until it is decided: mostly one.
+// jump, and after a step or a climb until it is decided: mostly one. That a localisation has stepped while the robot
+// climbed is asked of one that has stepped before, and taken if it is twenty times likelier though it was as much less
+// likely before.
 #pragma once
 
 #include <array>
@@ -25,6 +27,8 @@ class PoseOffset {
   /// A pose before it has told of a step. What is not decided of an earlier one is taken as it seems to be.
   void follow(const PoseStepNews& step);
 
+  /// Has its localisation been found to step? One that has may do so while the robot climbs.
+  bool localisation_steps() const { return localisation_steps_; }
   /// Is it open who has made the last step?
   bool undecided() const { return undecided_; }
   /// Is it a step that a localisation may have made while the robot climbed? By how much no pose tells.
@@ -80,6 +84,7 @@ class PoseOffset {
   PoseShift offset_{};                    ///< if the robot has made the last step ...
   PoseShift stepped_{};                   ///< ... and if the localisation has
   std::array<Row, states> covariance_{};  ///< of that
+  bool localisation_steps_ = false;
   bool undecided_ = false;
   bool confirmed_ = false;  ///< it was a step
   bool climbed_ = false;    ///< or the robot has climbed, and no pose could tell

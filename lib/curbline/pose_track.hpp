@@ -193,7 +193,7 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
     const bool stepped = since_jump_ == 1 && !moves_;
     const bool begins = by.jumps() && !stepped && !moves_;
     moves_ = by.jumps() && (stepped || moves_);
-    climbs_ = climbs_ || (moves_ && (!stepped || lies_off_before(age)));
+    climbs_ = climbs_ || (stepped && moves_ && lies_off_before(age));
     since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
     if (stepped) return PoseStepNews{by.jumps() || !lies_off_before(age) ? Kind::withdrawn : Kind::confirmed};
     if (begins) return PoseStepNews{Kind::begun, detail::shift_of(by, back(age))};

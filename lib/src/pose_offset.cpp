@@ -68,6 +68,8 @@ void PoseOffset::follow(const PoseStepNews& step) {
       break;
     case PoseStepNews::Kind::climbed:
       settle();
+      // Of one that has not been found to step, or of exact poses, there is nothing to be told.
+      if (!localisation_steps_ || !(height_variance_m2_ + attitude_variance_ > 0.0f)) break;
       open(offset_, least_told * height_variance_m2_, least_told * attitude_variance_);
       confirmed_ = climbed_ = true;
       evidence_ = -rarely;
@@ -171,7 +173,11 @@ PoseShift PoseOffset::end_line() {
   }
   likelier_ = climbed_ ? evidence_ >= sure && large() : evidence_ > 0.0f;
   const PoseShift after = offset();
-  if (confirmed_ && (evidence_ <= (climbed_ ? -sure - rarely : -sure) || evidence_ >= sure)) settle();
+  // Lines say that a robot has climbed when they alone make it twenty times likelier.
+  if (confirmed_ && (evidence_ <= (climbed_ ? -sure - rarely : -sure) || evidence_ >= sure)) {
+    localisation_steps_ = localisation_steps_ || likelier_;
+    settle();
+  }
   return after - before;
 }
 

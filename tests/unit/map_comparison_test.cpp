@@ -154,13 +154,13 @@ struct Jumping {
     }
     return line;
   }
-  JumpLine check(Line& line, float attitude_rad = 0.007f, float height_m = 0.02f) const {
+  JumpLine check(Line& line, float attitude_rad = 0.007f, float height_m = 0.02f, bool climbs = false) const {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
     LineMotion motion;
     motion.still = false;
     motion.jumps = {square(height_m), square(attitude_rad)};
     motion.T_map_base_first.translation.y() = 1.2f;
-    return map.check_jump(line, motion, false, latency, offset);
+    return map.check_jump(line, motion, climbs, latency, offset);
   }
   bool off(float above_m, float slope_y = 0.0f) const {
     const auto across = line(above_m, slope_y);
@@ -212,6 +212,15 @@ TEST_CASE(
   CHECK(line->points().back().x_m > far_m - 0.1f);
 }
 
+TEST_CASE(
+    "map comparison: a line between the jumps of a robot that climbs is off the map if it lies above or below it") {
+  const Jumping jumping;
+  for (const float above_m : {0.03f, -0.03f})
+    CHECK(jumping.check(*Jumping::line(above_m), 0.0f, 0.0f, true) == Jumping::JumpLine::off_map);
+  for (const float above_m : {0.0f, 0.003f})
+    CHECK(jumping.check(*Jumping::line(above_m), 0.0f, 0.0f, true) == Jumping::JumpLine::on_map);
+}
+
 TEST_CASE("map comparison: after a climb ground that is seen from farther than two cells away tells of no step") {
   const auto follow = [](int rows_seen_since) {
     Jumping jumping;
@@ -220,15 +229,19 @@ TEST_CASE("map comparison: after a climb ground that is seen from farther than t
         jumping.stages->dem.add(
             {1.25f + 0.1f * static_cast<float>(i), 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
     }
-    jumping.offset.follow({PoseStepNews::Kind::climbed});
     const MapComparison<small_limits> map(jumping.stages->dem, jumping.stages->mixture, jumping.stages->field, 1.0f,
                                           10);
+    jumping.offset.follow({PoseStepNews::Kind::begun, {0.02f, 0.0f, 0.0f}});
+    jumping.offset.follow({PoseStepNews::Kind::confirmed});
+    map.follow_jump(*Jumping::line(0.02f), jumping.latency, jumping.offset);
+    REQUIRE(jumping.offset.localisation_steps());
+    jumping.offset.follow({PoseStepNews::Kind::climbed});
     for (int k = 0; k < 3 && jumping.offset.undecided(); ++k)
       map.follow_jump(*Jumping::line(0.03f), jumping.latency, jumping.offset);
     return jumping.offset;
   };
-  CHECK(follow(1).offset().any());
-  CHECK_FALSE(follow(2).offset().any());
+  CHECK(follow(1).offset().at(1.25f, 0.0f) == Approx(-0.05).margin(0.005));
+  CHECK(follow(2).offset().at(1.25f, 0.0f) == Approx(-0.02).margin(0.005));
   CHECK(follow(2).undecided());
 }
 

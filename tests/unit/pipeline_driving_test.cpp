@@ -259,10 +259,11 @@ TEST_CASE("pipeline: tells by what its map lies off the poses when a localisatio
   CHECK(after_m == Approx(-0.02).margin(0.003));
 }
 
-/// Drives over level ground at 0.5 m/s and, after five seconds, up by 16 cm in a twentieth of a second, while its
-/// localisation steps by so much. What the map lies off the poses by in the end.
-float offset_after_climb_m(float step_m) {
-  constexpr double climb_s = 5.0;
+/// Drives over level ground at 0.5 m/s and, after five seconds, up by 16 cm in a twentieth of a second. Its
+/// localisation steps by so much before, on level ground, and by so much while the robot climbs. What the map lies off
+/// the poses by in the end.
+float offset_after_climb_m(float before_m, float step_m) {
+  constexpr double level_s = 2.5, climb_s = 5.0;
   const auto pipeline = with_noisy_poses();
   NoddingLaser laser;
   const auto x = [](double time_s) { return 0.5 * time_s; };
@@ -271,7 +272,7 @@ float offset_after_climb_m(float step_m) {
     const double t = NoddingLaser::line_time_s(line);
     add_tilts(*pipeline, line);
     for (const double time_s : {t, t + 0.0125}) {
-      const double off_m = time_s < climb_s + 0.02 ? 0.0 : step_m;
+      const double off_m = (time_s < level_s ? 0.0 : before_m) + (time_s < climb_s + 0.02 ? 0.0 : step_m);
       pipeline->add_pose(
           {NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, static_cast<float>(risen_m(time_s) + off_m)});
     }
@@ -280,10 +281,15 @@ float offset_after_climb_m(float step_m) {
   return pipeline->pose_offset().height_m;
 }
 
-TEST_CASE("pipeline: a localisation that steps while the robot climbs is found out, one that does not is left alone") {
-  CHECK(offset_after_climb_m(0.03f) == Approx(-0.03).margin(0.006));
-  CHECK(offset_after_climb_m(-0.03f) == Approx(0.03).margin(0.006));
-  CHECK(offset_after_climb_m(0.0f) == 0.0f);
+TEST_CASE("pipeline: a localisation that steps, and does so while the robot climbs too, is found out each time") {
+  CHECK(offset_after_climb_m(0.02f, 0.03f) == Approx(-0.05).margin(0.008));
+  CHECK(offset_after_climb_m(0.02f, -0.03f) == Approx(0.01).margin(0.008));
+  CHECK(offset_after_climb_m(0.02f, 0.0f) == Approx(-0.02).margin(0.004));
+}
+
+TEST_CASE("pipeline: of a localisation that was never found to step a climb is the robot's") {
+  CHECK(offset_after_climb_m(0.0f, 0.0f) == 0.0f);
+  CHECK(offset_after_climb_m(0.0f, 0.03f) == 0.0f);
 }
 
 /// A pipeline that has been driven over level ground at 0.5 m/s until poses rise while a line is measured, and the

@@ -154,25 +154,52 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   CHECK_FALSE(offset.offset().any());
 }
 
-TEST_CASE("pose offset: what a localisation has stepped by while the robot climbed is found by the lines after it") {
-  test::Noise lot(9);
+/// Of a localisation that has been found to step, by `jump`; and then the robot has climbed.
+PoseOffset climbed_after_a_step(test::Noise& lot) {
   PoseOffset offset = made();
-  offset.follow(0.0f, 0.0f);
+  step(offset, jump);
+  see_line(offset, 1.0, jump, lot);
+  REQUIRE(offset.localisation_steps());
   offset.follow({PoseStepNews::Kind::climbed});
   REQUIRE(offset.undecided());
-  for (int line = 0; line < 5; ++line) see_line(offset, 1.0 + 0.1 * line, jump, lot);
+  return offset;
+}
+
+TEST_CASE("pose offset: what a localisation has stepped by while the robot climbed is found by the lines after it") {
+  test::Noise lot(9);
+  PoseOffset offset = climbed_after_a_step(lot);
+  for (int line = 0; line < 5; ++line) see_line(offset, 1.0 + 0.1 * line, {0.04f, -0.014f, 0.014f}, lot);
   CHECK_FALSE(offset.undecided());
-  CHECK(offset.offset().at(1.0f, 0.0f) == Approx(-0.013).margin(0.003));
-  CHECK(offset.offset().slope_y == Approx(-0.007).margin(0.001));
+  CHECK(offset.offset().at(1.0f, 0.0f) == Approx(-2 * 0.013).margin(0.003));
+  CHECK(offset.offset().slope_y == Approx(-2 * 0.007).margin(0.001));
+}
+
+TEST_CASE("pose offset: a robot that has climbed is asked nothing if its localisation was never found to step") {
+  test::Noise lot(9);
+  PoseOffset offset = made();
+  step(offset, jump);
+  see_line(offset, 1.0, {}, lot);
+  offset.follow({PoseStepNews::Kind::climbed});
+  CHECK_FALSE(offset.undecided());
+}
+
+TEST_CASE("pose offset: a robot that has climbed is asked nothing if its poses are exact") {
+  test::Noise lot(9);
+  PoseOffset offset;
+  offset.init(PoseSettings{});
+  step(offset, jump);
+  see_line(offset, 1.0, jump, lot);
+  REQUIRE(offset.localisation_steps());
+  offset.follow({PoseStepNews::Kind::climbed});
+  CHECK_FALSE(offset.undecided());
 }
 
 TEST_CASE("pose offset: after a climb what lines lie off by poses' own errors is no step of a localisation") {
   test::Noise lot(10);
-  PoseOffset offset = made();
-  offset.follow(0.0f, 0.0f);
-  offset.follow({PoseStepNews::Kind::climbed});
-  for (int line = 0; line < 100; ++line) see_line(offset, 1.0, {0.005f, 0.0f, 0.002f}, lot);
-  CHECK_FALSE(offset.offset().any());
+  PoseOffset offset = climbed_after_a_step(lot);
+  const float before_m = offset.offset().height_m;
+  for (int line = 0; line < 100; ++line) see_line(offset, 1.0, {0.025f, -0.007f, 0.009f}, lot);
+  CHECK(offset.offset().height_m == before_m);
 }
 
 /// A robot away from the origin, and lines that run at an angle: ahead of it, or askew.

@@ -304,7 +304,8 @@ TEST_CASE(
     pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
   };
   const auto stepped = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.04f : 0.0f; };
-  const auto wrong = [](Pose& pose, int k) { pose.z_m += k == 4 ? 0.02f : 0.0f; };
+  const float off_m = GENERATE(0.02f, 0.1f, 1.0f);
+  const auto wrong = [off_m](Pose& pose, int k) { pose.z_m += k == 4 ? off_m : 0.0f; };
   const std::string told = told_by_each(climbs, 30);
   CHECK(told.substr(0, 6) == "....SW");
   REQUIRE(told.find('E') != std::string::npos);
@@ -313,6 +314,39 @@ TEST_CASE(
   CHECK(told.find('E') < 8 + 8);
   CHECK(told_by_each(stepped, 30).find('E') == std::string::npos);
   CHECK(told_by_each(wrong, 30).find('E') == std::string::npos);
+}
+
+/// Poses of a robot that goes on, and up by 4 cm with each from the fifth to the seventh.
+template <typename AnyTrack>
+void push_climb(AnyTrack& track, int poses) {
+  for (int k = 0; k < poses; ++k) {
+    Pose pose = on_ramp(k);
+    pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
+    REQUIRE(track.push(pose));
+    while (track.next_step(pose.time_ns)) continue;
+  }
+}
+
+TEST_CASE("pose track: a climb is over where poses begin anew") {
+  Track track;
+  track.init(noisy_poses());
+  push_climb(track, 6);
+  REQUIRE(track.climbs());
+  for (int k = 0; k <= RisingTimes::most_refused; ++k) track.push(driving(t0 - 1000 * ms + k * ms));
+  REQUIRE(track.newest().time_ns < t0);
+  CHECK_FALSE(track.climbs());
+}
+
+TEST_CASE("pose track: of a track of four poses a climb is over, too") {
+  constexpr Limits four{.poses = 4};
+  PoseTrack<four> track;
+  track.init(noisy_poses());
+  push_climb(track, 6);
+  REQUIRE(track.climbs());
+  PoseTrack<four> later;
+  later.init(noisy_poses());
+  push_climb(later, 30);
+  CHECK_FALSE(later.climbs());
 }
 
 TEST_CASE("pose track: a pose that lies off by its own error is no step, though the next one's is no jump back") {
