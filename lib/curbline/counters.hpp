@@ -23,7 +23,7 @@ struct Counters {
   std::uint32_t tilt_dropped = 0;        ///< readings not finite, not later than the one before, beyond 1e6 rad; as of
                                          ///< the last line
   std::uint32_t lines_off_map = 0;       ///< measured while poses jumped, or the robot climbed, and off by as much:
-                                         ///< taken, without points; or where there is no map: without those that may be
+                                         ///< taken, without points; or, without a map, without those that may be off
   std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no attitude, before init()
   // Bounds that were hit.
   std::uint32_t cells_deferred = 0;  ///< labels that waited for a later call (LabelSettings::max_messages)

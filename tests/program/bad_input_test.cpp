@@ -346,7 +346,7 @@ TEST_CASE("program: truth that is of another make is refused with the field") {
   error("{\"start_time_s\": \"now\"}", "start_time_s is not a number;");
   error(with("\"planes\": [", "\"planes\": 3, \"p\": ["), "planes is not a list;");
   error(with("\"x0_m\"", "\"x9_m\""), "curbs[0].x0_m is missing;");
-  error(with("\"x0_m\": ", "\"x0_m\": -1e300, \"x9_m\": "), "curbs[0].x0_m is not a place within 1000 km;");
+  error(with("\"x0_m\": ", "\"x0_m\": -1e300, \"x9_m\": "), "curbs[0].x0_m is not a place within 100 km;");
   error(with("\"start_time_s\": ", "\"start_time_s\": 1e10, \"t\": "), "start_time_s is not a time;");
   error(with("\"plane\": ", "\"plane\": 99"), "regions[0].plane is not the index of a plane;");
   std::filesystem::remove(logs.path("truth.json"));

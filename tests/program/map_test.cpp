@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "formats/csv.hpp"
 #include "program.hpp"
@@ -151,24 +151,26 @@ TEST_CASE("program: a cell may have two sides") {
   CHECK(cells.front().cell.points == 32);
 }
 
-TEST_CASE("program: a cell is seen wherever a cloud in millimetres has a point on the line where it begins") {
+TEST_CASE("program: a point on the line between two cells is of the same one by curbline and by the paper's steps") {
   const TemporaryDirectory dir;
   const Files files(dir);
   std::string text;
-  std::set<std::array<int, 2>> seen;
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
       const double x_m = (3500 + 100 * i) / 1000.0, y_m = (-9500 + 100 * j) / 1000.0;
-      seen.insert({static_cast<int>((x_m - 3.5) / 0.1), static_cast<int>((y_m + 9.5) / 0.1)});
       text += std::to_string(x_m) + " " + std::to_string(y_m) + " -0.9\n";
     }
   }
-  check_done(curbline(Words{"map", dir.write("cloud.xyz", text), "--origin", "3.5", "-9.5", "--size", "4", "4"} +
-                      files.options()));
-  std::set<std::array<int, 2>> told;
-  for (const LabelledCell& cell : read_labels(files.labels))
-    told.insert({static_cast<int>((cell.x_m - 3.5) / 0.1), static_cast<int>((cell.y_m + 9.5) / 0.1)});
-  CHECK(told == seen);
+  const std::string cloud = dir.write("cloud.xyz", text);
+  const auto points_by = [&](const std::string& method) {
+    check_done(curbline(Words{"map", cloud, "--origin", "3.5", "-9.5", "--size", "4", "4", "--method", method} +
+                        files.options()));
+    std::map<std::array<long, 2>, double> points;
+    for (const LabelledCell& cell : read_labels(files.labels))
+      points[{std::lround(100 * cell.x_m), std::lround(100 * cell.y_m)}] = cell.cell.points;
+    return points;
+  };
+  CHECK(points_by("curbline") == points_by("segment"));
 }
 
 TEST_CASE("program: points above --max-height are ignored") {

@@ -37,7 +37,7 @@ TEST_CASE("atomic file: commit puts the whole file in place") {
   CHECK(files_in(dir) == 1);
 }
 
-TEST_CASE("atomic file: who may read the old file may read the new one, and nobody else") {
+TEST_CASE("atomic file: a file that its owner alone may read stays so") {
   const TemporaryDirectory dir;
   const auto of_owner = fs::perms::owner_read | fs::perms::owner_write;
   fs::permissions(dir.write("a", "old"), of_owner);

@@ -75,7 +75,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
     replace(temporary_.c_str(), nullptr);
     throw BadInput(path_ + reason(errno));
   }
-  if (fs::is_regular_file(status)) fs::permissions(temporary_, status.permissions(), none);
+  if (fs::is_regular_file(status)) fs::permissions(temporary_, status.permissions() & fs::perms::all, none);
 }
 
 AtomicFile::~AtomicFile() {

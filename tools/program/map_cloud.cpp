@@ -79,10 +79,9 @@ MountSettings laser_seen_from(const Point3& place, double above_origin_m) {
           .z_m = static_cast<float>(share * way.z)};
 }
 
-/// A coordinate, a thousandth of a cell at least within the cell where numbers of twice as many digits have it. A cloud
-/// in millimetres has points on the very line between two cells, and the pipeline's floats would put them to either
-/// side: a cell that is seen would have no point. Cells begin at `first_m`. 500 m away floats lie off by a third of
-/// that.
+/// A coordinate, a thousandth of a cell at least within the cell where doubles have it, as the paper's steps do. A
+/// cloud in millimetres has points on the very line between two cells, and the pipeline's floats would put them to
+/// either side. Cells begin at `first_m`. With cells of 10 cm floats lie off by a third of that 500 m away.
 double within_cell(double at_m, double first_m, double side_m) {
   constexpr double rim = 1e-3;
   const double cells = (at_m - first_m) / side_m, cell = std::floor(cells);

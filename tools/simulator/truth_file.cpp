@@ -79,7 +79,7 @@ class Part {
   /// Farther off samples along a line could not be counted.
   double place_m() const {
     const double metres = number();
-    check(std::abs(metres) <= 1e6, "a place within 1000 km");
+    check(std::abs(metres) <= 1e5, "a place within 100 km");
     return metres;
   }
   /// Seconds that nanoseconds of 64 bits can be.
