@@ -67,9 +67,9 @@ void PoseOffset::follow(const PoseStepNews& step) {
       undecided_ = likelier_ = false;
       break;
     case PoseStepNews::Kind::climbed:
-      settle();
       // Of one that has not been found to step, or of exact poses, there is nothing to be told.
       if (!localisation_steps_ || !(height_variance_m2_ + attitude_variance_ > 0.0f)) break;
+      settle();
       open(offset_, least_told * height_variance_m2_, least_told * attitude_variance_);
       confirmed_ = climbed_ = true;
       evidence_ = -rarely;
