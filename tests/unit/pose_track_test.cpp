@@ -298,15 +298,17 @@ TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, no
   }
 }
 
+/// Of a robot that goes on, and up by 4 cm with each pose from the fifth to the seventh.
+void climb(Pose& pose, int k) {
+  pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
+}
+
 TEST_CASE(
     "pose track: a robot has climbed when poses that jumped on end have gone on for a while, once, others have not") {
-  const auto climbs = [](Pose& pose, int k) {
-    pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
-  };
   const auto stepped = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.04f : 0.0f; };
   const float off_m = GENERATE(0.02f, 0.1f, 1.0f);
   const auto wrong = [off_m](Pose& pose, int k) { pose.z_m += k == 4 ? off_m : 0.0f; };
-  const std::string told = told_by_each(climbs, 30);
+  const std::string told = told_by_each(climb, 30);
   CHECK(told.substr(0, 6) == "....SW");
   REQUIRE(told.find('E') != std::string::npos);
   CHECK(told.find('E') == told.rfind('E'));
@@ -316,12 +318,11 @@ TEST_CASE(
   CHECK(told_by_each(wrong, 30).find('E') == std::string::npos);
 }
 
-/// Poses of a robot that goes on, and up by 4 cm with each from the fifth to the seventh.
 template <typename AnyTrack>
 void push_climb(AnyTrack& track, int poses) {
   for (int k = 0; k < poses; ++k) {
     Pose pose = on_ramp(k);
-    pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
+    climb(pose, k);
     REQUIRE(track.push(pose));
     while (track.next_step(pose.time_ns)) continue;
   }

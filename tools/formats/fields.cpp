@@ -80,7 +80,7 @@ std::int64_t Fields::time_ns(std::string_view name) {
   // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
   double seconds = 0.0;
   const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), seconds);
-  if (problem != std::errc{} || end != field.data() + field.size() || !(seconds >= 0.0 && seconds < 9.2e9)) {
+  if (problem != std::errc{} || end != field.data() + field.size() || !is_time_s(seconds)) {
     fail(name, field, "a time in seconds");
   }
   const double whole = std::floor(seconds);

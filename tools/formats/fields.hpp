@@ -11,6 +11,11 @@
 
 namespace curbline::tools {
 
+/// Are they seconds that 64 bits of nanoseconds can hold?
+inline bool is_time_s(double seconds) {
+  return seconds >= 0.0 && seconds < 9.2e9;
+}
+
 class Fields {
  public:
   /// How fields are apart: by any run of blanks and tabs, or by one comma each, blanks about it ignored.

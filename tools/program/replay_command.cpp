@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "formats/csv.hpp"
-#include "formats/decimals.hpp"
 #include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "program/line_costs.hpp"
@@ -106,18 +104,8 @@ void check_files(const Options& o) {
                 {{"--scans", o.logs.scans}, {"--can", o.logs.can}, {"--poses", o.logs.poses}, {"--robot", o.robot}});
 }
 
-void check_origin(const MapOptions& options) {
-  constexpr auto furthest_m = static_cast<double>(WindowSettings::furthest_m);
-  for (const double metres : options.origin) {
-    if (std::abs(metres) > furthest_m)
-      throw CLI::ValidationError("--origin",
-                                 readable(metres, 3) + "; expected metres in [-1e5, 1e5], of a robot's window");
-  }
-}
-
 void run(const Options& o) {
   check_files(o);
-  check_origin(o.map);
   Pace pace(speed_of(o.speed, live_interface(o.logs.can).has_value()));
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
@@ -178,6 +166,8 @@ void add_replay(CLI::App& app) {
   command->add_option("--line-costs", o->line_costs, "file to write: CSV, the time and work of each scan line")
       ->check(file_name());
   add_map_options(*command, o->map);
+  constexpr auto furthest_m = static_cast<double>(WindowSettings::furthest_m);
+  command->get_option("--origin")->check(within(-furthest_m, furthest_m, "metres in [-1e5, 1e5], of a robot's window"));
   command->footer(
       "A live scanner that is switched off, or Ctrl-C, ends the scan as the end of a log does: what was mapped is "
       "written,\n"

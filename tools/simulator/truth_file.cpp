@@ -1,5 +1,7 @@
 // truth.json, out and in.
+#include "curbline/settings.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/fields.hpp"
 #include "formats/whole_file.hpp"
 #include "simulator/truth.hpp"
 
@@ -76,17 +78,16 @@ class Part {
   }
   double number(const std::string& key) const { return at(key).number(); }
   double place_m(const std::string& key) const { return at(key).place_m(); }
-  /// Farther off samples along a line could not be counted.
+  /// No window lies farther off, and samples along longer lines take long to score.
   double place_m() const {
     const double metres = number();
-    check(std::abs(metres) <= 1e5, "a place within 100 km");
+    check(std::abs(metres) <= static_cast<double>(WindowSettings::furthest_m), "a place within 100 km");
     return metres;
   }
-  /// Seconds that nanoseconds of 64 bits can be.
   double time_s(const std::string& key) const {
     const Part part = at(key);
     const double seconds = part.number();
-    part.check(seconds >= 0 && seconds < 9.2e9, "a time");
+    part.check(is_time_s(seconds), "a time");
     return seconds;
   }
   double number() const {
