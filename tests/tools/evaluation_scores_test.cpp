@@ -147,6 +147,16 @@ TEST_CASE("scores: a plane that leans and lies too high has the errors that it h
   CHECK(planes.height_m.median == Approx(0.0195).margin(1e-6));  // the middle of the cells is x = 0.95
 }
 
+TEST_CASE("scores: cells on the edge of a kerb, which hold both sides, do not lean the plane whose label they bear") {
+  std::vector<LabelledCell> cells = cells_of(truth, 1.9);
+  for (LabelledCell& cell : cells) {
+    if (cell.x_m > 1.8 && cell.y_m > 0) cell.cell.height_m += 0.04;
+  }
+  const PlaneScores planes = score_planes({{cells}, {}, {}}, truth);
+  CHECK(planes.slope_rad.median == Approx(0).margin(1e-5));
+  CHECK(planes.height_m.median == Approx(0).margin(1e-6));
+}
+
 TEST_CASE("scores: rates by tolerance follow the distance") {
   const CurbScores curbs = scores_of({piece(2.12, -2, 2, 0.1)});
   CHECK(curbs.at[0].precision == 0);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -139,13 +140,14 @@ int plane_of_most(const Cells& cells, const Truth& truth) {
   return std::max_element(count.begin(), count.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
 }
 
-/// Least squares, about the middle of the cells.
+/// A plane about the middle of its cells.
 struct Fit {
   double x_m = 0, y_m = 0, z_m = 0, sx = 0, sy = 0;
   double height_m(Point2 p) const { return z_m + sx * (p.x - x_m) + sy * (p.y - y_m); }
+  double off_m(const LabelledCell& c) const { return std::abs(c.cell.height_m - height_m({c.x_m, c.y_m})); }
 };
 
-Fit fit(const Cells& cells) {
+Fit least_squares(const Cells& cells) {
   Fit out;
   const auto n = static_cast<double>(cells.size());
   for (const LabelledCell* c : cells) {
@@ -163,6 +165,22 @@ Fit fit(const Cells& cells) {
   const Eigen::Vector2d slope = scatter.ldlt().solve(with_height);
   out.sx = slope.x();
   out.sy = slope.y();
+  return out;
+}
+
+/// Of the cells that lie within three standard deviations of it, as the median tells them: those that a step crosses
+/// bear the label of one of its sides and hold both. Half of the cells remain at least.
+Fit fit(const Cells& cells) {
+  Fit out = least_squares(cells);
+  for (int pass = 0; pass < 4; ++pass) {
+    std::vector<double> off_m;
+    for (const LabelledCell* c : cells) off_m.push_back(out.off_m(*c));
+    const double most_m = 3 * 1.4826 * errors_of(off_m).median;
+    Cells near;
+    std::copy_if(cells.begin(), cells.end(), std::back_inserter(near),
+                 [&](const LabelledCell* c) { return out.off_m(*c) <= most_m; });
+    out = least_squares(near);
+  }
   return out;
 }
 

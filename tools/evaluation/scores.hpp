@@ -27,7 +27,8 @@ struct Errors {
 };
 Errors errors_of(std::vector<double> values);
 
-/// Labels and planes. A plane is what least squares makes of its label's cells; the true one that of most of them.
+/// Labels and planes. A plane is what least squares makes of its label's cells, but those that lie off it as no noise
+/// does; the true one that of most of them.
 struct PlaneScores {
   /// V-measure of the labels of the ground under the cells' middles, where the truth is asked, against connected parts
   /// of the true planes, mean over the windows in which two parts or more have 5 % of the cells or more. NaN if there
