@@ -7,6 +7,7 @@
 #include "formats/bad_input.hpp"
 #include "formats/dbc_scanner.hpp"
 #include "formats/line_reader.hpp"
+#include "formats/parse_number.hpp"
 #include "formats/whole_file.hpp"
 
 namespace curbline::tools {
@@ -135,10 +136,8 @@ void DbcParser::multiplexing(DbcSignal& signal) {
   signal.is_multiplexor = word == "M" || both;
   if (word != "M") {
     const std::string digits = word.substr(1, word.size() - 1 - (both ? 1 : 0));
-    const bool whole =
-        !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
-    if (word[0] != 'm' || !whole) in_.fail(word.substr(0, 40) + "; expected ':', M or m and a number");
-    signal.multiplexed = std::stoull(digits);
+    signal.multiplexed = parse_number<std::uint64_t>(digits);
+    if (word[0] != 'm' || !signal.multiplexed) in_.fail(word.substr(0, 40) + "; expected ':', M or m and a number");
   }
   in_.expect(':');
 }

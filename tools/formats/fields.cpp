@@ -1,12 +1,10 @@
 #include "formats/fields.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
-#include <system_error>
 
 #include "candump/candump.hpp"
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -46,45 +44,40 @@ std::string_view Fields::word(std::string_view name) {
   return apart_ == Apart::commas ? trim(field) : field;
 }
 
-double Fields::parse_number(std::string_view name, std::string_view field) const {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (problem != std::errc{} || end != field.data() + field.size()) fail(name, field, "a number");
-  return value;
+double Fields::read_number(std::string_view name, std::string_view field) const {
+  const auto value = parse_number<double>(field);
+  if (!value) fail(name, field, "a number");
+  return *value;
 }
 
 double Fields::number_or_nan(std::string_view name) {
-  return parse_number(name, word(name));
+  return read_number(name, word(name));
 }
 
 double Fields::number(std::string_view name) {
   const std::string_view field = word(name);
-  const double value = parse_number(name, field);
+  const double value = read_number(name, field);
   if (!std::isfinite(value)) fail(name, field, "a finite number");
   return value;
 }
 
 std::int64_t Fields::whole(std::string_view name, std::int64_t lowest, std::int64_t highest) {
   const std::string_view field = word(name);
-  std::int64_t value = 0;
-  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (problem != std::errc{} || end != field.data() + field.size() || value < lowest || value > highest) {
+  const auto value = parse_number<std::int64_t>(field);
+  if (!value || *value < lowest || *value > highest) {
     fail(name, field, "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
   }
-  return value;
+  return *value;
 }
 
 std::int64_t Fields::time_ns(std::string_view name) {
   const std::string_view field = word(name);
   if (const auto exact = candump::parse_time(field)) return *exact;
   // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
-  double seconds = 0.0;
-  const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), seconds);
-  if (problem != std::errc{} || end != field.data() + field.size() || !is_time_s(seconds)) {
-    fail(name, field, "a time in seconds");
-  }
-  const double whole = std::floor(seconds);
-  return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
+  const auto seconds = parse_number<double>(field);
+  if (!seconds || !is_time_s(*seconds)) fail(name, field, "a time in seconds");
+  const double whole = std::floor(*seconds);
+  return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((*seconds - whole) * 1e9);
 }
 
 void Fields::expect_end() const {

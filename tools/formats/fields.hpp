@@ -40,7 +40,7 @@ class Fields {
   [[noreturn]] void fail(std::string_view name, std::string_view got, const std::string& expected) const;
 
  private:
-  double parse_number(std::string_view name, std::string_view field) const;
+  double read_number(std::string_view name, std::string_view field) const;
 
   const LineReader& source_;
   std::string_view rest_;  ///< from the next field on

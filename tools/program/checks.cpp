@@ -1,7 +1,8 @@
 #include "program/checks.hpp"
 
-#include <charconv>
 #include <cstdlib>
+
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -32,9 +33,8 @@ CLI::Validator within(double low, double high, const std::string& expected) {
 
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   const auto check = [=](const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool good = problem == std::errc{} && end == text.data() + text.size() && value >= low && value <= high;
+    const auto value = parse_number<std::uint64_t>(text);
+    const bool good = value && *value >= low && *value <= high;
     return good ? "" : refusal(text, "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
   };
   return CLI::Validator(check, "");

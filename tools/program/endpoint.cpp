@@ -1,19 +1,17 @@
 #include "program/endpoint.hpp"
 
-#include <charconv>
-
 #include "formats/bad_input.hpp"
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
 namespace {
 
 std::uint16_t parse_port(const std::string& name, const std::string& text, std::uint16_t lowest) {
-  std::uint16_t port = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), port);
-  if (failed != std::errc{} || end != text.data() + text.size() || port < lowest) {
+  const auto port = parse_number<std::uint16_t>(text);
+  if (!port || *port < lowest) {
     throw BadInput(name + ": port is \"" + text + "\"; expected a number from " + std::to_string(lowest) + " to 65535");
   }
-  return port;
+  return *port;
 }
 
 }  // namespace

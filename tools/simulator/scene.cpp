@@ -1,12 +1,13 @@
 #include "simulator/scene.hpp"
 
 #include "formats/bad_input.hpp"
+#include "formats/parse_number.hpp"
 #include "formats/shipped.hpp"
 #include "simulator/random_street.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 #include <set>
@@ -20,13 +21,11 @@ namespace {
 constexpr std::string_view random_prefix = "random:", drive_prefix = "random-drive:";
 
 Scene random_scene(const std::string& name, std::string_view prefix) {
-  const std::string_view digits = std::string_view(name).substr(prefix.size());
-  std::uint64_t seed = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
-  if (problem != std::errc{} || end != digits.data() + digits.size()) {
+  const auto seed = parse_number<std::uint64_t>(std::string_view(name).substr(prefix.size()));
+  if (!seed) {
     throw BadInput("no scene '" + name + "'; expected " + std::string(prefix) + " and a whole number, the seed");
   }
-  return parse_scene(random_street(seed, prefix == drive_prefix ? StreetRobot::drives : StreetRobot::stands), name);
+  return parse_scene(random_street(*seed, prefix == drive_prefix ? StreetRobot::drives : StreetRobot::stands), name);
 }
 
 }  // namespace
