@@ -14,7 +14,6 @@ namespace curbline::tools {
 namespace {
 
 constexpr std::uint64_t most = 0xFFFFFFFF;
-constexpr std::uint32_t extended_bit = 0x80000000;
 constexpr std::uint32_t no_message = 0xC0000000;  // holds the signals that are in no message
 
 /// Statements that end with a semicolon and say nothing of a signal's bits.
@@ -106,8 +105,8 @@ void DbcParser::message() {
   DbcMessage message;
   message.line = in_.line();
   const auto id = static_cast<std::uint32_t>(in_.whole("a message's id", most));
-  message.extended = (id & extended_bit) != 0;
-  message.id = id & ~extended_bit;
+  message.extended = (id & DbcMessage::extended_bit) != 0;
+  message.id = id & ~DbcMessage::extended_bit;
   if (id != no_message && message.id > (message.extended ? 0x1FFFFFFFu : 0x7FFu)) {
     in_.fail("id " + std::to_string(id) + " is none of CAN; expected 11 bits, or 29 and bit 31");
   }
@@ -189,7 +188,7 @@ DbcSignal* DbcParser::named_signal() {
   const std::string name = in_.word("a signal's name");
   if (id == no_message) return nullptr;
   for (DbcMessage& message : dbc_) {
-    if ((message.id | (message.extended ? extended_bit : 0)) != id) continue;
+    if (message.file_id() != id) continue;
     for (DbcSignal& signal : message.signals) {
       if (signal.name == name) return &signal;
     }

@@ -39,6 +39,8 @@ struct DbcSignal {
 };
 
 struct DbcMessage {
+  static constexpr std::uint32_t extended_bit = 0x80000000;
+
   std::string name;
   std::uint32_t id = 0;
   bool extended = false;
@@ -46,6 +48,8 @@ struct DbcMessage {
   std::string comment;  ///< of the writer alone
   std::vector<DbcSignal> signals;
   long line = 0;
+
+  std::uint32_t file_id() const { return extended ? id | extended_bit : id; }  ///< as a file has it
 };
 
 using Dbc = std::vector<DbcMessage>;

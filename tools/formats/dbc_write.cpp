@@ -1,19 +1,8 @@
-#include <array>
-#include <charconv>
-
 #include "formats/dbc.hpp"
+#include "formats/decimals.hpp"
 
 namespace curbline::tools {
 namespace {
-
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-std::string id_of(const DbcMessage& message) {
-  return std::to_string(message.id | (message.extended ? 0x80000000u : 0u));
-}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -38,20 +27,21 @@ void write_signal(std::ostream& out, const DbcSignal& s) {
 void write_dbc(std::ostream& out, const Dbc& dbc) {
   out << "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_:\n\n";
   for (const DbcMessage& message : dbc) {
-    out << "BO_ " << id_of(message) << ' ' << message.name << ": " << message.length << " Vector__XXX\n";
+    out << "BO_ " << message.file_id() << ' ' << message.name << ": " << message.length << " Vector__XXX\n";
     for (const DbcSignal& signal : message.signals) write_signal(out, signal);
     out << '\n';
   }
   for (const DbcMessage& message : dbc) {
-    if (!message.comment.empty()) out << "CM_ BO_ " << id_of(message) << ' ' << quoted(message.comment) << ";\n";
+    if (!message.comment.empty()) out << "CM_ BO_ " << message.file_id() << ' ' << quoted(message.comment) << ";\n";
     for (const DbcSignal& s : message.signals) {
-      if (!s.comment.empty()) out << "CM_ SG_ " << id_of(message) << ' ' << s.name << ' ' << quoted(s.comment) << ";\n";
+      if (!s.comment.empty())
+        out << "CM_ SG_ " << message.file_id() << ' ' << s.name << ' ' << quoted(s.comment) << ";\n";
     }
   }
   for (const DbcMessage& message : dbc) {
     for (const DbcSignal& s : message.signals) {
       if (s.type == DbcValueType::whole) continue;
-      out << "SIG_VALTYPE_ " << id_of(message) << ' ' << s.name << " : " << (s.type == DbcValueType::float32 ? 1 : 2)
+      out << "SIG_VALTYPE_ " << message.file_id() << ' ' << s.name << " : " << (s.type == DbcValueType::float32 ? 1 : 2)
           << ";\n";
     }
   }
