@@ -54,11 +54,7 @@ std::vector<FoundSample> found_samples(const Found& found, const Nearest& neares
   std::vector<FoundSample> out;
   for (const MapCurb& c : found.curbs) {
     if (!is_step(c)) continue;
-    const double length = std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
-    const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
-    for (int i = 0; i < n; ++i) {
-      const double t = (i + 0.5) / n;
-      const Point2 p{c.x0_m + t * (c.x1_m - c.x0_m), c.y0_m + t * (c.y1_m - c.y0_m)};
+    for (const auto& [p, share] : samples_of(line_of(c))) {
       if (seen(p.x, p.y)) out.push_back(nearest.of(p, c.height_m));
     }
   }

@@ -4,28 +4,20 @@
 #include <cmath>
 
 namespace curbline::tools {
-namespace {
-
-struct Sample {
-  double x_m, y_m;
-  double share;  ///< 0 at the segment's start, 1 at its end
-};
-
-std::vector<Sample> samples(const Segment& s) {
-  const double length = std::hypot(s.x1_m - s.x0_m, s.y1_m - s.y0_m);
-  const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
-  std::vector<Sample> out;
-  for (int k = 0; k < n; ++k) {
-    const double t = (k + 0.5) / n;
-    out.push_back({s.x0_m + t * (s.x1_m - s.x0_m), s.y0_m + t * (s.y1_m - s.y0_m), t});
-  }
-  return out;
-}
-
-}  // namespace
 
 Segment line_of(const MapCurb& curb) {
   return {curb.x0_m, curb.y0_m, curb.x1_m, curb.y1_m};
+}
+
+std::vector<SegmentSample> samples_of(const Segment& s) {
+  const double length = std::hypot(s.x1_m - s.x0_m, s.y1_m - s.y0_m);
+  const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
+  std::vector<SegmentSample> out;
+  for (int k = 0; k < n; ++k) {
+    const double t = (k + 0.5) / n;
+    out.push_back({{s.x0_m + t * (s.x1_m - s.x0_m), s.y0_m + t * (s.y1_m - s.y0_m)}, t});
+  }
+  return out;
 }
 
 double distance_m(double x_m, double y_m, const Segment& s) {
@@ -41,11 +33,12 @@ Rates curb_rates(std::span<const MapCurb> found, std::span<const Segment> truth,
   const auto share_near = [&](std::span<const Segment> of, std::span<const Segment> to) {
     double all = 0, near = 0;
     for (const Segment& s : of) {
-      for (const Sample& p : samples(s)) {
-        if (!counts(p.x_m, p.y_m)) continue;
+      for (const SegmentSample& sample : samples_of(s)) {
+        const Point2 p = sample.at;
+        if (!counts(p.x, p.y)) continue;
         ++all;
-        near += std::any_of(to.begin(), to.end(),
-                            [&](const Segment& t) { return distance_m(p.x_m, p.y_m, t) <= tolerance_m; });
+        near +=
+            std::any_of(to.begin(), to.end(), [&](const Segment& t) { return distance_m(p.x, p.y, t) <= tolerance_m; });
       }
     }
     return all > 0 ? near / all : 0.0;

@@ -9,14 +9,22 @@
 
 namespace curbline::tools {
 
-/// From sample to sample, at the most.
-inline constexpr double spacing_m = 0.05;
-
 struct Segment {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
 };
 
 Segment line_of(const MapCurb& curb);
+
+/// From sample to sample, at the most.
+inline constexpr double spacing_m = 0.05;
+
+struct SegmentSample {
+  Point2 at;
+  double share;  ///< of the segment: 0 at its start, 1 at its end
+};
+
+/// In the middles of parts of one length.
+std::vector<SegmentSample> samples_of(const Segment& segment);
 
 double distance_m(double x_m, double y_m, const Segment& segment);
 

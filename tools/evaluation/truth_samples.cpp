@@ -10,19 +10,20 @@ constexpr double aside_m = 0.2;
 
 }  // namespace
 
+Segment line_of(const TruthCurb& curb) {
+  return {curb.from.x, curb.from.y, curb.to.x, curb.to.y};
+}
+
 std::vector<TruthSample> truth_samples(const Truth& truth) {
   std::vector<TruthSample> out;
   for (std::size_t k = 0; k < truth.curbs.size(); ++k) {
     const TruthCurb& curb = truth.curbs[k];
     const double dx = curb.to.x - curb.from.x, dy = curb.to.y - curb.from.y, length = std::hypot(dx, dy);
     if (curb.kind != "step" || length <= 0) continue;
-    const int n = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
     const double rise_m = curb.to_step_m - curb.from_step_m;
-    for (int i = 0; i < n; ++i) {
-      const double t = (i + 0.5) / n;
-      const Point2 at{curb.from.x + t * dx, curb.from.y + t * dy};
+    for (const auto& [at, share] : samples_of(line_of(curb))) {
       if (truth.obstacle_at(at.x, at.y)) continue;
-      out.push_back({k, at, {-dy / length, dx / length}, curb.from_step_m + t * rise_m, rise_m / length});
+      out.push_back({k, at, {-dy / length, dx / length}, curb.from_step_m + share * rise_m, rise_m / length});
     }
   }
   return out;

@@ -12,6 +12,8 @@
 
 namespace curbline::tools {
 
+Segment line_of(const TruthCurb& curb);
+
 /// A place on a true step.
 struct TruthSample {
   std::size_t curb = 0;  ///< of Truth::curbs

@@ -87,10 +87,8 @@ std::vector<CurbRow> curb_rows(const Evaluation& e) {
   std::vector<CurbRow> rows;
   for (std::size_t k = 0; k < matches.size(); ++k) {
     if (matches[k].visible_m < least_visible_m) continue;
-    const TruthCurb& c = e.truth.curbs[k];
     const bool known = e.run && k < e.run->detections.size();
-    rows.push_back(
-        {{c.from.x, c.from.y, c.to.x, c.to.y}, matches[k], known ? e.run->detections[k] : Detections::Detection{}});
+    rows.push_back({line_of(e.truth.curbs[k]), matches[k], known ? e.run->detections[k] : Detections::Detection{}});
   }
   return rows;
 }
@@ -228,7 +226,7 @@ nlohmann::json to_json(const Scored& s) {
 /// Of all kinds, creases too.
 Rates all_rates(const Evaluation& e) {
   std::vector<Segment> lines;
-  for (const TruthCurb& c : e.truth.curbs) lines.push_back({c.from.x, c.from.y, c.to.x, c.to.y});
+  for (const TruthCurb& c : e.truth.curbs) lines.push_back(line_of(c));
   return curb_rates(e.found.curbs, lines, tolerance_m, std::cref(e.seen));
 }
 
