@@ -57,18 +57,23 @@ std::vector<Row> read_rows(const std::string& path, std::string_view columns, Re
 
 }  // namespace
 
-void write_labels(std::ostream& out, const Map& map) {
-  std::string text = std::string(label_columns) + "\n";
+std::vector<LabelledCell> labelled_cells(const Map& map) {
+  std::vector<LabelledCell> out;
   for (int i = 0; i < map.grid.rows; ++i) {
     for (int j = 0; j < map.grid.cols; ++j) {
       const MapCell& cell = map.cells[map.grid.at(i, j)];
-      if (cell.points == 0) continue;
-      for (const double metres : {map.grid.x_m(i), map.grid.y_m(j), cell.height_m})
-        text += decimals(metres, places) + ",";
-      text +=
-          decimals(cell.variance_m2, 9) + "," + std::to_string(cell.points) + "," + std::to_string(cell.label) + ",";
-      text += decimals(cell.probability, places) + "\n";
+      if (cell.points > 0) out.push_back({map.grid.x_m(i), map.grid.y_m(j), cell});
     }
+  }
+  return out;
+}
+
+void write_labels(std::ostream& out, const Map& map) {
+  std::string text = std::string(label_columns) + "\n";
+  for (const auto& [x_m, y_m, cell] : labelled_cells(map)) {
+    for (const double metres : {x_m, y_m, cell.height_m}) text += decimals(metres, places) + ",";
+    text += decimals(cell.variance_m2, 9) + "," + std::to_string(cell.points) + "," + std::to_string(cell.label) + ",";
+    text += decimals(cell.probability, places) + "\n";
   }
   out << text;
 }

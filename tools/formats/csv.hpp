@@ -13,11 +13,14 @@
 
 namespace curbline::tools {
 
-/// A row of the label file. The file does not say how large a cell is.
+/// A row of the label file, of a valid cell. The file does not say how large a cell is.
 struct LabelledCell {
-  double x_m = 0, y_m = 0;
+  double x_m = 0, y_m = 0;  ///< the cell's centre
   MapCell cell;
 };
+
+/// The rows of a map, along y first.
+std::vector<LabelledCell> labelled_cells(const Map& map);
 
 void write_labels(std::ostream& out, const Map& map);
 void write_curbs(std::ostream& out, const std::vector<MapCurb>& curbs);

@@ -59,17 +59,6 @@ class Record {
 
 }  // namespace
 
-std::vector<LabelledCell> labelled_cells(const Map& map) {
-  std::vector<LabelledCell> out;
-  for (int i = 0; i < map.grid.rows; ++i) {
-    for (int j = 0; j < map.grid.cols; ++j) {
-      const MapCell& cell = map.cells[map.grid.at(i, j)];
-      if (cell.points > 0) out.push_back({map.grid.x_m(i), map.grid.y_m(j), cell});
-    }
-  }
-  return out;
-}
-
 bool has_logs(const std::string& dir) {
   return std::filesystem::exists(dir + "/scans.carmen") && std::filesystem::exists(dir + "/robot.toml");
 }

@@ -2,7 +2,6 @@
 // labels every half window, all curbs, and when each true step was told of.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +31,5 @@ RecordedRun replay_recording(const std::string& dir, const Truth& truth);
 
 /// The same sweep by a method that takes a whole cloud, on the window of `run`. Throws BadInput.
 Map map_recording(const std::string& dir, const RecordedRun& run, MapMethod method);
-
-/// The valid cells of a map.
-std::vector<LabelledCell> labelled_cells(const Map& map);
 
 }  // namespace curbline::tools
