@@ -1,5 +1,6 @@
 // What lies in a polygon.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "map/polygon.hpp"
 
@@ -42,6 +43,11 @@ TEST_CASE("polygon: of a segment counts what lies in the rectangle, none of one 
   CHECK_FALSE(share_in(box, {-1, 0.5}, {1, 2.6}).any());
   CHECK(crosses(box, {2, -1}, {2, 2}));
   CHECK_FALSE(crosses(box, {2.1, -1}, {2.1, 2}));
+  const double nan = std::nan("");
+  for (const Point2 end : {Point2{nan, 0.5}, Point2{0.5, nan}}) {
+    CHECK_FALSE(crosses(box, {1, 0.5}, end));
+    CHECK_FALSE(crosses(box, end, {1, 0.5}));
+  }
 }
 
 }  // namespace

@@ -153,19 +153,18 @@ Bounds bounds(const Polygon& polygon) {
   return box;
 }
 
+void Share::clip(double start, double step, double low, double high) {
+  if (std::isnan(step) || (step == 0 && (start < low || start > high))) to = -1;
+  if (step == 0) return;
+  const double t0 = (low - start) / step, t1 = (high - start) / step;
+  from = std::max(from, std::min(t0, t1));
+  to = std::min(to, std::max(t0, t1));
+}
+
 Share share_in(const Bounds& box, Point2 a, Point2 b) {
   Share share;
-  const auto clip = [&](double start, double step, double low, double high) {
-    if (step == 0) {
-      if (start < low || start > high) share.to = -1;
-      return;
-    }
-    const double t0 = (low - start) / step, t1 = (high - start) / step;
-    share.from = std::max(share.from, std::min(t0, t1));
-    share.to = std::min(share.to, std::max(t0, t1));
-  };
-  clip(a.x, b.x - a.x, box.x0, box.x1);
-  clip(a.y, b.y - a.y, box.y0, box.y1);
+  share.clip(a.x, b.x - a.x, box.x0, box.x1);
+  share.clip(a.y, b.y - a.y, box.y0, box.y1);
   return share;
 }
 

@@ -30,13 +30,17 @@ bool is_simple(const Polygon& polygon);  ///< three corners or more, some area, 
 bool contains(const Polygon& polygon, Point2 point);
 Bounds bounds(const Polygon& polygon);
 
-/// A part of a segment, as shares of the way from its start to its end.
+/// A part of a segment, as shares of the way from its start to its end; or of a ray, in steps from its origin on.
 struct Share {
   double from = 0, to = 1;
   bool any() const { return from < to; }
+
+  /// Leaves what of it lies where low <= start + t step <= high; from > to if nothing does, or one of them is NaN
+  /// (Liang and Barsky 1984).
+  void clip(double start, double step, double low, double high);
 };
 
-/// The part of the segment from a to b that lies in the rectangle (Liang and Barsky 1984); from > to if none does.
+/// The part of the segment from a to b that lies in the rectangle; from > to if none does.
 Share share_in(const Bounds& box, Point2 a, Point2 b);
 
 /// True if the segment from a to b has a point in the rectangle.

@@ -1,7 +1,8 @@
 #include "picture/drawing.hpp"
 
-#include <algorithm>
 #include <cstddef>
+
+#include "map/polygon.hpp"
 
 namespace curbline::tools::picture {
 namespace {
@@ -52,15 +53,7 @@ bool inside(const Box& inner, const Box& outer) {
 }
 
 bool crosses(const Box& box, Pixel a, Pixel b) {
-  double from = 0, to = 1;  // the part of the line between the pairs of sides looked at so far
-  const auto cut = [&](double start, double delta, double low, double high) {
-    if (delta == 0) return low <= start && start <= high;
-    const double first = (low - start) / delta, second = (high - start) / delta;
-    from = std::max(std::min(first, second), from);
-    to = std::min(std::max(first, second), to);
-    return from <= to;
-  };
-  return cut(a.x, b.x - a.x, box.x, box.right()) && cut(a.y, b.y - a.y, box.y, box.bottom());
+  return tools::crosses({box.x, box.y, box.right(), box.bottom()}, {a.x, a.y}, {b.x, b.y});
 }
 
 void set_colour(cairo_t* cr, const Colour& colour) {

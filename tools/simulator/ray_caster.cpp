@@ -39,30 +39,21 @@ double RayCaster::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& dir
   for (const Prism& prism : moved_) {
     best = std::min(best, hit_prism(ray, prism));
   }
-  const Span grid = under_grid(ray);
+  const Share grid = over_grid(ray);
   best = std::min(best, cast_outside(ray, grid));
   return cast_inside(ray, grid, best);
 }
 
-/// The part of the ray that lies over the grid; from >= to if none does.
-RayCaster::Span RayCaster::under_grid(const Ray& ray) const {
-  Span span{0, nothing};
-  const auto clip = [&](double start, double step, double low, double high) {
-    if (step == 0) {
-      if (start < low || start >= high) span.to = -1;
-      return;
-    }
-    const double t0 = (low - start) / step, t1 = (high - start) / step;
-    span.from = std::max(span.from, std::min(t0, t1));
-    span.to = std::min(span.to, std::max(t0, t1));
-  };
-  clip(ray.origin.x(), ray.direction.x(), bounds_.x0, bounds_.x1);
-  clip(ray.origin.y(), ray.direction.y(), bounds_.y0, bounds_.y1);
-  return span;
+/// The part of the ray that lies over the grid.
+Share RayCaster::over_grid(const Ray& ray) const {
+  Share over{0, nothing};
+  over.clip(ray.origin.x(), ray.direction.x(), bounds_.x0, bounds_.x1);
+  over.clip(ray.origin.y(), ray.direction.y(), bounds_.y0, bounds_.y1);
+  return over;
 }
 
 /// Beyond the grid there is the ground that lies everywhere, or nothing.
-double RayCaster::cast_outside(const Ray& ray, const Span& grid) const {
+double RayCaster::cast_outside(const Ray& ray, const Share& grid) const {
   if (!regions_.front().outline.empty()) {
     return nothing;
   }
@@ -71,8 +62,8 @@ double RayCaster::cast_outside(const Ray& ray, const Span& grid) const {
 }
 
 /// Amanatides and Woo's walk through the cells under the ray.
-double RayCaster::cast_inside(const Ray& ray, const Span& grid, double best) const {
-  if (!(grid.from < grid.to)) {
+double RayCaster::cast_inside(const Ray& ray, const Share& grid, double best) const {
+  if (!grid.any()) {
     return best;
   }
   const double dx = ray.direction.x(), dy = ray.direction.y();

@@ -47,18 +47,15 @@ class RayCaster {
     Point2 at(double t) const { return {origin.x() + t * direction.x(), origin.y() + t * direction.y()}; }
     double z(double t) const { return origin.z() + t * direction.z(); }
   };
-  struct Span {
-    double from, to;
-  };
 
   void lay_grid();
   void fill_cell(Cell& cell, const Bounds& box);
   Prism prism_of(const Obstacle& obstacle) const;
   const Cell* cell_at(Point2 p) const;
   int region_in(const Cell& cell, Point2 p) const;
-  Span under_grid(const Ray& ray) const;
-  double cast_outside(const Ray& ray, const Span& grid) const;
-  double cast_inside(const Ray& ray, const Span& grid, double best) const;
+  Share over_grid(const Ray& ray) const;
+  double cast_outside(const Ray& ray, const Share& grid) const;
+  double cast_inside(const Ray& ray, const Share& grid, double best) const;
   double cast_in_cell(const Ray& ray, const Cell& cell, double from, double to) const;
   static double hit_plane(const Ray& ray, const SurfacePlane& plane);
   static double hit_face(const Ray& ray, const Face& face);
