@@ -100,6 +100,18 @@ void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const st
   }
 }
 
+CarmenLine to_carmen(const ScanLine& line, const LaserSettings& laser) {
+  CarmenLine scan;
+  scan.time_ns = line.time_ns;
+  scan.start_angle_rad = static_cast<double>(laser.first_bearing_rad);
+  scan.angular_resolution_rad = static_cast<double>(laser.bearing_step_rad);
+  scan.field_of_view_rad = scan.angular_resolution_rad * (laser.beams - 1);
+  scan.maximum_range_m = static_cast<double>(laser.max_range_m);
+  scan.accuracy_m = static_cast<double>(laser.range_sd_m);
+  scan.ranges_m.assign(line.ranges_m.begin(), line.ranges_m.end());
+  return scan;
+}
+
 void write_carmen(std::ostream& out, const CarmenLine& scan) {
   std::string line = "RAWLASER1 0";
   for (const double angle_rad : {scan.start_angle_rad, scan.field_of_view_rad, scan.angular_resolution_rad}) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
 #include "formats/line_reader.hpp"
 
@@ -48,6 +49,9 @@ Misfit misfit_of(std::size_t beams, double first_bearing_rad, double bearing_ste
 
 /// Throws BadInput("file:line: ...") unless the scan line has the beams and bearings of the robot's laser.
 void check_geometry(const CarmenLine& scan, const LaserSettings& laser, const std::string& file, long line);
+
+/// A scan line as the laser measures it, with its bearings, longest range and accuracy.
+CarmenLine to_carmen(const ScanLine& line, const LaserSettings& laser);
 
 /// Writes one line: ranges to the millimetre, angles to 1e-9 rad, times to the microsecond.
 void write_carmen(std::ostream& out, const CarmenLine& scan);

@@ -9,16 +9,7 @@ namespace {
 
 std::optional<CarmenLine> next_line(Simulation& simulation, const LaserSettings& laser) {
   while (const auto event = simulation.next()) {
-    const auto* line = std::get_if<ScanLine>(&*event);
-    if (line == nullptr) continue;
-    CarmenLine scan;
-    scan.time_ns = line->time_ns;
-    scan.start_angle_rad = static_cast<double>(laser.first_bearing_rad);
-    scan.angular_resolution_rad = static_cast<double>(laser.bearing_step_rad);
-    scan.field_of_view_rad = scan.angular_resolution_rad * (laser.beams - 1);
-    scan.maximum_range_m = static_cast<double>(laser.max_range_m);
-    scan.ranges_m.assign(line->ranges_m.begin(), line->ranges_m.end());
-    return scan;
+    if (const auto* line = std::get_if<ScanLine>(&*event)) return to_carmen(*line, laser);
   }
   return std::nullopt;
 }

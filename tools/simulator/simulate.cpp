@@ -32,7 +32,7 @@ bool exists(const std::string& path) {
 class Recording {
  public:
   Recording(const std::string& dir, const Robot& robot, bool with_poses)
-      : dir_(dir), robot_(robot), after_another_(exists(dir + "/truth.json")) {
+      : dir_(dir), laser_(robot.laser), after_another_(exists(dir + "/truth.json")) {
     std::error_code failed;
     std::filesystem::create_directories(dir, failed);
     if (failed) {
@@ -50,14 +50,7 @@ class Recording {
   }
 
   void take(const ScanLine& line) {
-    scan_.time_ns = line.time_ns;
-    scan_.start_angle_rad = static_cast<double>(robot_.laser.first_bearing_rad);
-    scan_.angular_resolution_rad = static_cast<double>(robot_.laser.bearing_step_rad);
-    scan_.field_of_view_rad = scan_.angular_resolution_rad * (robot_.laser.beams - 1);
-    scan_.maximum_range_m = static_cast<double>(robot_.laser.max_range_m);
-    scan_.accuracy_m = static_cast<double>(robot_.laser.range_sd_m);
-    scan_.ranges_m.assign(line.ranges_m.begin(), line.ranges_m.end());
-    write_carmen(*scans_, scan_);
+    write_carmen(*scans_, to_carmen(line, laser_));
     ++summary.lines;
   }
 
@@ -109,13 +102,12 @@ class Recording {
   }
 
   std::string dir_;
-  const Robot& robot_;
+  LaserSettings laser_;
   bool after_another_;
   std::list<AtomicFile> files_;
   std::vector<const char*> left_out_;
   std::ostream *truth_ = nullptr, *scans_ = nullptr, *can_ = nullptr, *poses_ = nullptr;
   std::ostream *regions_ = nullptr, *scene_ = nullptr, *robot_text_ = nullptr;
-  CarmenLine scan_;
 };
 
 }  // namespace
