@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/decimals.hpp"
 #include "picture/ticks.hpp"
 
 namespace curbline::tools::picture {
@@ -67,13 +68,8 @@ void draw_scale_bar(cairo_t* cr, const View& view) {
 
 /// Of the numbers at the ends, with the decimals of the closest that ticks() may stand: a tenth of the window apart.
 double wider_end(cairo_t* cr, double low, double high) {
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10((high - low) / 10))));
-  const auto width = [&](double value) {
-    char words[64];
-    std::snprintf(words, sizeof words, "%.*f", decimals, value);
-    return text_width(cr, words);
-  };
-  return std::max(width(low), width(high));
+  const int places = std::max(0, -static_cast<int>(std::floor(std::log10((high - low) / 10))));
+  return std::max(text_width(cr, decimals(low, places)), text_width(cr, decimals(high, places)));
 }
 
 /// As cairo's RGB24 has it.

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "formats/decimals.hpp"
 
 namespace curbline::tools::picture {
 namespace {
@@ -11,11 +12,9 @@ constexpr double slack = 1e-6;  // of a step: an end that is a tick but for roun
 
 std::vector<Tick> multiples(double low, double high, double step) {
   std::vector<Tick> result;
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + slack)));
+  const int places = std::max(0, -static_cast<int>(std::floor(std::log10(step) + slack)));
   for (double k = std::ceil(low / step - slack); k * step <= high + slack * step; ++k) {
-    char words[64];
-    std::snprintf(words, sizeof words, "%.*f", decimals, k == 0 ? 0.0 : k * step);
-    result.push_back({k * step, words});
+    result.push_back({k * step, decimals(k == 0 ? 0.0 : k * step, places)});
   }
   return result;
 }

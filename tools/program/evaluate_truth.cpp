@@ -8,6 +8,7 @@
 
 #include "evaluation/curbs.hpp"
 #include "formats/csv.hpp"
+#include "formats/decimals.hpp"
 #include "program/evaluate.hpp"
 #include "program/recorded_run.hpp"
 
@@ -202,9 +203,8 @@ void print_table(const Scored& here, const std::optional<Scored>& reference, con
     const auto rate = [&](const char* name, double StepRates::*value) {
       print_line(name, here.curbs.at[k].*value, reference ? reference->curbs.at[k].*value : none, none, 3);
     };
-    char name[64];
-    std::snprintf(name, sizeof name, "steps at %.2f m: precision", here.curbs.at[k].tolerance_m);
-    rate(name, &StepRates::precision);
+    const std::string precision = "steps at " + decimals(here.curbs.at[k].tolerance_m, 2) + " m: precision";
+    rate(precision.c_str(), &StepRates::precision);
     rate("                 recall", &StepRates::recall);
     rate("                 F1", &StepRates::f1);
   }

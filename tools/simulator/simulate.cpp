@@ -5,22 +5,16 @@
 #include "formats/carmen.hpp"
 #include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
+#include "formats/whole_file.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"
 #include "simulator/truth.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <list>
 
 namespace curbline::tools {
 namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 bool exists(const std::string& path) {
   std::error_code none;
@@ -117,7 +111,7 @@ SimulationSummary simulate(const Scene& scene, const std::string& robot_file, co
   const Robot robot = read_robot(robot_file);
   Simulation simulation(scene, robot, options.seed, options.duration_s);
   const Truth truth = make_truth(in_map_frame(scene), static_cast<double>(simulated_start_ns) * 1e-9);
-  const std::string robot_text = text_of(robot_file);
+  const std::string robot_text = read_whole(robot_file, 1, "a robot file (TOML)");
 
   Recording recording(out_dir, robot, gives_poses(scene, robot));
   recording.summary.duration_s = simulation.duration_s();
