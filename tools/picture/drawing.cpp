@@ -1,6 +1,6 @@
 #include "picture/drawing.hpp"
 
-#include <cstddef>
+#include <nlohmann/json.hpp>
 
 #include "map/polygon.hpp"
 
@@ -13,33 +13,13 @@ bool follows(char c) {
   return (static_cast<Byte>(c) & 0xC0) == 0x80;
 }
 
-/// Bytes of the UTF-8 character that begins at words[at]; 0: none does.
-std::size_t character_at(const std::string& words, std::size_t at) {
-  const auto first = static_cast<Byte>(words[at]);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xC2 ? 0
-                             : first < 0xE0 ? 2
-                             : first < 0xF0 ? 3
-                             : first < 0xF5 ? 4
-                                            : 0;
-  if (at + length > words.size()) return 0;
-  for (std::size_t n = 1; n < length; ++n) {
-    if (!follows(words[at + n])) return 0;
-  }
-  if (length < 3) return length;
-  const auto second = static_cast<Byte>(words[at + 1]);
-  const bool too_long = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool no_character = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-  return too_long || no_character ? 0 : length;
-}
-
+/// JSON is UTF-8: its writer refuses what is not.
 bool is_utf8(const std::string& words) {
-  for (std::size_t at = 0; at < words.size();) {
-    const std::size_t length = character_at(words, at);
-    if (length == 0) return false;
-    at += length;
+  try {
+    return !nlohmann::json(words).dump().empty();
+  } catch (const nlohmann::json::type_error&) {
+    return false;
   }
-  return true;
 }
 
 }  // namespace
