@@ -41,8 +41,8 @@ class ByteStream {
   void close();
 
   /// Bits a second of a serial line: 9600, 19200, 38400, 57600, 115200 or 500000; any other is EINVAL. 0, or an errno.
-  /// Nothing for TCP.
-  /// Does not wait for bytes that are still to leave, and would garble them: call it when they have been answered.
+  /// Nothing for TCP. Does not wait for bytes that are still to leave, and would garble them: call it when they have
+  /// been answered.
   int set_baud(int baud);
 
   enum class Read : unsigned char { bytes, nothing, closed };

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "map/map.hpp"
-
-#include <vector>
 
 namespace curbline::tools {
 
@@ -16,8 +15,8 @@ struct DriveFiles {
 };
 
 /// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: what `curbline
-/// replay` gives the pipeline, with some readings more of the time to come. Returns what a user should know of
-/// the lines' stamps (LaserLog::remarks()). Throws BadInput.
+/// replay` gives the pipeline, with some readings more of the time to come. Returns what a user should know of the
+/// lines' stamps (LaserLog::remarks()). Throws BadInput.
 std::string write_drive(const DriveFiles& files);
 
 /// The curbs after the last scan line of a stream of results. Throws BadInput.

@@ -15,8 +15,8 @@ namespace curbline::tools {
 
 /// What is scored.
 struct Found {
-  std::vector<std::vector<LabelledCell>>
-      windows;                      ///< one for a robot that stands, some along the way of one that drives
+  /// One of a robot that stands, some along the way of one that drives.
+  std::vector<std::vector<LabelledCell>> windows;
   std::vector<MapCurb> curbs;       ///< of the whole way
   std::optional<Point2> seen_from;  ///< near sides are those of this place; without, steps are compared without signs
 };

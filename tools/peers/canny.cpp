@@ -149,8 +149,8 @@ std::vector<MapCurb> canny_curbs(const reference::Dem& dem) {
     const double step = side_height(heights, at_i, at_j, ui, uj) - side_height(heights, at_i, at_j, -ui, -uj);
     if (!(step >= least_step_m && step <= most_step_m)) continue;
     EdgePoint edge{grid.x0_m + (at_i + 0.5) * grid.dx_m, grid.y0_m + (at_j + 0.5) * grid.dy_m, 0};
-    const bool up =
-        edge.x_m * ui * grid.dx_m + edge.y_m * uj * grid.dy_m > 0;  // the gradient leads away from the origin
+    // Whether the gradient leads away from the origin.
+    const bool up = edge.x_m * ui * grid.dx_m + edge.y_m * uj * grid.dy_m > 0;
     edge.height_m = up ? step : -step;
     edges.push_back(edge);
   }

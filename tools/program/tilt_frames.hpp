@@ -4,8 +4,7 @@
 // A bus carries frames, not the times at which they were recorded, and canplayer sends each up to some milliseconds
 // late. So what a frame says, its order and whether it comes at all are the bus's; its time is
 //   1. the recorded one, where the recording's own CAN log lies beside the scan log: NAME.candump beside NAME.carmen,
-//   or
-//      can.log. Then the curbs are those of reading that log, byte for byte, as long as no frame is lost.
+//      or can.log. Then the curbs are those of reading that log, byte for byte, as long as no frame is lost.
 //   2. else the kernel's receive time, moved by a constant: the first frame came at the time of the first scan line.
 // A frame that is not in the log has the time of 2, the constant being that of the last one that is.
 #pragma once

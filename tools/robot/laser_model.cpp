@@ -20,16 +20,15 @@ struct LaserModel {
 
 constexpr LaserModel models[] = {
     // Hokuyo UTM-30LX data sheet: 270 deg, 0.25 deg, 25 ms a scan, 0.1 to 30 m guaranteed (60 m at most), repeatability
-    // below
-    // 10 mm to 10 m (accuracy +-30 mm); SCIP 2.0 manual C-42-03320B: 1440 steps a turn, 1081 of them measured.
+    // below 10 mm to 10 m (accuracy +-30 mm); SCIP 2.0 manual C-42-03320B: 1440 steps a turn, 1081 of them measured.
     {"utm-30lx", -135.0, 0.25, 1081, 40.0, 0.025, 0.1, 30.0, 0.010},
     // SICK LMS1xx operating instructions 8012471: 270 deg, 0.5 deg at 50 Hz or 0.25 deg at 25 Hz, to 50 m; the LMS151
-    // from 0.5 m;
-    // statistical error 12 mm (systematic +-30 mm). 50 Hz gives as many points a second, and more lines while nodding.
+    // from 0.5 m; statistical error 12 mm (systematic +-30 mm). 50 Hz gives as many points a second, and more lines
+    // while nodding.
     {"lms-151", -135.0, 0.5, 541, 50.0, 0.020, 0.5, 50.0, 0.012},
     // SICK LMS2xx technical description: 180 deg, mirror at 75 Hz, mm mode to 8 m, statistical error 5 mm. 1 deg a
-    // turn: for
-    // 0.5 deg the scanner interlaces two turns, so that neighbours are 13 ms apart, which a nodding laser cannot use.
+    // turn: for 0.5 deg the scanner interlaces two turns, so that neighbours are 13 ms apart, which a nodding laser
+    // cannot use.
     {"lms-200", -90.0, 1.0, 181, 75.0, 1.0 / 75.0, 0.1, 8.0, 0.005},
 };
 

@@ -23,8 +23,7 @@ enum class Protocol { scip2, cola, lms200 };
 struct ServerOptions {
   std::uint16_t port = 0;  ///< of TCP; 0: one that is free
   double speed = 1.0;      ///< times as fast as the feed; 0: as fast as it is read
-  int baud =
-      500'000;  ///< of a serial line at power-on; a real LMS200 comes with 9600, but keeps another if it is told to
+  int baud = 500'000;  ///< of a serial line at power-on; a real LMS200 has 9600, or another that it was told to keep
 
   // Faults, for tests.
   std::function<void(Bytes& telegram, long line)> damage{};  ///< may change what is sent for a line, counted from 0

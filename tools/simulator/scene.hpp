@@ -71,8 +71,8 @@ Scene read_scene(const std::string& path);
 /// The same for the text of a file; messages call it `file`.
 Scene parse_scene(const std::string& text, const std::string& file);
 
-/// The same for a file (a name with '/' or ending in .toml) or the name of a scene that ships, or random:SEED
-/// or random-drive:SEED.
+/// The same for a file (a name with '/' or ending in .toml), the name of a scene that ships, random:SEED or
+/// random-drive:SEED.
 Scene find_scene(const std::string& name_or_path);
 
 /// Names of the scenes that ship, sorted.

@@ -1,5 +1,5 @@
-// What a simulated scene truly is, in the map frame of the simulated data: for scoring. Written as truth.json
-// beside the data.
+// What a simulated scene truly is, in the map frame of the simulated data: for scoring. Written as truth.json beside
+// the data.
 #pragma once
 
 #include "simulator/scene.hpp"

@@ -4,8 +4,8 @@
 //   vcan probe                  exit status 0 if this kernel gives a vcan0
 //   vcan run COMMAND...         becomes the command, in a namespace with vcan0 and lo up
 //   process 1, vcan_job=FOLDER  of a guest kernel; runs what the folder says (`directory`, `environment`, `arguments`;
-//   the last two end
-//                               each word by a zero byte), writes its exit status to FOLDER/status, turns the guest off
+//                               the last two end each word by a zero byte), writes its exit status to FOLDER/status,
+//                               turns the guest off
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
