@@ -4,7 +4,6 @@
 
 #include <sys/un.h>
 
-#include <cstdint>
 #include <string_view>
 
 namespace curbline::daemon {

@@ -1,6 +1,7 @@
 #include "cola/scan_data.hpp"
 
 #include <bit>
+#include <limits>
 
 #include "cola/telegram.hpp"
 

@@ -1,6 +1,5 @@
 #include "cola/session.hpp"
 
-#include <cmath>
 #include <numbers>
 
 namespace curbline::cola {

@@ -4,7 +4,6 @@
 // the telegrams printed there and in 8023198.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>

@@ -3,7 +3,6 @@
 // finer steps is made of), which is refused; bits 14 and 15 are the unit. Source: SICK 8007954, telegrams 30h and B0h.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
