@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "formats/fields.hpp"
 #include "formats/line_reader.hpp"

@@ -1,6 +1,5 @@
 #include "program/host_pipeline.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "formats/bad_input.hpp"

@@ -1,5 +1,6 @@
 #include "program/outputs.hpp"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 namespace curbline::tools {

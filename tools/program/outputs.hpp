@@ -1,7 +1,6 @@
 // The files that a command is to read and to write, before it reads any.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "scanner/scan_feed.hpp"
 
+#include <memory>
 #include <variant>
 
 #include "simulator/simulation.hpp"

@@ -1,6 +1,4 @@
 // A UTM-30LX: QT, SCIP2.0, PP, TM, BM, MD and MS, RS. Source: Hokuyo C-42-03320B.
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string_view>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "formats/decimals.hpp"
 #include "map/polygon.hpp"
