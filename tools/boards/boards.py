@@ -12,31 +12,15 @@ QUIET = ["-display", "none", "-monitor", "none", "-serial", "null"]
 @dataclass(frozen=True)
 class Board:
     name: str
-    folder: str            # of board/
-    run: tuple             # what comes before the program: an emulator and its machine
-    core: bool = False     # a core without an operating system: fed by semihosting
+    folder: str = "desk"   # of board/
+    run: tuple = ()        # what comes before the program: an emulator and its machine
     compilers: str = ""    # prefix of its binutils
     budget: bool = False   # its folder's budget.toml is of this core
 
-
-BOARDS = {b.name: b for b in [
-    Board("x86-64-gcc", "desk", ()),
-    Board("x86-64-gcc-avx2", "desk", ("native-or-emulated",)),
-    Board("x86-64-gcc-scalar", "desk", ()),
-    Board("x86-64-clang", "desk", ()),
-    Board("x86-64-clang-avx2", "desk", ("native-or-emulated",)),
-    Board("x86-64-clang-scalar", "desk", ()),
-    Board("aarch64-linux", "desk", ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"), compilers="aarch64-linux-gnu-"),
-    Board("armv7-linux", "desk", ("qemu-arm", "-L", "/usr/arm-linux-gnueabihf"), compilers="arm-linux-gnueabihf-"),
-    Board("cortex-m7", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-", True),
-    Board("cortex-m7-sp", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), True, "arm-none-eabi-"),
-    Board("cortex-m4f", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an386"), True, "arm-none-eabi-"),
-    Board("cortex-r5f", "zcu102_r5", ("qemu-system-aarch64", "-M", "xlnx-zcu102,canbus0=wire,canbus1=wire", "-object", "can-bus,id=wire",
-                                      "-smp", "6", "-m", "256M"), True, "arm-none-eabi-", True),  # both CAN controllers on one wire
-]}
-REFERENCE = "x86-64-gcc"
-# An emulated board's time is its instructions', 16 ns each: the same in every run, however busy this machine is.
-BY_INSTRUCTIONS = ["-icount", "shift=4,sleep=off"]
+    @property
+    def core(self):
+        """A core without an operating system: fed by semihosting."""
+        return self.folder != "desk"
 
 
 def has_avx2():
@@ -44,14 +28,33 @@ def has_avx2():
     return "avx2" in flags and "fma" in flags
 
 
+AVX2 = () if has_avx2() else ("qemu-x86_64", "-cpu", "max")
+ZCU102 = ("qemu-system-aarch64", "-M", "xlnx-zcu102,canbus0=wire,canbus1=wire", "-object", "can-bus,id=wire",
+          "-smp", "6", "-m", "256M")  # both CAN controllers on one wire
+ARM = "arm-none-eabi-"
+BOARDS = {b.name: b for b in [
+    Board("x86-64-gcc"),
+    Board("x86-64-gcc-avx2", run=AVX2),
+    Board("x86-64-gcc-scalar"),
+    Board("x86-64-clang"),
+    Board("x86-64-clang-avx2", run=AVX2),
+    Board("x86-64-clang-scalar"),
+    Board("aarch64-linux", run=("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"), compilers="aarch64-linux-gnu-"),
+    Board("armv7-linux", run=("qemu-arm", "-L", "/usr/arm-linux-gnueabihf"), compilers="arm-linux-gnueabihf-"),
+    Board("cortex-m7", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), ARM, budget=True),
+    Board("cortex-m7-sp", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an500"), ARM),
+    Board("cortex-m4f", "mps2_an500", ("qemu-system-arm", "-M", "mps2-an386"), ARM),
+    Board("cortex-r5f", "zcu102_r5", ZCU102, ARM, budget=True),
+]}
+REFERENCE = "x86-64-gcc"
+# An emulated board's time is its instructions', 16 ns each: the same in every run, however busy this machine is.
+BY_INSTRUCTIONS = ["-icount", "shift=4,sleep=off"]
+
+
 def command(board, program, words, extra=()):
     """The command line that runs a board's program with these words."""
     if not board.core:
-        if board.run == ("native-or-emulated",):
-            emulator = () if has_avx2() else ("qemu-x86_64", "-cpu", "max")
-        else:
-            emulator = board.run
-        return [*emulator, str(program), *words]
+        return [*board.run, str(program), *words]
     arguments = "".join(f",arg={w}" for w in (program.name, *words))
     line = [*board.run, *QUIET, "-semihosting-config", "enable=on,target=native" + arguments, *extra]
     if board.folder == "zcu102_r5":

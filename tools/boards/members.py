@@ -27,7 +27,7 @@ def name_of(attributes):
     return attributes.get("name", "").rsplit("): ", 1)[-1]
 
 
-def member_sizes(elf, class_name, prefix="arm-none-eabi-"):
+def member_sizes(elf, class_name, prefix):
     """[(member, bytes up to the next)] in order of address, of the first complete class whose name begins so."""
     members, size, inside = [], 0, None
     for depth, tag, attributes in entries(elf, prefix):

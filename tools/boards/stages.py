@@ -4,7 +4,8 @@ import re
 import subprocess
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from boards import ROOT
+
 # Stage 0 is what is not the pipeline: the board, its port, the drive's records.
 STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
 HELPER = -1
@@ -73,7 +74,7 @@ def symbols(elf, nm):
     return [(int(a, 16), int(s, 16), t, n) for a, s, t, n in found]
 
 
-def write_map(elf, path, prefix="arm-none-eabi-"):
+def write_map(elf, path, prefix):
     """The count plugin's map of a firmware."""
     functions = [(a & ~1, s, n) for a, s, t, n in symbols(elf, prefix + "nm") if t.lower() in "tw"]
     line_end = [a for a, _, n in functions if re.search(r"\bDrive<.*::end_line\(", n)]
