@@ -44,11 +44,12 @@ std::optional<TrajectoryPose> TrajectoryReader::next() {
     Fields fields(source_, *text);
     if (fields.at_end() || text->starts_with('#')) continue;
     const TrajectoryPose pose = parse_pose(fields);
-    if (pose.time_ns < last_time_ns_) source_.fail("the time goes back; expected no less than that of the pose before");
+    if (last_time_ns_ && pose.time_ns < *last_time_ns_)
+      source_.fail("the time goes back; expected no less than that of the pose before");
     last_time_ns_ = pose.time_ns;
     return pose;
   }
-  if (last_time_ns_ < 0) throw BadInput(path() + ": no pose; expected at least one line of time tx ty tz qx qy qz qw");
+  if (!last_time_ns_) throw BadInput(path() + ": no pose; expected at least one line of time tx ty tz qx qy qz qw");
   return std::nullopt;
 }
 

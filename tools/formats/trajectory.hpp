@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -36,7 +35,7 @@ class TrajectoryReader {
 
  private:
   LineReader source_;
-  std::int64_t last_time_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::optional<std::int64_t> last_time_ns_;
 };
 
 /// Writes one line: times to the nanosecond, metres to 1e-6, quaternions to 1e-9.

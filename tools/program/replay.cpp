@@ -103,8 +103,11 @@ void Replay::feed_tilt(std::int64_t until_ns) {
   while (can_ && tilt_until_ns_ < until_ns) {
     const auto reading = next_tilt();
     if (!reading) {
-      if (can_->ended()) tilt_until_ns_ = log_ended;
-      if (!can_->ended() && beyond_extrapolation(line_.time_ns)) can_->fail_silent();
+      if (can_->ended()) {
+        tilt_until_ns_ = log_ended;
+      } else if (beyond_extrapolation(line_.time_ns)) {
+        can_->fail_silent();
+      }
       return;
     }
     pipeline_->add_tilt(*reading);
