@@ -73,6 +73,15 @@ MeanSd mean_sd(const std::vector<double>& values) {
   return out;
 }
 
+/// Of all clouds, or of those from one place.
+MeanSd mean_v(const std::vector<PaperCloud>& clouds, double PaperCloud::*v, bool all) {
+  std::vector<double> values;
+  for (const PaperCloud& cloud : clouds) {
+    if (all || cloud.same_place) values.push_back(cloud.*v);
+  }
+  return mean_sd(values);
+}
+
 /// Mean over training clouds of the mean over the others; NaN if there are no two.
 double prediction(std::span<const Map> maps) {
   std::vector<double> of_training;
@@ -152,19 +161,15 @@ nlohmann::json evaluate_paper(const std::string& data, bool print) {
   for (const std::string& name : cloud_names(data)) clouds.push_back(load(data, name));
 
   nlohmann::json out;
-  std::vector<double> here_curbline, here_reference, all_curbline, all_reference;
   if (print) std::printf("V-measure, x and y in [0, 4] m   curbline   reference crf-em\n");
   for (const PaperCloud& cloud : clouds) {
     if (print) std::printf("  %-30s %8.3f %12.3f\n", cloud.name.c_str(), cloud.v_curbline, cloud.v_reference);
     out["v"][cloud.name] = {{"curbline", cloud.v_curbline}, {"crf-em", cloud.v_reference}};
-    all_curbline.push_back(cloud.v_curbline);
-    all_reference.push_back(cloud.v_reference);
-    if (!cloud.same_place) continue;
-    here_curbline.push_back(cloud.v_curbline);
-    here_reference.push_back(cloud.v_reference);
   }
-  const MeanSd v = mean_sd(here_curbline), v_reference = mean_sd(here_reference), v_all = mean_sd(all_curbline),
-               v_all_reference = mean_sd(all_reference);
+  const MeanSd v = mean_v(clouds, &PaperCloud::v_curbline, false);
+  const MeanSd v_reference = mean_v(clouds, &PaperCloud::v_reference, false);
+  const MeanSd v_all = mean_v(clouds, &PaperCloud::v_curbline, true);
+  const MeanSd v_all_reference = mean_v(clouds, &PaperCloud::v_reference, true);
   const Predictions rmse = predictions(clouds, map_streams(data, clouds));
   out["v_same_place"] = {{"curbline", v.mean}, {"crf-em", v_reference.mean}};
   out["v_all"] = {{"curbline", v_all.mean}, {"crf-em", v_all_reference.mean}};
