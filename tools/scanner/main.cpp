@@ -6,9 +6,11 @@
 #include <memory>
 #include <optional>
 
+#include "cola/session.hpp"
 #include "program/checks.hpp"
 #include "program/run_program.hpp"
 #include "scanner/server.hpp"
+#include "scip2/session.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -29,7 +31,7 @@ Protocol protocol_of(const std::string& name) {
 }
 
 std::uint16_t port_of(const Options& o) {
-  return o.port.value_or(o.protocol == "scip2" ? 10940 : 2112);
+  return o.port.value_or(o.protocol == "scip2" ? scip2::tcp_port : cola::tcp_port);
 }
 
 void run(const Options& o) {
