@@ -232,7 +232,7 @@ Rates all_rates(const Evaluation& e) {
 
 void draw(const Evaluation& e, const EvaluateOptions& options) {
   if (!e.run) throw BadInput(options.dir + ": no logs to draw; expected scans.carmen and robot.toml");
-  PictureExtras extras{.title = options.dir, .truth = {}, .robot = e.run->robot};
+  PictureExtras extras{.title = options.dir, .robot = e.run->robot};
   for (const TruthCurb& c : e.truth.curbs) {
     extras.truth.push_back({c.from.x, c.from.y, c.to.x, c.to.y, c.height_m, 0, 1, c.kind});
   }

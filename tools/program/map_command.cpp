@@ -57,7 +57,7 @@ void add_map(CLI::App& app) {
     const std::vector<Point3> cloud = read_cloud(o->cloud);
     const Map map = map_cloud(cloud, o->map);
     check_seen(o->cloud, cloud, map.grid.bounds(), o->map.max_height_m);
-    give_out(o->map, map, {.title = o->cloud, .truth = {}, .robot = RobotMarker{}}, {{"points", cloud.size()}});
+    give_out(o->map, map, {.title = o->cloud, .robot = RobotMarker{}}, {{"points", cloud.size()}});
   });
 }
 

@@ -138,7 +138,7 @@ void run(const Options& o) {
   }
   MapOptions out = o.map;
   if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
-  give_out(out, map, {.title = o.logs.scans, .truth = {}, .robot = replay.robot()}, summary_of(replay));
+  give_out(out, map, {.title = o.logs.scans, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace
