@@ -1,16 +1,13 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 
 #include "evaluation/curbs.hpp"
 #include "formats/csv.hpp"
-#include "formats/decimals.hpp"
 #include "program/evaluate.hpp"
 #include "program/recorded_run.hpp"
+#include "program/score_table.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -19,8 +16,6 @@ constexpr double tolerance_m = 0.1;                 ///< one cell of the usual g
 constexpr double found_share = 0.5;                 ///< of a curb's visible length, for it to count as found
 constexpr double least_visible_m = 0.3;             ///< a few cells: less is nothing to judge by
 constexpr std::size_t most_reference_cells = 6400;  ///< the reference takes minutes for more
-constexpr double paper_v = 0.88;                    ///< in simulation, +- 0.05
-constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< of a table, where there is no figure
 
 /// All that is scored, and what it is scored with.
 struct Evaluation {
@@ -130,11 +125,6 @@ nlohmann::json rows_json(const std::vector<CurbRow>& rows) {
   return out;
 }
 
-/// Over all true steps that were told of at some time.
-struct DetectionSummary {
-  Errors time_s, distance_m;
-};
-
 DetectionSummary summary_of(const std::vector<CurbRow>& rows) {
   std::vector<double> time, distance;
   for (const CurbRow& row : rows) {
@@ -143,74 +133,6 @@ DetectionSummary summary_of(const std::vector<CurbRow>& rows) {
     distance.push_back(row.detection.distance_m);
   }
   return {errors_of(time), errors_of(distance)};
-}
-
-/// A line of the table: a figure, the reference's and the paper's. NaN: there is none.
-void print_line(const char* name, double here, double reference, double paper, int decimals) {
-  std::printf("%-36s", name);
-  for (const double value : {here, reference, paper}) {
-    std::isnan(value) ? std::printf(" %10s", "-") : std::printf(" %10.*f", decimals, value);
-  }
-  std::printf("\n");
-}
-
-struct Scored {
-  PlaneScores planes;
-  CurbScores curbs;
-};
-
-/// A row of the table that the reference has too.
-struct Row {
-  const char* name;
-  double (*value)(const Scored&);
-  double scale;
-  int decimals;
-  double paper = none;
-};
-
-constexpr std::array of_planes{
-    Row{"V-measure of labels", [](const Scored& s) { return s.planes.v; }, 1, 3, paper_v},
-    Row{"          of readings alone", [](const Scored& s) { return s.planes.v_readings; }, 1, 3},
-    Row{"cell heights, RMSE, mm", [](const Scored& s) { return s.planes.cell_rmse_m; }, 1e3, 1},
-    Row{"planes, RMSE, mm", [](const Scored& s) { return s.planes.plane_rmse_m; }, 1e3, 1},
-    Row{"planes, height error, median, mm", [](const Scored& s) { return s.planes.height_m.median; }, 1e3, 1},
-    Row{"planes, slope error, median, mrad", [](const Scored& s) { return s.planes.slope_rad.median; }, 1e3, 1},
-};
-
-constexpr std::array of_curbs{
-    Row{"recall of 2 to 4 cm at 0.1 m", [](const Scored& s) { return s.curbs.band[0].recall; }, 1, 3},
-    Row{"recall of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].recall; }, 1, 3},
-    Row{"precision of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].precision; }, 1, 3},
-    Row{"position error, median, cm", [](const Scored& s) { return s.curbs.position_m.median; }, 100, 1},
-    Row{"                95 %, cm", [](const Scored& s) { return s.curbs.position_m.most; }, 100, 1},
-    Row{"height error, median, mm", [](const Scored& s) { return s.curbs.height_m.median; }, 1e3, 1},
-    Row{"              95 %, mm", [](const Scored& s) { return s.curbs.height_m.most; }, 1e3, 1},
-    Row{"error / sd of positions, mean square",
-        [](const Scored& s) { return s.curbs.position_calibration.mean_square; }, 1, 2},
-    Row{"error / sd of heights, mean square", [](const Scored& s) { return s.curbs.calibration.mean_square; }, 1, 2},
-    Row{"              within 1 sd (0.68)", [](const Scored& s) { return s.curbs.calibration.within_1_sd; }, 1, 2},
-    Row{"              within 2 sd (0.95)", [](const Scored& s) { return s.curbs.calibration.within_2_sd; }, 1, 2},
-};
-
-void print_table(const Scored& here, const std::optional<Scored>& reference, const DetectionSummary& detection) {
-  const auto print = [&](const Row& row) {
-    print_line(row.name, row.scale * row.value(here), reference ? row.scale * row.value(*reference) : none, row.paper,
-               row.decimals);
-  };
-  std::printf("%-36s %10s %10s %10s\n", "", "here", "crf-em", "paper");
-  for (const Row& row : of_planes) print(row);
-  for (std::size_t k = 0; k < here.curbs.at.size(); ++k) {
-    const auto rate = [&](const char* name, double StepRates::*value) {
-      print_line(name, here.curbs.at[k].*value, reference ? reference->curbs.at[k].*value : none, none, 3);
-    };
-    const std::string precision = "steps at " + decimals(here.curbs.at[k].tolerance_m, 2) + " m: precision";
-    rate(precision.c_str(), &StepRates::precision);
-    rate("                 recall", &StepRates::recall);
-    rate("                 F1", &StepRates::f1);
-  }
-  for (const Row& row : of_curbs) print(row);
-  print_line("seen to first told of, median, s", detection.time_s.median, none, none, 1);
-  print_line("robot's distance then, median, m", detection.distance_m.median, none, none, 1);
 }
 
 Scored scored(const Found& found, const Truth& truth, const Seen& seen) {
@@ -256,7 +178,7 @@ nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   if (print) {
     print_rows(rows);
     std::printf("\ncurbs found: %d of %zu\n\n", static_cast<int>(found), rows.size());
-    print_table(here, reference, detection);
+    print_score_table(here, reference, detection);
   }
 
   nlohmann::json out = to_json(here);
