@@ -1,7 +1,7 @@
 // Scores against truth: the two things that `curbline evaluate` does.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 

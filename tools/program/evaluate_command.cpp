@@ -1,9 +1,11 @@
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "program/evaluate.hpp"
+#include "program/map_command_line.hpp"
 
 namespace curbline::tools {
 

@@ -2,15 +2,18 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
 #include "evaluation/labels.hpp"
+#include "formats/bad_input.hpp"
 #include "formats/cloud.hpp"
 #include "formats/regions.hpp"
 #include "formats/shipped.hpp"
 #include "program/evaluate.hpp"
 #include "program/map_cloud.hpp"
+#include "program/map_window.hpp"
 #include "program/replay.hpp"
 
 namespace curbline::tools {

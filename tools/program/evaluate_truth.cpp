@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/curbs.hpp"
+#include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
 #include "program/evaluate.hpp"
 #include "program/recorded_run.hpp"

@@ -9,6 +9,7 @@
 
 #include "peers/peers.hpp"
 #include "program/host_pipeline.hpp"
+#include "program/map_window.hpp"
 
 namespace curbline::tools {
 

@@ -1,15 +1,18 @@
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
+#include "formats/bad_input.hpp"
 #include "formats/cloud.hpp"
 #include "formats/decimals.hpp"
 #include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "program/host_pipeline.hpp"
 #include "program/map_cloud.hpp"
-#include "program/map_options.hpp"
+#include "program/map_command_line.hpp"
+#include "program/map_outputs.hpp"
 
 namespace curbline::tools {
 namespace {

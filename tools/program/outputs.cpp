@@ -1,6 +1,6 @@
 #include "program/outputs.hpp"
 
-#include <CLI/CLI.hpp>
+#include <CLI/Error.hpp>
 #include <filesystem>
 
 namespace curbline::tools {

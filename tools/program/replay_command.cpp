@@ -2,6 +2,7 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -10,7 +11,9 @@
 #include "program/commands.hpp"
 #include "program/line_costs.hpp"
 #include "program/map_cloud.hpp"
-#include "program/map_options.hpp"
+#include "program/map_command_line.hpp"
+#include "program/map_outputs.hpp"
+#include "program/map_window.hpp"
 #include "program/replay.hpp"
 
 namespace curbline::tools {
