@@ -24,7 +24,7 @@ class JournalLine {
     return *this << std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data()));
   }
   std::string_view text() const { return {text_.data(), size_}; }
-  /// Writes it to standard error.
+  /// Writes it to standard error, unless that has no room: it is not waited for.
   void say();
 
  private:
