@@ -159,6 +159,7 @@ ParsedLine parse_line(std::string_view line) {
   const auto time_ns = parse_time(time.substr(1, time.size() - 2));
   if (!time_ns || time.find('.') == std::string_view::npos) return refuse("bad time; expected (SECONDS.DECIMALS)");
   parsed.frame.time_ns = *time_ns;
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
   parsed.interface_name = take_word(line);
   if (parsed.interface_name.empty() || parsed.interface_name.size() > max_interface_name) {
     return refuse("bad interface name; expected 1 to 15 characters");

@@ -72,6 +72,15 @@ TEST_CASE("candump: blanks at the end are passed over, however many") {
   CHECK(error_in("(0.0) can0  123#11").starts_with("no frame"));
 }
 
+TEST_CASE("candump: names of a log of several interfaces are set to the right, as wide as the longest") {
+  const auto line = candump::parse_line("(1290682980.025000)  can0 181#3706D317FDFF");
+  REQUIRE(line.ok());
+  CHECK(line.interface_name == "can0");
+  CHECK(line.frame.id == 0x181);
+  CHECK(candump::parse_line("(1290682980.025000)           can0 181#3706D317FDFF T").ok());
+  CHECK(error_in("(1290682980.025000)   ").starts_with("bad interface name"));
+}
+
 TEST_CASE("candump: times are exact to the nanosecond") {
   CHECK(candump::parse_time("1290682980.123456789") == 1290682980123456789);
   CHECK(candump::parse_time("1290682980.1234567899") == 1290682980123456789);
@@ -156,6 +165,17 @@ TEST_CASE("can log: frames of every id come in order, comments are passed over")
   CHECK(log.next()->id == 0x182);
   CHECK(log.interface_name() == "can1");
   CHECK(log.line() == 4);
+  CHECK_FALSE(log.next());
+}
+
+TEST_CASE("can log: what candump -d says of frames that it has lost is passed over") {
+  const TemporaryDirectory dir;
+  CanLogReader log(dir.write("c.log",
+                             "(1.0) can0 181#00\n"
+                             "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)\n"
+                             "(2.0) can0 182#00\n"));
+  CHECK(log.next()->id == 0x181);
+  CHECK(log.next()->id == 0x182);
   CHECK_FALSE(log.next());
 }
 

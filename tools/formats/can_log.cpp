@@ -11,6 +11,7 @@ namespace curbline::tools {
 std::optional<can::Frame> CanLogReader::next() {
   while (const auto text = source_.next()) {
     if (text->find_first_not_of(" \t") == std::string_view::npos || text->starts_with('#')) continue;
+    if (text->starts_with("DROPCOUNT: ")) continue;  // candump -d: frames that it has lost
     const candump::ParsedLine parsed = candump::parse_line(*text);
     if (!parsed.ok()) source_.fail(std::string(parsed.error));
     interface_name_ = parsed.interface_name;

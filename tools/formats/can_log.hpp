@@ -16,8 +16,9 @@ class CanLogReader {
  public:
   explicit CanLogReader(const std::string& path) : source_(path) {}
 
-  /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are passed over. Throws BadInput
-  /// for any other line that candump does not write, and for a file without a frame.
+  /// The next frame, whatever its id; nothing at the end. Blank lines, # comments and what candump says of frames that
+  /// it has lost are passed over. Throws BadInput for any other line that candump does not write, and for a file
+  /// without a frame.
   std::optional<can::Frame> next();
 
   const std::string& path() const { return source_.path(); }
