@@ -26,7 +26,7 @@ class RegionRanking {
 
   /// How many are planes.
   std::size_t size() const { return size_; }
-  const PlaneMoments& moments(std::size_t rank) const { return *region_[rank].moments; }
+  const PlaneMoments& moments(std::size_t rank) const { return regions_.graph.moments(node_[rank]); }
   /// Of a cell's region; no_label if that is no plane.
   Label rank_of_cell(int slot) const {
     const Node node = regions_.node_of_cell[slot];
@@ -52,15 +52,11 @@ class RegionRanking {
  private:
   using Node = typename RegionGraph<limits>::Index;
   static constexpr std::size_t planes = limits.planes;
-  struct Region {
-    Node node;
-    const PlaneMoments* moments;
-  };
 
   const Regions& regions_;
   std::size_t size_ = 0;
   std::array<Label, limits.regions> rank_of_node_;
-  std::array<Region, planes> region_;                               ///< by rank
+  std::array<Node, planes> node_;                                   ///< by rank
   std::array<std::array<Slot<limits>, planes>, planes> overlap_{};  ///< [rank][label], cells
   std::array<Label, planes> label_;                                 ///< by rank
   std::array<bool, planes> taken_{}, born_{};                       ///< by label
@@ -68,20 +64,21 @@ class RegionRanking {
 
 template <Limits limits>
 RegionRanking<limits>::RegionRanking(const Regions& regions, float min_cells, Counters& counters) : regions_(regions) {
-  Segmentation<limits>::for_each_region(regions, [&](Node node, const PlaneMoments& moments) {
-    if (moments.cells < min_cells) return;
+  Segmentation<limits>::for_each_region(regions, [&](Node node) {
+    const float cells = regions.graph.moments(node).cells;
+    if (cells < min_cells) return;
     if (size_ == planes) {
       ++counters.planes_full;
-      if (region_[size_ - 1].moments->cells >= moments.cells) return;
+      if (moments(size_ - 1).cells >= cells) return;
     } else {
       ++size_;
     }
     std::size_t place = size_ - 1;
-    for (; place > 0 && region_[place - 1].moments->cells < moments.cells; --place) region_[place] = region_[place - 1];
-    region_[place] = {node, &moments};
+    for (; place > 0 && moments(place - 1).cells < cells; --place) node_[place] = node_[place - 1];
+    node_[place] = node;
   });
   rank_of_node_.fill(no_label);
-  for (std::size_t r = 0; r < size_; ++r) rank_of_node_[region_[r].node] = static_cast<Label>(r);
+  for (std::size_t r = 0; r < size_; ++r) rank_of_node_[node_[r]] = static_cast<Label>(r);
 }
 
 template <Limits limits>

@@ -68,12 +68,12 @@ class Segmentation {
   /// Of a valid cell; `none` if the store of regions was full when it came to its leaf.
   Region region(int slot) const { return region_[slot]; }
 
-  /// Calls visit(node, moments) for the node of each region, right after an update() that had something to do.
+  /// Calls visit(node) for the node of each region, right after an update() that had something to do.
   template <typename Visit>
   static void for_each_region(const Work& work, Visit&& visit) {
     for (int n = 0; n < work.graph.nodes(); ++n) {
       const auto node = static_cast<Node>(n);
-      if (work.graph.root(node) == node) visit(node, work.graph.moments(node));
+      if (work.graph.root(node) == node) visit(node);
     }
   }
 
