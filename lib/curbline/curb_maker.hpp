@@ -87,6 +87,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
                       (one_sided ? square(curb.height_m) * (1.0f / 3) : 0.0f);
   if (two_sided_step) follow_ground(part, piece, shadow_m, curb, variance_m2);
   if (is_step(curb)) follow_ground_beside(piece, shadow_m, curb, variance_m2);
+  if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   if (obstacle(curb, piece)) return std::nullopt;
   // Planes of different slope differ as much as the borders' place does. Rough ground hangs over its edge, anywhere
   // within its roughness, evenly.
@@ -100,7 +101,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   return curb;
 }
 
-/// Kind, height and the labels of both sides.
+/// Kind, height and the labels of both sides. A step is step_up until make() knows its height.
 template <Limits limits>
 Curb CurbMaker<limits>::as_planes_tell(const Piece& piece) const {
   Curb curb;
@@ -116,9 +117,7 @@ Curb CurbMaker<limits>::as_planes_tell(const Piece& piece) const {
   curb.kind =
       kind_of(low, high, piece.line,
               {height_m, height_sd_m, piece.half_gap_m, piece.place_variance_m2, stages_.dem.prior().texture_m2});
-  if (curb.kind != CurbKind::step_up) return curb;
-  curb.height_m = piece.low_is_near ? height_m : -height_m;
-  if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
+  if (is_step(curb)) curb.height_m = piece.low_is_near ? height_m : -height_m;
   return curb;
 }
 
@@ -140,7 +139,6 @@ float CurbMaker<limits>::leave_shadow(const Part& part, Curb& curb, Piece& piece
   const float dx_m = piece.line.x0_m - x_m, dy_m = piece.line.y0_m - y_m;
   const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
   curb.height_m += down ? -rise_m : rise_m;
-  curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
   return shadow_m;
 }
 
@@ -195,7 +193,6 @@ void CurbMaker<limits>::follow_ground(const Part& part, Piece& piece, float shad
     Beside& told = high ? piece.beside_high : piece.beside_low;
     told.off_m -= told.borders * ground.above_m;
   }
-  curb.kind = curb.height_m < 0.0f ? CurbKind::step_down : CurbKind::step_up;
 }
 
 /// A step is as high as the ground beside it, where that lies off the planes, and as well known.
