@@ -16,6 +16,12 @@ class IndexSet {
   void insert(const IndexSet& other) {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
   }
+  bool empty() const {
+    for (const std::uint32_t word : words_) {
+      if (word != 0) return false;
+    }
+    return true;
+  }
   bool contains(int index) const { return (words_[static_cast<std::size_t>(index) / 32] >> (index % 32) & 1u) != 0; }
 
   template <typename Visit>

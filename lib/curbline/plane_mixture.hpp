@@ -13,6 +13,7 @@
 #include "curbline/dem.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/ground.hpp"
+#include "curbline/index_set.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
@@ -30,8 +31,8 @@ class PlaneMixture {
   void init(const PlaneSettings& settings) {
     settings_ = settings;
     planes_.fill(Plane{});
-    fresh_.fill(false);
-    any_fresh_ = any_relabelled_ = false;
+    fresh_.clear();
+    any_relabelled_ = false;
     ground_.clear();
     region_label_.fill(no_label);
     relabelled_.clear();
@@ -64,7 +65,7 @@ class PlaneMixture {
 
   const Plane& plane(int label) const { return planes_[static_cast<std::size_t>(label)]; }
   /// True if the label was born, died, or became ground or none since forget_changes().
-  bool fresh(int label) const { return fresh_[static_cast<std::size_t>(label)]; }
+  bool fresh(int label) const { return fresh_.contains(label); }
   /// The plane of a cell's region; none if the region is too small for one.
   Label region_label(int slot) const { return region_label_[slot]; }
   /// True if that changed since forget_changes().
@@ -88,7 +89,7 @@ class PlaneMixture {
   bool covered(int slot) const { return region_label(slot) != no_label && ground_.covers(region_label(slot)); }
   /// Does something stand in it: do its heights spread as on 45 degrees, or is its ground covered?
   bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }
-  bool any_fresh() const { return any_fresh_; }
+  bool any_fresh() const { return !fresh_.empty(); }
   bool any_relabelled() const { return any_relabelled_; }
   PlaneUpdate mode() const { return settings_.update; }
 
@@ -104,11 +105,11 @@ class PlaneMixture {
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
-  std::array<bool, limits.planes> fresh_{};
-  bool any_fresh_ = false, any_relabelled_ = false;
+  IndexSet<limits.planes> fresh_{};  ///< labels
   Ground<limits> ground_{};
   CellLabels<limits> region_label_{};
   CellSet<limits> relabelled_{};
+  bool any_relabelled_ = false;  ///< not told by a look at all of relabelled_, since each cell asks
 };
 
 template <Limits limits>
@@ -136,7 +137,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     any_relabelled_ = true;
   });
   const Fitted fitted = fit(dem, ranking);
-  ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_[label] = any_fresh_ = true; });
+  ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_.insert(label); });
   refine(dem, view, fitted, crossed, label_of);
 }
 
@@ -146,7 +147,7 @@ void PlaneMixture<limits>::take_labels(const RegionRanking<limits>& ranking) {
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     const bool dies = planes_[l].alive() && !ranking.taken(l);
     if (dies) planes_[l] = Plane{};
-    if (dies || ranking.born(l)) fresh_[l] = any_fresh_ = true;
+    if (dies || ranking.born(l)) fresh_.insert(static_cast<int>(l));
   }
 }
 
@@ -157,7 +158,7 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const RegionRanking<limit
   for (std::size_t r = 0; r < ranking.size(); ++r) {
     const Label label = ranking.label(r);
     Plane& plane = planes_[label];
-    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh_[label]) continue;
+    if (settings_.update == PlaneUpdate::responsibilities && plane.alive() && !fresh(label)) continue;
     plane = fit_plane(ranking.moments(r), dem.prior());
     fitted[label] = true;
   }
@@ -239,8 +240,7 @@ template <Limits limits>
 void PlaneMixture<limits>::forget_changes() {
   if (any_relabelled_) relabelled_.clear();
   any_relabelled_ = false;
-  fresh_.fill(false);
-  any_fresh_ = false;
+  fresh_.clear();
 }
 
 template <Limits limits>
