@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/grid.hpp"
 #include "curbline/line_fit.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -42,7 +43,7 @@ struct Curb {
   /// Far is no_label where no ground is seen beyond: at the end of a face, and at a brink, a step down of which the
   /// height is what is seen of it, the mean along the piece, and the standard deviation as if up to as much again were
   /// hidden.
-  std::uint16_t near_label = 0, far_label = 0;
+  Label near_label = 0, far_label = 0;
 };
 
 inline bool is_step(const Curb& curb) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -126,8 +125,8 @@ Curb CurbMaker<limits>::as_planes_tell(const Piece& piece) const {
 template <Limits limits>
 float CurbMaker<limits>::leave_shadow(const Part& part, Curb& curb, Piece& piece) const {
   const bool down = curb.height_m < 0.0f;
-  const std::uint16_t upper = down ? curb.near_label : curb.far_label, lower = down ? curb.far_label : curb.near_label;
-  const Viewpoint view = Piece::seen_from(stages_, part, settings_.link_reach, static_cast<Label>(lower));
+  const Label upper = down ? curb.near_label : curb.far_label, lower = down ? curb.far_label : curb.near_label;
+  const Viewpoint view = Piece::seen_from(stages_, part, settings_.link_reach, lower);
   const bool upper_is_right = (upper == piece.first.low) == piece.low_is_right;
   if (piece.has_right(view) != upper_is_right) return 0.0f;
   const Plane& above = stages_.mixture.plane(upper);

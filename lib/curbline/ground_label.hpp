@@ -31,7 +31,7 @@ Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, 
     if (of_readings != curb.near_label && of_readings != curb.far_label) continue;
     const float to_far_m = to_far_side_m(curb, x_m, y_m);
     const float away_m = magnitude(to_far_m);
-    const auto there = static_cast<Label>(to_far_m > 0.0f ? curb.far_label : curb.near_label);
+    const Label there = to_far_m > 0.0f ? curb.far_label : curb.near_label;
     if (!(away_m < nearest_m) || !mixture.plane(there).alive()) continue;
     nearest_m = away_m;
     found = there;

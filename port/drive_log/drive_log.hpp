@@ -83,7 +83,8 @@ class Result {
     const auto& [x0, y0, x1, y1, position_sd, height, height_sd, probability, face_width, kind, id, near_label,
                  far_label] = curb;
     for (const float value : {x0, y0, x1, y1, height, height_sd, probability, face_width, position_sd}) put(value);
-    for (const std::uint16_t value : {static_cast<std::uint16_t>(kind), id, near_label, far_label}) put(value);
+    using Number = std::uint16_t;
+    for (const Number value : {static_cast<Number>(kind), id, Number{near_label}, Number{far_label}}) put(value);
   }
 
   std::array<std::byte, sizeof(RecordHeader) + curbs_at + static_cast<std::size_t>(max_curbs) * curb_bytes> bytes_;

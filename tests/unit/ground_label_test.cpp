@@ -72,7 +72,7 @@ TEST_CASE_METHOD(GroundLabelTest,
                  "ground label: the nearer of two steps tells it, and none that parts other planes or dead ones") {
   const Curb steps[] = {step_at(1.30f), step_at(1.36f)};
   CHECK(at(13, 10, steps) == near_);
-  std::uint16_t dead = 0;
+  Label dead = 0;
   while (stages_.mixture.plane(dead).alive()) ++dead;
   Curb other = step_at(1.32f);
   other.near_label = other.far_label = dead;
