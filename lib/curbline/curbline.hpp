@@ -14,6 +14,7 @@
 #include "curbline/extrapolation.hpp"    // how angles and poses go on
 #include "curbline/tilt_reading.hpp"     // in: a servo angle
 #include "curbline/tilt_track.hpp"       // they over time
+#include "curbline/tilt_snapshot.hpp"    // the angle at each beam of a line
 #include "curbline/tilt_watch.hpp"       // whether the servo is alive
 #include "curbline/line_clock.hpp"       // lines that bear the time of their arrival
 #include "curbline/line_queue.hpp"       // lines that wait for their tilt

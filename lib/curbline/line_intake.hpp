@@ -22,6 +22,7 @@
 #include "curbline/status.hpp"
 #include "curbline/tilt_latency.hpp"
 #include "curbline/tilt_reading.hpp"
+#include "curbline/tilt_snapshot.hpp"
 #include "curbline/tilt_track.hpp"
 
 namespace curbline {

@@ -19,7 +19,7 @@
 #include "curbline/pose_track.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
-#include "curbline/tilt_track.hpp"
+#include "curbline/tilt_snapshot.hpp"
 
 namespace curbline {
 

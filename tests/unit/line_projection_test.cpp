@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "curbline/tilt_track.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {

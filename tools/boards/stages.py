@@ -14,7 +14,7 @@ FILES = {name: stage for stage, names in {
     "tilt": "frame.hpp signal.cpp tilt_decoder.cpp tilt_decoder.hpp",
     "pipeline": "pipeline.hpp",
     "points": "line_intake.hpp line_projection.hpp map_comparison.hpp pose_offset.cpp pose_offset.hpp pose_track.cpp "
-              "pose_track.hpp sweep_turns.hpp tilt_latency.cpp tilt_latency.hpp tilt_track.hpp",
+              "pose_track.hpp sweep_turns.hpp tilt_latency.cpp tilt_latency.hpp tilt_snapshot.hpp tilt_track.hpp",
     "cells": "viewpoints.hpp",
     "regions": "region_graph.hpp segmentation.cpp segmentation.hpp",
     "planes": "clean_fit.hpp common_noise.cpp common_noise.hpp ground.hpp index_set.hpp obstacles.hpp plane_mixture.hpp "
