@@ -21,8 +21,6 @@ class Window {
     settings_ = settings;
     corner_ = {};
     row_shift_ = col_shift_ = 0;
-    anchor_x_m_ = settings.origin_x_m;
-    anchor_y_m_ = settings.origin_y_m;
   }
 
   int rows() const { return settings_.rows; }
@@ -33,8 +31,8 @@ class Window {
   int cells_along(int axis) const { return axis == 0 ? settings_.rows : settings_.cols; }
   float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
   /// Lowest corner in the map frame.
-  float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + anchor_x_m_; }
-  float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + anchor_y_m_; }
+  float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }
+  float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + settings_.origin_y_m; }
 
   /// It and a cell around it: what lies outside that lies outside the window, however places are rounded.
   Bounds surroundings(float ceiling_m) const {
@@ -133,7 +131,6 @@ class Window {
   }
 
   WindowSettings settings_{};
-  float anchor_x_m_ = 0.0f, anchor_y_m_ = 0.0f;  ///< where cell (0, 0) of the endless grid begins
   Corner corner_{};
   int row_shift_ = 0, col_shift_ = 0;  ///< of the ring
 };
