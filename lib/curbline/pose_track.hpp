@@ -54,16 +54,17 @@ bool acceptable(const Pose& pose);
 bool near_origin(const Pose& pose);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 
-struct PoseStep {
+/// How far a pose lies off where others lead.
+struct PoseResidual {
   float height_m = 0.0f, roll_rad = 0.0f, pitch_rad = 0.0f;
   bool height_jumps = false, attitude_jumps = false;  ///< by three standard deviations or more
   bool jumps() const { return height_jumps || attitude_jumps; }
 };
-/// How far `now` lies off where `before` leads, as fast as on the way from `first` to `last`.
-PoseStep step_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
-                 const PoseSettings& settings);
+/// Of `now`, where `before` leads as fast as on the way from `first` to `last`.
+PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
+                         const PoseSettings& settings);
 /// What heights make of it, with the heading of the pose.
-PoseShift shift_of(const PoseStep& step, const Pose& now);
+PoseShift shift_of(const PoseResidual& off, const Pose& now);
 }  // namespace detail
 
 /// Ring of the newest poses, 12 ms apart at least but for the very newest; linear in position and normalised-linear in
@@ -104,23 +105,24 @@ class PoseTrack {
 
   /// Does the pose of an age, the second since a jump, lie off where those before the jump lead? If not, the first did
   /// by its own error, as one in seventy does.
-  bool lies_off_before(int age) const { return step(age + 2, poses_of_a_way, age + 2, age).jumps(); }
+  bool lies_off_before(int age) const { return residual(age + 2, poses_of_a_way, age + 2, age).jumps(); }
 
   /// Is the newest pose nearer to the one before than poses are kept apart, so that the next one takes its place?
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
   /// How far the pose of an age lies off where the one of age `before` leads, as fast as on the way that ends with the
   /// pose of age `last`, over `most` poses before that; nothing if there are too few.
-  detail::PoseStep step(int last, int most, int before, int age) const {
+  detail::PoseResidual residual(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;
-    return detail::step_of(back(first), back(last), back(before), back(age), settings_);
+    return detail::residual_of(back(first), back(last), back(before), back(age), settings_);
   }
 
   void forget() {
     size_ = fresh_ = 0;
+    jumps_on_end_ = 0;
     since_jump_ = limits.poses;
-    moves_ = climbs_ = false;
+    climbs_ = false;
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
@@ -133,10 +135,10 @@ class PoseTrack {
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
-  int fresh_ = 0;        ///< of the newest poses: as many have not been asked for steps
-  int since_jump_ = 0;   ///< of those that have: as many from the last that jumped on; limits.poses: long ago
-  bool moves_ = false;   ///< that one was not the first on end
-  bool climbs_ = false;  ///< poses have jumped on end, and not gone on for a whole way since
+  int fresh_ = 0;         ///< of the newest poses: as many have not been asked for steps
+  int jumps_on_end_ = 0;  ///< of those that have: as many have jumped up to the last; 0 if that did not
+  int since_jump_ = 0;    ///< as many from the last that jumped on; limits.poses: long ago
+  bool climbs_ = false;   ///< poses have jumped on end, and not gone on for a whole way since
   RisingTimes times_{};
 };
 
@@ -174,7 +176,7 @@ PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) 
   PoseJumps jumps;
   for (int age = 0; age < size_ && back(age).time_ns > first_ns; ++age) {
     if (age + 1 < size_ && back(age + 1).time_ns >= last_ns) continue;
-    const detail::PoseStep by = step(age + 1, poses_of_a_way, age + 1, age);
+    const detail::PoseResidual by = residual(age + 1, poses_of_a_way, age + 1, age);
     if (by.height_jumps) jumps.height_m2 += by.height_m * by.height_m;
     if (by.attitude_jumps) jumps.attitude_rad2 += by.roll_rad * by.roll_rad + by.pitch_rad * by.pitch_rad;
   }
@@ -189,14 +191,16 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
     // As fast as after the last jump, if there are two poses to tell, else as before it.
     const int last = since_jump_ == 1 ? age + 2 : age + 1;
     const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
-    const detail::PoseStep by = step(last, most, age + 1, age);
-    const bool stepped = since_jump_ == 1 && !moves_;
-    const bool begins = by.jumps() && !stepped && !moves_;
-    moves_ = by.jumps() && (stepped || moves_);
-    climbs_ = climbs_ || (stepped && moves_ && lies_off_before(age));
-    since_jump_ = by.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
-    if (stepped) return PoseStepNews{by.jumps() || !lies_off_before(age) ? Kind::withdrawn : Kind::confirmed};
-    if (begins) return PoseStepNews{Kind::begun, detail::shift_of(by, back(age))};
+    const detail::PoseResidual off = residual(last, most, age + 1, age);
+    const bool may_confirm = jumps_on_end_ == 1;  // the step that the pose before has begun
+    jumps_on_end_ = off.jumps() ? jumps_on_end_ + 1 : 0;
+    since_jump_ = off.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
+    if (may_confirm) {
+      const bool stays_off = lies_off_before(age);
+      climbs_ = climbs_ || (off.jumps() && stays_off);
+      return PoseStepNews{off.jumps() || !stays_off ? Kind::withdrawn : Kind::confirmed};
+    }
+    if (jumps_on_end_ == 1) return PoseStepNews{Kind::begun, detail::shift_of(off, back(age))};
     if (climbs_ && (since_jump_ > poses_of_a_way || since_jump_ == limits.poses)) {
       climbs_ = false;
       return PoseStepNews{Kind::climbed};

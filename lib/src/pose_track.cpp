@@ -66,23 +66,23 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
 }
 
 /// The variance of an independent error of each of the three poses comes in by 1, (1 + f)^2 and f^2.
-PoseStep step_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
-                 const PoseSettings& settings) {
+PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
+                         const PoseSettings& settings) {
   const float f = to_float(now.time_ns - before.time_ns) / to_float(last.time_ns - first.time_ns);
   const float noise = gate * (1.0f + (1.0f + f) * (1.0f + f) + f * f);
   const Turn led = turn(first, last), went = turn(before, now);
-  PoseStep step{now.z_m - before.z_m - f * (last.z_m - first.z_m), went.roll_rad - f * led.roll_rad,
-                went.pitch_rad - f * led.pitch_rad};
-  const float attitude_rad2 = step.roll_rad * step.roll_rad + step.pitch_rad * step.pitch_rad;
-  step.height_jumps = step.height_m * step.height_m > noise * settings.height_sd_m * settings.height_sd_m;
-  step.attitude_jumps = attitude_rad2 > noise * settings.attitude_sd_rad * settings.attitude_sd_rad;
-  return step;
+  PoseResidual off{now.z_m - before.z_m - f * (last.z_m - first.z_m), went.roll_rad - f * led.roll_rad,
+                   went.pitch_rad - f * led.pitch_rad};
+  const float attitude_rad2 = off.roll_rad * off.roll_rad + off.pitch_rad * off.pitch_rad;
+  off.height_jumps = off.height_m * off.height_m > noise * settings.height_sd_m * settings.height_sd_m;
+  off.attitude_jumps = attitude_rad2 > noise * settings.attitude_sd_rad * settings.attitude_sd_rad;
+  return off;
 }
 
-PoseShift shift_of(const PoseStep& step, const Pose& now) {
+PoseShift shift_of(const PoseResidual& off, const Pose& now) {
   const SinCos ahead = heading(make_transform(now));
-  return {step.height_m, -step.roll_rad * ahead.sin - step.pitch_rad * ahead.cos,
-          step.roll_rad * ahead.cos - step.pitch_rad * ahead.sin};
+  return {off.height_m, -off.roll_rad * ahead.sin - off.pitch_rad * ahead.cos,
+          off.roll_rad * ahead.cos - off.pitch_rad * ahead.sin};
 }
 
 }  // namespace detail
