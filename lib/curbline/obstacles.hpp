@@ -163,7 +163,6 @@ bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const 
   const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
   const int count = dem_.cells_along(static_cast<int>(axis)), at = axis == 0 ? i : j;
   const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
-  const bool drives = view_.end_x_m > 0.0f;
   int length = 1;
   for (const int step : {toward, -toward}) {
     int last = at;
@@ -172,7 +171,7 @@ bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const 
       const int slot = axis == 0 ? dem_.slot(k, j) : dem_.slot(i, k);
       const bool seen = dem_.cell(slot).valid();
       if (!seen && step == toward) return false;
-      if (!seen && drives) continue;
+      if (!seen && view_.drives()) continue;
       if (!seen || region_label_[slot] != label) break;
       length += step * (k - last);
       last = k;

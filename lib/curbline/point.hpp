@@ -40,12 +40,13 @@ struct Viewpoint {
   /// stands.
   float end_x_m = 0.0f, end_y_m = 0.0f;
 
+  bool drives() const { return end_x_m > 0.0f; }
   /// How the variance of cells about (px_m, py_m), of which the places scatter by `scatter_m2`, grows by what scan
   /// lines err in tilt and pose: each by the square of how far it falls from the laser, along the ground, and the mean
   /// of a cell by the less, the more points of them it holds. What a robot that drives maps it has seen from near and
   /// from afar: there the points alone tell, as if all were 1 m away.
   float reach_m2(float px_m, float py_m, float scatter_m2, float points_a_cell) const {
-    const float away_m2 = end_x_m > 0.0f ? 1.0f : square(px_m - x_m) + square(py_m - y_m) + scatter_m2;
+    const float away_m2 = drives() ? 1.0f : square(px_m - x_m) + square(py_m - y_m) + scatter_m2;
     return away_m2 / points_a_cell;
   }
 };
