@@ -61,7 +61,7 @@ class Segmentation {
 
   /// Follows the cells that were touched, in working memory that is the caller's. `ground` is the plane of the ground,
   /// a level one if none is known. What is obstructed(slot) parts no regions: those on both sides are neighbours too.
-  /// Cost: passes over the window, 16 cells a touched block, and the merging; nothing if no cell was touched.
+  /// Cost: five passes over the window, 16 cells a touched block, and the merging; nothing if no cell was touched.
   template <typename Obstructed>
   void update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed, Counters& counters);
 
