@@ -45,6 +45,7 @@
 #include "curbline/link.hpp"             // neighbours on a row or column
 #include "curbline/segmentation.hpp"     // leaves, regions
 #include "curbline/region_graph.hpp"     // merging by evidence
+#include "curbline/gain_heap.hpp"        // which merge gains most
 #include "curbline/plane.hpp"            // moments, fit
 #include "curbline/plane_evidence.hpp"   // that points lie on one plane, or on two that are parted
 

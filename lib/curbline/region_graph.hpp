@@ -12,6 +12,7 @@
 #include <new>
 #include <type_traits>
 
+#include "curbline/gain_heap.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -69,8 +70,6 @@ class RegionGraph {
     Index next, previous;
   };
   struct Link {
-    float gain;
-    Index place;  ///< in the heap
     // Sums over its pairs of cells, from the node that its odd end leaves from to that of its even one.
     std::int16_t rise;             ///< in 1 / rise_scale m
     std::int8_t along_x, along_y;  ///< cells
@@ -89,7 +88,7 @@ class RegionGraph {
   static constexpr int most_pairs = 127;
   static constexpr float rise_scale = 2000.0f;
 
-  // This and sift_down() are called: inlined they take half a kilobyte of flash for 900 instructions a line.
+  // Called, as GainHeap::sift_down().
   [[gnu::noinline]] float gain(Index link, const PlaneEvidence& evidence) const {
     const Node& a = node_[end_[2 * link].target];
     const Node& b = node_[end_[2 * link + 1].target];
@@ -118,32 +117,21 @@ class RegionGraph {
     } while (next != first);
   }
   int refresh_all(const PlaneEvidence& evidence);
-  void build_heap() {
-    for (int p = static_cast<int>(heap_size_) / 2 - 1; p >= 0; --p) sift_down(static_cast<Index>(p));
-  }
   void merge_ends(Index link);
   void insert(Index node, Index end);
   void remove(Index node, Index end);
   void absorb(Index a, Index b);
   void move_end(Index end, Index a);
-  void heap_remove(Index place);
-  void sift_up(Index place);
-  [[gnu::noinline]] void sift_down(Index place);
-  void set_heap(Index place, Index link) {
-    heap_[place] = link;
-    link_[link].place = place;
-  }
 
   union {
     std::array<Node, limits.regions> node_;  ///< begun as they are added
   };
   std::array<End, 2 * limits.links> end_;
   std::array<Link, limits.links> link_;
-  std::array<Index, limits.links> heap_;
+  GainHeap<Index, limits.links> heap_;      ///< links by what a merge of their nodes gains
   std::array<Index, limits.regions> seen_;  ///< end that led an absorbing node to a neighbour, the last time
   int nodes_ = 0;
   int links_ = 0;
-  std::size_t heap_size_ = 0;
   float cell_x_m_ = 0.0f, cell_y_m_ = 0.0f;
 };
 
@@ -217,21 +205,17 @@ int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
     node_[n].score = evidence.score(node_[n].moments);
     seen_[n] = none;
   }
-  heap_size_ = static_cast<std::size_t>(links_);
-  for (Index l = 0; l < static_cast<Index>(links_); ++l) {
-    link_[l].stale = true;
-    set_heap(l, l);
-  }
+  for (Index l = 0; l < static_cast<Index>(links_); ++l) link_[l].stale = true;
+  heap_.fill(static_cast<std::size_t>(links_));
   int evidences = nodes_ + refresh_all(evidence);
-  while (heap_size_ > 0) {
-    const Index best = heap_[0];
+  while (heap_.size() > 0) {
+    const Index best = heap_.at(0);
     Link& link = link_[best];
     if (link.stale) {
-      link.gain = gain(best, evidence);
+      heap_.set_first(gain(best, evidence));
       link.stale = false;
       ++evidences;
-      sift_down(0);
-    } else if (link.gain >= 0.0f) {
+    } else if (heap_.gain(best) >= 0.0f) {
       merge_ends(best);
     } else {
       // Nothing gains that is known; what was put off may.
@@ -250,21 +234,21 @@ int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
 template <Limits limits>
 int RegionGraph<limits>::refresh_all(const PlaneEvidence& evidence) {
   int refreshed = 0;
-  for (std::size_t p = 0; p < heap_size_; ++p) {
-    Link& link = link_[heap_[p]];
-    if (!link.stale) continue;
-    link.gain = gain(heap_[p], evidence);
-    link.stale = false;
+  for (std::size_t p = 0; p < heap_.size(); ++p) {
+    const Index l = heap_.at(p);
+    if (!link_[l].stale) continue;
+    heap_.set(l, gain(l, evidence));
+    link_[l].stale = false;
     ++refreshed;
   }
-  if (refreshed > 0) build_heap();
+  if (refreshed > 0) heap_.order();
   return refreshed;
 }
 
 template <Limits limits>
 void RegionGraph<limits>::merge_ends(Index link) {
   const Index a = end_[2 * link + 1].target, b = end_[2 * link].target;
-  const float score = link_[link].gain + node_[a].score + node_[b].score;
+  const float score = heap_.gain(link) + node_[a].score + node_[b].score;
   absorb(a, b);
   node_[a].score = score;
 }
@@ -298,42 +282,7 @@ void RegionGraph<limits>::move_end(Index end, Index a) {
   if (has_twin)
     link_[twin / 2].add_pairs((end ^ twin) % 2 == 0 ? 1 : -1, link.pairs, link.rise, link.along_x, link.along_y);
   remove(target, other);
-  heap_remove(link.place);
-}
-
-template <Limits limits>
-void RegionGraph<limits>::heap_remove(Index place) {
-  const Index last = heap_[--heap_size_];
-  if (place == heap_size_) return;
-  set_heap(place, last);
-  sift_up(place);
-  sift_down(link_[last].place);
-}
-
-template <Limits limits>
-void RegionGraph<limits>::sift_up(Index place) {
-  const Index l = heap_[place];
-  while (place > 0) {
-    const auto parent = static_cast<Index>((place - 1) / 2);
-    if (link_[heap_[parent]].gain >= link_[l].gain) break;
-    set_heap(place, heap_[parent]);
-    place = parent;
-  }
-  set_heap(place, l);
-}
-
-template <Limits limits>
-void RegionGraph<limits>::sift_down(Index place) {
-  const Index l = heap_[place];
-  for (;;) {
-    std::size_t child = 2 * static_cast<std::size_t>(place) + 1;
-    if (child >= heap_size_) break;
-    if (child + 1 < heap_size_ && link_[heap_[child + 1]].gain > link_[heap_[child]].gain) ++child;
-    if (link_[l].gain >= link_[heap_[child]].gain) break;
-    set_heap(place, heap_[child]);
-    place = static_cast<Index>(child);
-  }
-  set_heap(place, l);
+  heap_.remove(static_cast<Index>(end / 2));
 }
 
 }  // namespace curbline

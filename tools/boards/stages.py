@@ -16,7 +16,7 @@ FILES = {name: stage for stage, names in {
     "points": "line_intake.hpp line_projection.hpp map_comparison.hpp pose_offset.cpp pose_offset.hpp pose_track.cpp "
               "pose_track.hpp sweep_turns.hpp tilt_latency.cpp tilt_latency.hpp tilt_snapshot.hpp tilt_track.hpp",
     "cells": "viewpoints.hpp",
-    "regions": "region_graph.hpp segmentation.cpp segmentation.hpp",
+    "regions": "gain_heap.hpp region_graph.hpp segmentation.cpp segmentation.hpp",
     "planes": "clean_fit.hpp common_noise.cpp common_noise.hpp ground.hpp index_set.hpp obstacles.hpp plane_mixture.hpp "
               "region_ranking.hpp run.hpp strip_tally.hpp",
     "labels": "label_field.hpp label_site.hpp planes_near_by.hpp",
