@@ -69,7 +69,8 @@
 #include "curbline/cell_line.hpp"        // a row or column
 #include "curbline/beside.hpp"           // the ground beside a border
 #include "curbline/borders.hpp"          // where labels change, and chains of such places
-#include "curbline/border_finder.hpp"    // these to a part of a cell
+#include "curbline/plane_gap.hpp"        // where between two planes the edge lies, to a part of a cell
+#include "curbline/border_finder.hpp"    // all such places of the window
 #include "curbline/ground_end.hpp"       // edges of which only one side is seen
 #include "curbline/line_fit.hpp"         // a line through borders
 #include "curbline/curb_piece.hpp"       // borders on one line

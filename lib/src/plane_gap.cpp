@@ -1,4 +1,4 @@
-#include "curbline/border_finder.hpp"
+#include "curbline/plane_gap.hpp"
 
 #include <algorithm>
 
