@@ -76,7 +76,8 @@
 #include "curbline/curb_piece.hpp"       // borders on one line
 #include "curbline/shadow.hpp"           // of a step down
 #include "curbline/curb.hpp"             // out: a curb
-#include "curbline/curb_maker.hpp"       // how high it is, where, how well that is known
+#include "curbline/step_height.hpp"      // how high it is, if it is a step
+#include "curbline/curb_maker.hpp"       // its kind, its place, how well that is known
 #include "curbline/curb_tracer.hpp"      // from borders to curbs
 #include "curbline/crossed_cells.hpp"    // where steps go, for the planes of the next line
 

@@ -21,7 +21,8 @@ FILES = {name: stage for stage, names in {
               "region_ranking.hpp run.hpp strip_tally.hpp",
     "labels": "label_field.hpp label_site.hpp planes_near_by.hpp",
     "curbs": "border_finder.hpp borders.hpp cell_line.hpp curb.cpp curb.hpp curb_maker.hpp curb_piece.hpp "
-             "curb_stages.hpp curb_tracer.hpp ground_end.hpp line_fit.cpp line_fit.hpp plane_gap.cpp plane_gap.hpp shadow.cpp shadow.hpp",
+             "curb_stages.hpp curb_tracer.hpp ground_end.hpp line_fit.cpp line_fit.hpp plane_gap.cpp plane_gap.hpp shadow.cpp shadow.hpp "
+             "step_height.hpp",
 }.items() for name in names.split()}
 
 
