@@ -14,7 +14,8 @@ struct Point {
   float y_m = 0.0f;
   float z_m = 0.0f;
   float variance_m2 = 0.0f;
-  float growth_m_s = 0.0f;  ///< of z, by a second that is added to the tilt's latency; 0 of what no servo tilts
+  float growth_m_s = 0.0f;  ///< of z, by a second that is added to the tilt's latency, its derivative; 0 of what no
+                            ///< servo tilts
   /// From here to where the beams beside its own have it. It goes to the cell there: by its own error in range it would
   /// cross a cell's border or not, and where the next cell is not seen those that do are all too high, or too low.
   float shift_x_m = 0.0f, shift_y_m = 0.0f;

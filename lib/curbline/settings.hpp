@@ -13,10 +13,10 @@
 
 namespace curbline {
 
-/// The rolling window. Cells are cell_x_m by cell_y_m; the window is rows x cols of them, along the map's axes. Unless
-/// it is fixed its middle stays where it is in the base frame, whatever way the robot heads, to steps of four cells:
-/// its corner and max_height_m are of the base frame of a robot that heads along the map's x axis, else of the map
-/// frame.
+/// The rolling window: rows x cols cells of cell_x_m by cell_y_m, along the map's axes. It follows the robot in steps
+/// of four cells: its middle stays where it is in the base frame, whatever way the robot heads. Its corner and
+/// max_height_m are given in the base frame, of a robot that heads along the map's x axis; of a window that is fixed,
+/// in the map frame.
 struct WindowSettings {
   static constexpr float furthest_m = 1e5f;  ///< of the corner along each axis: float tells a centimetre there
   int rows = 40;                             ///< cells along x, a multiple of 4, at most Limits::rows
