@@ -104,8 +104,9 @@ struct LabelSettings {
   float coupling = 1.5f;  ///< J of the Potts factor exp(J) between like labels, [0.01, 7.9]
   int link_reach = 10;    ///< as SegmentationSettings; the coupling falls as 1 / distance
   int refresh_rows = 1;   ///< rows of the window that every line visits in turn, changed or not, >= 0
-  /// A call, >= 4; what is left over waits for the next, none for ever if 4 cols or more. Nothing: three for every four
-  /// cells of the window, 1200 of the usual one: as many as the budgets of board/ leave time for; 1600 find no more.
+  /// Of a call, >= 4. Cells that are left over wait for the next, with 4 cols or more none for ever. Not set: three for
+  /// every four cells of the window, 1200 of the usual one, as many as the budgets of board/ leave time for; 1600 find
+  /// no more.
   std::optional<int> max_messages{};
 };
 
