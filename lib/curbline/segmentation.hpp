@@ -21,8 +21,10 @@
 
 namespace curbline {
 
+inline constexpr int block_cells = block_side * block_side;
+
 /// Leaf of each cell of a block, by the number (4 i + j) of its first cell; 255 for cells that are not valid.
-using BlockLeaves = std::array<std::uint8_t, block_side * block_side>;
+using BlockLeaves = std::array<std::uint8_t, block_cells>;
 
 /// Felzenszwalb-Huttenlocher on one block: edge weight is the symmetric Kullback-Leibler divergence of the cells'
 /// normals; links reach across cells that are not valid. `valid` may be false for any cell. About 24 edges.
@@ -31,7 +33,7 @@ struct BlockCell {
   float variance_m2;
   bool valid;
 };
-BlockLeaves cut_block(const std::array<BlockCell, block_side * block_side>& cells, float scale);
+BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float scale);
 
 template <Limits limits>
 class Segmentation {
@@ -82,6 +84,7 @@ class Segmentation {
   static constexpr Node no_node = RegionGraph<limits>::none;
 
   void cut_touched_blocks(const Dem<limits>& dem, const Plane& ground);
+  void cut(const Dem<limits>& dem, int row, int col, const Plane& lean);
   void dissolve_neighbours(const Dem<limits>& dem);
   template <typename Obstructed>
   void build_graph(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) const;
@@ -111,36 +114,39 @@ void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, const Plan
   name_regions(dem, work);
 }
 
-/// Cells that are about as high lie along contours where the ground leans: leaves would be rows of cells, which say
-/// nothing of the slope across them and join end to end, through low steps. So what the ground is steeper than 1 in 20
-/// is taken off. Not all of it: leaves as large as blocks tear ground that is bent (lib/README.md).
 template <Limits limits>
 void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plane& ground) {
   const Plane lean = ground.lean();
-  const bool leans = square(lean.slope_x) + square(lean.slope_y) > 0.0f;
-  for (int bi = 0; bi < dem.rows(); bi += block_side) {
-    for (int bj = 0; bj < dem.cols(); bj += block_side) {
-      constexpr int size = block_side * block_side;
-      const int first = dem.slot(bi, bj);
+  for (int row = 0; row < dem.rows(); row += block_side) {
+    for (int col = 0; col < dem.cols(); col += block_side) {
+      const int first = dem.slot(row, col);
       bool touched = false;
-      for (int k = 0; k < size; ++k) touched = touched || dem.touched(dem.slot_in_block(first, k));
-      if (!touched) continue;
-      std::array<BlockCell, size> cells;
-      for (int k = 0; k < size; ++k) {
-        const int s = dem.slot_in_block(first, k);
-        const Cell& cell = dem.cell(s);
-        const float height_m =
-            leans ? dem.above_m(bi + k / block_side, bj + k % block_side, cell, lean) : cell.height_m;
-        cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
-        const Region region = region_[s];
-        if (region != none) dissolved_.insert(region);
-      }
-      const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
-      for (int k = 0; k < size; ++k) {
-        const std::uint8_t leaf = leaves[static_cast<std::size_t>(k)];
-        leaf_[dem.slot_in_block(first, k)] = leaf == 255 ? none : static_cast<Region>(dem.slot_in_block(first, leaf));
-      }
+      for (int k = 0; k < block_cells; ++k) touched = touched || dem.touched(dem.slot_in_block(first, k));
+      if (touched) cut(dem, row, col, lean);
     }
+  }
+}
+
+/// Cuts a block, by its first cell, into leaves. Cells that are about as high lie along contours where the ground
+/// leans: leaves would be rows of cells, which say nothing of the slope across them and join end to end, through low
+/// steps. So what the ground is steeper than 1 in 20 is taken off. Not all of it: leaves as large as blocks tear ground
+/// that is bent (lib/README.md).
+template <Limits limits>
+void Segmentation<limits>::cut(const Dem<limits>& dem, int row, int col, const Plane& lean) {
+  const bool leans = square(lean.slope_x) + square(lean.slope_y) > 0.0f;
+  const int first = dem.slot(row, col);
+  std::array<BlockCell, block_cells> cells;
+  for (int k = 0; k < block_cells; ++k) {
+    const int s = dem.slot_in_block(first, k);
+    const Cell& cell = dem.cell(s);
+    const float height_m = leans ? dem.above_m(row + k / block_side, col + k % block_side, cell, lean) : cell.height_m;
+    cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
+    if (region_[s] != none) dissolved_.insert(region_[s]);
+  }
+  const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
+  for (int k = 0; k < block_cells; ++k) {
+    const std::uint8_t leaf = leaves[static_cast<std::size_t>(k)];
+    leaf_[dem.slot_in_block(first, k)] = leaf == 255 ? none : static_cast<Region>(dem.slot_in_block(first, leaf));
   }
 }
 

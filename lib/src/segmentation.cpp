@@ -3,8 +3,6 @@
 namespace curbline {
 namespace {
 
-constexpr int cells_in_block = block_side * block_side;
-
 struct Edge {
   float weight;
   std::uint8_t a, b;
@@ -18,12 +16,12 @@ float divergence(const BlockCell& a, const BlockCell& b) {
 }
 
 /// Edges to the next valid cell along each axis, ascending by weight. Two a cell at most.
-int list_edges(const std::array<BlockCell, cells_in_block>& cells, std::array<Edge, 2 * cells_in_block>& edges) {
+int list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge, 2 * block_cells>& edges) {
   int count = 0;
-  for (int k = 0; k < cells_in_block; ++k) {
+  for (int k = 0; k < block_cells; ++k) {
     if (!cells[static_cast<std::size_t>(k)].valid) continue;
     for (const int step : {block_side, 1}) {
-      const int end = step == 1 ? (k / block_side + 1) * block_side : cells_in_block;
+      const int end = step == 1 ? (k / block_side + 1) * block_side : block_cells;
       int n = k + step;
       while (n < end && !cells[static_cast<std::size_t>(n)].valid) n += step;
       if (n >= end) continue;
@@ -41,10 +39,10 @@ int list_edges(const std::array<BlockCell, cells_in_block>& cells, std::array<Ed
 
 }  // namespace
 
-BlockLeaves cut_block(const std::array<BlockCell, cells_in_block>& cells, float scale) {
+BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float scale) {
   BlockLeaves root{};  // of a component: its first cell, which bears itself; others bear one before them
-  std::array<float, cells_in_block> limit{};  // Int(C) + s / |C| of the component of a root
-  std::array<float, cells_in_block> size{};
+  std::array<float, block_cells> limit{};  // Int(C) + s / |C| of the component of a root
+  std::array<float, block_cells> size{};
   for (std::size_t k = 0; k < root.size(); ++k) {
     root[k] = cells[k].valid ? static_cast<std::uint8_t>(k) : std::uint8_t{255};
     limit[k] = scale;
@@ -54,7 +52,7 @@ BlockLeaves cut_block(const std::array<BlockCell, cells_in_block>& cells, float 
     while (root[k] != k) k = root[k] = root[root[k]];
     return k;
   };
-  std::array<Edge, 2 * cells_in_block> edges{};
+  std::array<Edge, 2 * block_cells> edges{};
   const int count = list_edges(cells, edges);
   for (int e = 0; e < count; ++e) {
     const Edge& edge = edges[static_cast<std::size_t>(e)];
