@@ -33,6 +33,9 @@ struct PoseShift {
   PoseShift operator+(const PoseShift& b) const {
     return {height_m + b.height_m, slope_x + b.slope_x, slope_y + b.slope_y};
   }
+  PoseShift operator-(const PoseShift& b) const {
+    return {height_m - b.height_m, slope_x - b.slope_x, slope_y - b.slope_y};
+  }
 };
 
 /// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by

@@ -30,10 +30,6 @@ float faded(float value, float by) {
   return value > by ? value - by : value < -by ? value + by : 0.0f;
 }
 
-PoseShift operator-(const PoseShift& a, const PoseShift& b) {
-  return {a.height_m - b.height_m, a.slope_x - b.slope_x, a.slope_y - b.slope_y};
-}
-
 }  // namespace
 
 void PoseOffset::init(const PoseSettings& settings) {
