@@ -1,6 +1,6 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height, of
-// which curb_maker.hpp makes curbs. Each keeps its number from call to call. Cost: two passes over the window, a third
+// which curb_maker.hpp makes curbs. Each keeps its number from call to call. Cost: a pass over the window, another
 // where there is a deep drop, 50 look-ups a border point, as many again for one with an empty cell in its gap, 60
 // operations for each border of what is left of a chain and each of its pieces, and 20 for each pair of curbs, and of
 // one and one of the call before.
