@@ -125,7 +125,7 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
   if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return false;
   const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
   tilt_rate_rad_s_ = any.rate_rad_s;
-  const TiltLatency::Turn turn = tilt_latency_.follow(any.angle_rad, any.rate_rad_s, reading);
+  const TiltLatency::Turn turn = tilt_latency_.begin_line(any.angle_rad, any.rate_rad_s, reading);
   if (turn == TiltLatency::Turn::new_sweep) dem.begin_sweep();
   if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
   return true;
@@ -135,7 +135,7 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
 /// before, nor do those after, and as long as it climbs those between jumps.
 template <Limits limits>
 void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
-  pose_offset_.follow(pose.x_m, pose.y_m);
+  pose_offset_.begin_line(pose.x_m, pose.y_m);
   const bool climbed = climbs();
   bool begun = false;
   while (const auto step = pose_track_.next_step(line_ns)) {

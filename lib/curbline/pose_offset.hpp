@@ -23,7 +23,7 @@ class PoseOffset {
   void init(const PoseSettings& settings);
 
   /// A line begins, with the robot there.
-  void follow(float x_m, float y_m);
+  void begin_line(float x_m, float y_m);
   /// A pose before it has told of a step. What is not decided of an earlier one is taken as it seems to be.
   void follow(const PoseStepNews& step);
 

@@ -28,7 +28,7 @@ class TiltLatency {
 
   using Turn = SweepTurns::Turn;
   /// A line begins: SweepTurns::follow().
-  Turn follow(float angle_rad, float rate_rad_s, std::uint32_t reading);
+  Turn begin_line(float angle_rad, float rate_rad_s, std::uint32_t reading);
 
   /// A point of the line on ground that an earlier sweep has mapped.
   struct Sighting {

@@ -40,7 +40,7 @@ void PoseOffset::init(const PoseSettings& settings) {
   fades_ = {fade_share * settings.height_sd_m, slope, slope};
 }
 
-void PoseOffset::follow(float x_m, float y_m) {
+void PoseOffset::begin_line(float x_m, float y_m) {
   x_m_ = x_m;
   y_m_ = y_m;
   for (PoseShift* shift : {&offset_, &stepped_}) {

@@ -37,7 +37,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   turn_driving();
 }
 
-TiltLatency::Turn TiltLatency::follow(float angle_rad, float rate_rad_s, std::uint32_t reading) {
+TiltLatency::Turn TiltLatency::begin_line(float angle_rad, float rate_rad_s, std::uint32_t reading) {
   const Turn turn = turns_.follow(angle_rad, rate_rad_s, reading);
   if (turn != Turn::none && !drives_) take_up_other_direction();
   if (turn != Turn::new_sweep) return turn;

@@ -28,13 +28,13 @@ struct Late {
     const Settings settings = test::small_settings();
     latency.init(settings.tilt, settings.pose);
     offset.init(settings.pose);
-    latency.follow(0.2f, rate_rad_s, 0);
+    latency.begin_line(0.2f, rate_rad_s, 0);
   }
   /// Twenty lines, each with a point of row i in every column.
   void look(int i, float ceiling_m = 1.0f, const LineMotion& motion = {}) {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m, 10);
     for (std::uint32_t n = 1; n <= 20; ++n) {
-      latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
+      latency.begin_line(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
       auto line = std::make_unique<ProjectedLine<small_limits>>();
       const float x_m = 0.1f * static_cast<float>(i) + 0.02f;  // not where the cell's points lie: the slope tells
       for (int j = 0; j < 24; ++j) {
@@ -74,10 +74,10 @@ TEST_CASE("map comparison: a point is compared where it lies, not where its cell
   latency.init(settings.tilt, settings.pose);
   PoseOffset offset;
   offset.init(settings.pose);
-  latency.follow(0.2f, rate_rad_s, 0);
+  latency.begin_line(0.2f, rate_rad_s, 0);
   const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 1.0f, 10);
   for (std::uint32_t n = 1; n <= 20; ++n) {
-    latency.follow(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
+    latency.begin_line(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
     auto line = std::make_unique<ProjectedLine<small_limits>>();
     for (int j = 0; j < 24; ++j) {
       Point p{1.22f, 0.1f * static_cast<float>(j) + 0.08f, 0.0f, 1e-4f};
@@ -141,7 +141,7 @@ struct Jumping {
     const Settings settings = test::small_settings();
     latency.init(settings.tilt, settings.pose);
     offset.init(test::noisy_poses());
-    offset.follow(0.0f, 1.2f);
+    offset.begin_line(0.0f, 1.2f);
   }
   using Line = ProjectedLine<small_limits>;
   using JumpLine = MapComparison<small_limits>::JumpLine;

@@ -19,7 +19,7 @@ PoseOffset made() {
 
 /// A line begins, the robot at the origin, after a pose that steps and, if it is confirmed, the next.
 void step(PoseOffset& offset, const PoseShift& by, bool confirmed = true) {
-  offset.follow(0.0f, 0.0f);
+  offset.begin_line(0.0f, 0.0f);
   offset.follow({PoseStepNews::Kind::begun, by});
   if (confirmed) offset.follow({PoseStepNews::Kind::confirmed});
 }
@@ -101,9 +101,9 @@ TEST_CASE("pose offset: a step that cannot be seen yet stays open, and heights w
   CHECK(offset.undecided());
   CHECK(offset.doubt_m2(1.0f, 0.0f) < 1e-5f);
   CHECK(offset.doubt_m2(3.0f, 0.0f) == Approx(0.04 * 0.04).epsilon(0.3));
-  offset.follow(0.0f, 0.0f);
+  offset.begin_line(0.0f, 0.0f);
   see_line(offset, 2.0, level, lot);
-  offset.follow(0.0f, 0.0f);
+  offset.begin_line(0.0f, 0.0f);
   see_line(offset, 3.0, level, lot);
   CHECK_FALSE(offset.undecided());
   CHECK(offset.offset().at(3.0f, 0.0f) == Approx(0.04).margin(0.005));
@@ -147,10 +147,10 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   step(offset, jump);
   see_line(offset, 1.0, jump, lot);
   const PoseShift first = offset.offset();
-  for (int line = 0; line < 400; ++line) offset.follow(0.0f, 0.0f);
+  for (int line = 0; line < 400; ++line) offset.begin_line(0.0f, 0.0f);
   CHECK(offset.offset().height_m == Approx(first.height_m + 0.003f).margin(1e-5));
   CHECK(offset.offset().slope_x == Approx(first.slope_x - 0.001f).margin(1e-5));
-  for (int line = 0; line < 4000; ++line) offset.follow(0.0f, 0.0f);
+  for (int line = 0; line < 4000; ++line) offset.begin_line(0.0f, 0.0f);
   CHECK_FALSE(offset.offset().any());
 }
 
@@ -215,7 +215,7 @@ struct Elsewhere {
   }
   PoseOffset stepped(const PoseShift& by) const {
     PoseOffset offset = made();
-    offset.follow(x_m, y_m);
+    offset.begin_line(x_m, y_m);
     offset.follow({PoseStepNews::Kind::begun, by});
     offset.follow({PoseStepNews::Kind::confirmed});
     return offset;

@@ -39,7 +39,7 @@ void sweep(TiltLatency& latency, bool downward, float lag_s, test::Noise& noise,
   const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
   for (int line = 0; line < 40; ++line) {
     const float advance = 0.025f * static_cast<float>(line);
-    latency.follow(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+    latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
     const float missing_s = lag_s - latency.offset_s();
     for (int point = 0; point < 20; ++point) {
       const float other = point % 5 == 0 ? outliers_m : 0.0f;
@@ -54,7 +54,7 @@ TEST_CASE("tilt latency: the lag of a sweep is found, within its standard deviat
   const float lag_s = GENERATE(-0.015f, 0.004f, 0.02f);
   TiltLatency latency = started();
   test::Noise noise(1);
-  latency.follow(0.2f, rate_rad_s, next_reading());
+  latency.begin_line(0.2f, rate_rad_s, next_reading());
   sweep(latency, false, lag_s, noise);
   CHECK(latency.sd_s() < 0.001f);
   CHECK(std::abs(latency.offset_s() - lag_s) < 4.0f * latency.sd_s());
@@ -86,7 +86,7 @@ struct Sweeps {
     const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
     for (int line = 0; line < 40; ++line) {
       const float advance = 0.025f * static_cast<float>(line);
-      latency.follow(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+      latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
       const float map_growth = -growth * (drives ? 1.0f + advance : 1.0f);
       const float above_m = -growth * (lag_s - latency.offset_s()) + map_growth * (map_lag_s - map_offset_s);
       for (int point = 0; point < 20 && sweeps > 1; ++point) {
@@ -177,8 +177,8 @@ TEST_CASE("tilt latency: what lies off the ground, each line by another height, 
 TEST_CASE("tilt latency: ground of which the slope is not known says little") {
   const float slope_sd = GENERATE(0.0f, 0.02f);
   TiltLatency latency = started();
-  latency.follow(0.2f, rate_rad_s, next_reading());
-  latency.follow(1.2f, -rate_rad_s, next_reading());
+  latency.begin_line(0.2f, rate_rad_s, next_reading());
+  latency.begin_line(1.2f, -rate_rad_s, next_reading());
   const float rise_m = 0.05f * slope_sd;  // all points lie five centimetres beyond the ground's middle
   for (int point = 0; point < 100; ++point) latency.compare({rise_m, 1e-4f, rise_m * rise_m, -0.05f, 0.0f});
   latency.end_line(-rate_rad_s);
@@ -231,13 +231,13 @@ TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
 
 TEST_CASE("tilt latency: the first sweep is no new one; a turn is, when a second line on end tells of it") {
   TiltLatency latency = started();
-  CHECK(latency.follow(0.20f, rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.60f, rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.61f, -rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.60f, -rate_rad_s, next_reading()) == Turn::new_sweep);
-  CHECK(latency.follow(0.30f, -rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.30f, rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.31f, rate_rad_s, next_reading()) == Turn::new_sweep);
+  CHECK(latency.begin_line(0.20f, rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.60f, rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.61f, -rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.60f, -rate_rad_s, next_reading()) == Turn::new_sweep);
+  CHECK(latency.begin_line(0.30f, -rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.30f, rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.31f, rate_rad_s, next_reading()) == Turn::new_sweep);
 }
 
 TEST_CASE("tilt latency: a damaged reading, by which one line goes the other way, turns nothing round") {
@@ -245,36 +245,36 @@ TEST_CASE("tilt latency: a damaged reading, by which one line goes the other way
   for (int line = 0; line < 40; ++line) {
     const float angle_rad = 0.2f + 0.02f * static_cast<float>(line);
     const bool damaged = line % 4 == 2;
-    CHECK(latency.follow(damaged ? angle_rad + 0.5f : angle_rad, damaged ? -50.0f : rate_rad_s, next_reading()) ==
+    CHECK(latency.begin_line(damaged ? angle_rad + 0.5f : angle_rad, damaged ? -50.0f : rate_rad_s, next_reading()) ==
           Turn::none);
   }
 }
 
 TEST_CASE("tilt latency: where readings come more slowly than lines a damaged one turns nothing round either") {
   TiltLatency latency = started();
-  latency.follow(0.20f, rate_rad_s, 1);
-  for (int line = 0; line < 3; ++line) CHECK(latency.follow(0.60f, -50.0f, 2) == Turn::none);
-  CHECK(latency.follow(0.62f, rate_rad_s, 3) == Turn::none);
-  for (int line = 0; line < 3; ++line) CHECK(latency.follow(0.61f, -rate_rad_s, 4) == Turn::none);
-  CHECK(latency.follow(0.60f, -rate_rad_s, 5) == Turn::new_sweep);
+  latency.begin_line(0.20f, rate_rad_s, 1);
+  for (int line = 0; line < 3; ++line) CHECK(latency.begin_line(0.60f, -50.0f, 2) == Turn::none);
+  CHECK(latency.begin_line(0.62f, rate_rad_s, 3) == Turn::none);
+  for (int line = 0; line < 3; ++line) CHECK(latency.begin_line(0.61f, -rate_rad_s, 4) == Turn::none);
+  CHECK(latency.begin_line(0.60f, -rate_rad_s, 5) == Turn::new_sweep);
 }
 
 TEST_CASE("tilt latency: play of a servo where a sweep begins is no sweep") {
   TiltLatency latency = started();
-  latency.follow(0.20f, rate_rad_s, next_reading());
-  latency.follow(0.60f, -rate_rad_s, next_reading());
-  REQUIRE(latency.follow(0.60f, -rate_rad_s, next_reading()) == Turn::new_sweep);
-  CHECK(latency.follow(0.60f, rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.61f, rate_rad_s, next_reading()) == Turn::back);
-  CHECK(latency.follow(0.61f, -rate_rad_s, next_reading()) == Turn::none);
-  CHECK(latency.follow(0.60f, -rate_rad_s, next_reading()) == Turn::back);
+  latency.begin_line(0.20f, rate_rad_s, next_reading());
+  latency.begin_line(0.60f, -rate_rad_s, next_reading());
+  REQUIRE(latency.begin_line(0.60f, -rate_rad_s, next_reading()) == Turn::new_sweep);
+  CHECK(latency.begin_line(0.60f, rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.61f, rate_rad_s, next_reading()) == Turn::back);
+  CHECK(latency.begin_line(0.61f, -rate_rad_s, next_reading()) == Turn::none);
+  CHECK(latency.begin_line(0.60f, -rate_rad_s, next_reading()) == Turn::back);
 }
 
 TEST_CASE("tilt latency: a servo that stands still turns nowhere") {
   TiltLatency latency = started();
-  latency.follow(0.5f, rate_rad_s, next_reading());
+  latency.begin_line(0.5f, rate_rad_s, next_reading());
   for (const float rate : {1e-3f, -1e-3f, 0.0f, -0.02f})
-    CHECK(latency.follow(1.0f, rate, next_reading()) == Turn::none);
+    CHECK(latency.begin_line(1.0f, rate, next_reading()) == Turn::none);
 }
 
 TEST_CASE("tilt latency: a standard deviation of 0 turns it off") {
