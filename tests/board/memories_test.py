@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+"""memories_test.py BUILD: a firmware whose memories are changed, in the linker script of its board or in the part that boards share, is
+linked anew: both are among what the build says it is made of. Else the next image is flashed to where the last one lay."""
+import re
+import sys
+import unittest
+from pathlib import Path
+
+BOARDS = Path(sys.argv.pop(1)) / "board"
+FIRMWARE = [("template", "robot.elf", "board.ld"), ("template", "drive.elf", "board.ld"), ("cortex-m7", "drive.elf", "mps2_an500.ld"),
+            ("cortex-m7", "interrupt_test.elf", "mps2_an500.ld"), ("cortex-r5f", "drive.elf", "zcu102_r5.ld"),
+            ("cortex-r5f", "bus_drive.elf", "zcu102_r5.ld"), ("cortex-r5f", "can_test.elf", "zcu102_r5.ld")]
+
+
+def made_of(board, program):
+    """What a link of the program waits for, as Ninja or make is told."""
+    ninja, make = BOARDS / board / "build.ninja", BOARDS / board / f"CMakeFiles/{program}.dir/build.make"
+    text = (ninja if ninja.exists() else make).read_text().replace("$\n", "")
+    start = "build " if ninja.exists() else ""
+    return " ".join(re.findall(rf"^{start}{re.escape(program)}: (.*)$", text, re.MULTILINE))
+
+
+class Memories(unittest.TestCase):
+    def test_firmware_is_linked_anew_when_its_memories_change(self):
+        for board, program, script in FIRMWARE:
+            for wanted in (script, "sections.ld"):
+                with self.subTest(board=board, program=program, script=wanted):
+                    self.assertIn("/" + wanted, made_of(board, program))
+
+
+if __name__ == "__main__":
+    unittest.main()
