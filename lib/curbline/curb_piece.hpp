@@ -121,8 +121,9 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   x_m = fit.x_m();
   y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
-  line = part.size() == 1 ? LineFit::across(first.x_m, first.y_m, first.axis, half_cell_m)
-                          : fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
+  line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
+  // Of a single border, or of two in one place, where surfaces meet at a cell that nobody has seen.
+  if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, first.axis, half_cell_m);
   take_means(part);
   take_variances(dem, part, fit);
   take_sides(stages.view, part);

@@ -8,6 +8,8 @@ class LineFit {
   struct Segment {
     float x0_m, y0_m, x1_m, y1_m;
     float normal_x, normal_y;  ///< unit normal
+
+    bool has_direction() const { return normal_x != 0.0f || normal_y != 0.0f; }
   };
 
   void add(float x_m, float y_m, float weight = 1.0f) {
@@ -31,7 +33,7 @@ class LineFit {
   float y_m() const { return y_; }
 
   /// The line between the feet of two points on it, made longer by `margin_m` at both ends. Falls back to the points
-  /// themselves if the fit has no direction.
+  /// themselves, without a normal, if the fit has no direction.
   Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
   /// A line of its own for a single point: across axis 0 (x) or 1 (y), `margin_m` to both sides.
   static Segment across(float x_m, float y_m, int axis, float margin_m) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -58,6 +59,28 @@ TEST_CASE("curb tracer: a step is one piece with its place, height and direction
   CHECK(curb.probability > 0.99f);
   CHECK(curb.near_label == stages->label_at(0, 0));
   CHECK(curb.far_label == stages->label_at(23, 0));
+}
+
+//  . . B B     the corners of a road and of a pavement meet at a cell that nobody has seen: on its row and its column
+//  A . o B     they border in the same place
+//  A A A .
+TEST_CASE("curb tracer: where two surfaces meet at a single cell the curb is as long as that") {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  fill(stages->dem, [&](double x, double y) {
+    const bool low = x < 1.3 && y<1.3, high = x> 1.2 && y > 1.2;
+    return low == high ? nan : low ? 0.0 : 0.12;
+  });
+  stages->settle();
+  stages->trace();
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  CHECK(curb.kind == CurbKind::step_up);
+  CHECK(curb.height_m == Approx(0.12).margin(4 * curb.height_sd_m));
+  CHECK(length_m(curb) == Approx(0.1).margin(0.001));
+  CHECK(0.5f * (curb.x0_m + curb.x1_m) == Approx(1.25).margin(0.001));
+  CHECK(0.5f * (curb.y0_m + curb.y1_m) == Approx(1.25).margin(0.001));
+  CHECK(to_far_side_m(curb, 1.2f, 1.25f) < 0.0f);
 }
 
 TEST_CASE("curb tracer: a probability is at most 1, however many cells agree on it") {
