@@ -61,8 +61,8 @@ TEST_CASE("candump: the direction that newer versions append is passed over") {
 TEST_CASE("candump: blanks at the end are passed over, however many") {
   for (const std::string frame : {"123#11", "123#11 R", "123#R", "123#", "123##3"}) {
     for (const std::size_t blanks : {1, 2, 7}) {
-      const std::string text = "(0.0) can0 " + frame;
-      const auto line = candump::parse_line(text + std::string(blanks, ' '));
+      const std::string text = "(0.0) can0 " + frame, with_blanks = text + std::string(blanks, ' ');
+      const auto line = candump::parse_line(with_blanks);
       INFO(text << " and " << blanks);
       CHECK(line.ok());
       CHECK(formatted(line.frame, line.interface_name) == formatted(candump::parse_line(text).frame, "can0"));
