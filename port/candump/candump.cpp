@@ -74,11 +74,19 @@ std::string_view parse_remote(std::string_view length, can::Frame& frame) {
   return {};
 }
 
+/// Cuts off the length code that a classic frame of 8 bytes bears on the bus if it is above 8, "_9" to "_F".
+void cut_length_code(std::string_view& text) {
+  if (text.size() < 2 || text[text.size() - 2] != '_' || hex_value(text.back()) <= 8) return;
+  const std::string_view frame = text.substr(0, text.size() - 2);
+  if (frame == "R8" || (frame.size() == 16 && frame[0] != '#')) text = frame;
+}
+
 std::string_view parse_frame(std::string_view text, can::Frame& frame) {
   const std::size_t hash = text.find('#');
   if (hash == std::string_view::npos) return "no frame; expected ID#DATA";
   if (const auto error = parse_id(text.substr(0, hash), frame); !error.empty()) return error;
   text.remove_prefix(hash + 1);
+  cut_length_code(text);
   if (!text.empty() && text[0] == 'R') return parse_remote(text.substr(1), frame);
   if (!text.empty() && text[0] == '#') {
     if (text.size() < 2 || hex_value(text[1]) < 0) return "no CAN FD flags; expected one hexadecimal digit after ##";

@@ -7,6 +7,7 @@
 //   (1290682980.025000) can0 123#R4                  remote request for 4 bytes
 //   (1290682980.025000) can0 123##3112233            CAN FD, flags 3
 //   (1290682980.025000) can0 20000004#0000000000000000   error message of the controller: bit 29 of the id
+//   (1290682980.025000) can0 123#0011223344556677_F  classic, of 8 bytes, that bears the length code 15 on the bus
 // Newer versions append the direction, " R" or " T". In a log of several interfaces names are set to the right, as wide
 // as the longest: "(1.5)  can0 181#00" beside "(1.5) vcan0 181#00". Source: can-utils, lib.h and candump.c.
 #pragma once

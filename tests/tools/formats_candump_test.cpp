@@ -52,6 +52,17 @@ TEST_CASE("candump: remote requests and CAN FD frames are read") {
   CHECK((fd.ok() && fd.frame.fd && fd.frame.fd_flags == 3 && fd.frame.length == 12 && fd.frame.data[11] == 0xAA));
 }
 
+TEST_CASE("candump: of a classic frame of 8 bytes a length code above 8 is passed over") {
+  const auto line = candump::parse_line("(0.0) can0 123#1122334455667788_F R");
+  REQUIRE(line.ok());
+  CHECK(line.frame.length == 8);
+  CHECK(line.frame.data[7] == 0x88);
+  CHECK(candump::parse_line("(0.0) can0 123#R8_9").frame.length == 8);
+  for (const char* bad : {"123#1122334455667788_8", "123#1122334455667788_G", "123#1122334455667788_",
+                          "123#11223344556677_9", "123#R7_9", "123##011223344556677_9", "123#1122334455667788_9_9"})
+    CHECK_FALSE(candump::parse_line("(0.0) can0 " + std::string(bad)).ok());
+}
+
 TEST_CASE("candump: the direction that newer versions append is passed over") {
   CHECK(candump::parse_line("(0.0) can0 123#11 R").ok());
   CHECK(candump::parse_line("(0.0) can0 123#R T").ok());
