@@ -196,7 +196,10 @@ TEST_CASE("dbc: errors name the line and what was expected") {
   CHECK(error_in(changed("(5.992112452678286E-06", "(five")).starts_with("a.dbc:19: five,-0.5); expected the factor"));
   CHECK(error_in(changed("(5.992112452678286E-06", "(nan")).find("expected the factor, a number") != std::string::npos);
   CHECK(error_in(changed("\"rad\"", "rad")) == "a.dbc:19: rad; expected the unit in quotation marks");
-  CHECK(error_in(changed("Angle m3", "Angle x3")) == "a.dbc:26: x3; expected ':', M or m and a number");
+  for (const char* word : {"x3", "m", "m3x", "m18446744073709551616"}) {
+    CHECK(error_in(changed("Angle m3", std::string("Angle ") + word)) ==
+          "a.dbc:26: " + std::string(word) + "; expected ':', M or m and a number");
+  }
   CHECK(error_in(changed("BO_ 512", "BO_ 2048")).starts_with("a.dbc:24: id 2048 is none of CAN; expected 11 bits"));
   CHECK(error_in(changed("BO_ 512", "BO_ 385")).starts_with("a.dbc:24: id 385 comes twice; expected"));
   CHECK(error_in(changed(" Mixed:", " Tilt:")).starts_with("a.dbc:24: message Tilt comes twice; expected"));
