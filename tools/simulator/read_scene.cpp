@@ -180,39 +180,47 @@ double duration_s(const RobotPath& path) {
   return out;
 }
 
-RobotPath read_path(TomlTable table) {
-  RobotPath path;
-  if (table.has("path")) {
-    for (const char* standing : {"at", "yaw_deg"}) {
-      if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: the path tells it");
-    }
-    path.waypoints = table.points("path", 2, any);
-    for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
-      const Point2 a = path.waypoints[i - 1], b = path.waypoints[i];
-      if (std::hypot(b.x - a.x, b.y - a.y) < 0.01) {
-        table.refuse("path", "has two way points in a row at one place; expected 1 cm between them or more");
-      }
-    }
-    table.read("speed", path.speed_m_s, positive);
-    double turn_rate_deg_s = path.turn_rate_rad_s / rad;
-    table.read("turn_rate_deg_s", turn_rate_deg_s, positive);
-    path.turn_rate_rad_s = turn_rate_deg_s * rad;
-    std::string attitude = "level";
-    table.read("attitude", attitude);
-    if (attitude != "level" && attitude != "terrain") {
-      table.refuse_word("attitude", attitude, "level or terrain");
-    }
-    path.follows_terrain = attitude == "terrain";
-    if (const double whole_s = duration_s(path); whole_s > longest_s) {
-      table.refuse("path", "takes " + std::to_string(std::llround(whole_s)) + " s; expected a day at most");
-    }
-  } else {
-    for (const char* driving : {"speed", "turn_rate_deg_s", "attitude"}) {
-      if (table.has(driving)) table.refuse(driving, "is without path; expected robot.path beside it");
-    }
-    path.waypoints = {read_point(table, "at")};
-    path.yaw_rad = read_angle_rad(table, "yaw_deg");
+/// Of a robot that drives.
+RobotPath read_drive(TomlTable& table) {
+  for (const char* standing : {"at", "yaw_deg"}) {
+    if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: the path tells it");
   }
+  RobotPath path;
+  path.waypoints = table.points("path", 2, any);
+  for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
+    const Point2 a = path.waypoints[i - 1], b = path.waypoints[i];
+    if (std::hypot(b.x - a.x, b.y - a.y) < 0.01) {
+      table.refuse("path", "has two way points in a row at one place; expected 1 cm between them or more");
+    }
+  }
+  table.read("speed", path.speed_m_s, positive);
+  double turn_rate_deg_s = path.turn_rate_rad_s / rad;
+  table.read("turn_rate_deg_s", turn_rate_deg_s, positive);
+  path.turn_rate_rad_s = turn_rate_deg_s * rad;
+  std::string attitude = "level";
+  table.read("attitude", attitude);
+  if (attitude != "level" && attitude != "terrain") {
+    table.refuse_word("attitude", attitude, "level or terrain");
+  }
+  path.follows_terrain = attitude == "terrain";
+  if (const double whole_s = duration_s(path); whole_s > longest_s) {
+    table.refuse("path", "takes " + std::to_string(std::llround(whole_s)) + " s; expected a day at most");
+  }
+  return path;
+}
+
+RobotPath read_stand(TomlTable& table) {
+  for (const char* driving : {"speed", "turn_rate_deg_s", "attitude"}) {
+    if (table.has(driving)) table.refuse(driving, "is without path; expected robot.path beside it");
+  }
+  RobotPath path;
+  path.waypoints = {read_point(table, "at")};
+  path.yaw_rad = read_angle_rad(table, "yaw_deg");
+  return path;
+}
+
+RobotPath read_path(TomlTable table) {
+  const RobotPath path = table.has("path") ? read_drive(table) : read_stand(table);
   table.done();
   return path;
 }
