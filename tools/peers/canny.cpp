@@ -110,25 +110,33 @@ double side_height(const Image& heights, double i, double j, double ui, double u
   return nan;
 }
 
+using CellIndex = std::pair<int, int>;  ///< row and column
+
+/// Adds a cell, and all ridges that a chain of neighbours joins with it.
+void join_ridges(const Image& ridges, CellIndex from, Image& kept, std::vector<CellIndex>& out) {
+  const auto keep = [&](int i, int j) {
+    kept.at(i, j) = 1;
+    out.push_back({i, j});
+  };
+  std::size_t next = out.size();
+  for (keep(from.first, from.second); next < out.size(); ++next) {
+    const auto [row, col] = out[next];
+    for (int i = row - 1; i <= row + 1; ++i) {
+      for (int j = col - 1; j <= col + 1; ++j) {
+        if (!std::isnan(ridges(i, j)) && std::isnan(kept(i, j))) keep(i, j);
+      }
+    }
+  }
+}
+
 /// Edges above the weak threshold that a chain of neighbours joins with a strong one (Canny's hysteresis).
-std::vector<std::pair<int, int>> joined_to_strong(const Image& ridges, const Gradient& g) {
+std::vector<CellIndex> joined_to_strong(const Image& ridges, const Gradient& g) {
   Image kept(ridges.rows(), ridges.cols());
-  std::vector<std::pair<int, int>> out;
+  std::vector<CellIndex> out;
   for (int i = 0; i < ridges.rows(); ++i) {
     for (int j = 0; j < ridges.cols(); ++j) {
-      if (std::isnan(ridges(i, j)) || g.size(i, j) < strong || !std::isnan(kept(i, j))) continue;
-      kept.at(i, j) = 1;
-      out.push_back({i, j});
-      for (std::size_t n = out.size() - 1; n < out.size(); ++n) {
-        const auto [ci, cj] = out[n];
-        for (int ni = ci - 1; ni <= ci + 1; ++ni) {
-          for (int nj = cj - 1; nj <= cj + 1; ++nj) {
-            if (std::isnan(ridges(ni, nj)) || !std::isnan(kept(ni, nj))) continue;
-            kept.at(ni, nj) = 1;
-            out.push_back({ni, nj});
-          }
-        }
-      }
+      const bool is_strong = !std::isnan(ridges(i, j)) && g.size(i, j) >= strong;
+      if (is_strong && std::isnan(kept(i, j))) join_ridges(ridges, {i, j}, kept, out);
     }
   }
   return out;

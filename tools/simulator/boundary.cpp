@@ -58,6 +58,26 @@ std::vector<double> cuts_of(const Edge& edge, const std::vector<std::vector<Edge
   return cuts;
 }
 
+/// The visible pieces of an edge of region `own`, cut there; those that continue each other as one.
+void append_visible(const std::vector<GroundRegion>& regions, const Edge& edge, const std::vector<double>& cuts,
+                    std::size_t own, std::vector<Boundary>& out) {
+  const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
+  const double ny = (edge.b.x - edge.a.x) / edge.length_m() * aside_m;
+  bool goes_on = false;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const Point2 middle = edge.at((cuts[i - 1] + cuts[i]) / 2);
+    const int left = region_at(regions, {middle.x + nx, middle.y + ny});
+    const int right = region_at(regions, {middle.x - nx, middle.y - ny});
+    const bool visible = left != right && std::max(left, right) == static_cast<int>(own);
+    if (visible && goes_on && out.back().left == left && out.back().right == right) {
+      out.back().to = edge.at(cuts[i]);
+    } else if (visible) {
+      out.push_back({edge.at(cuts[i - 1]), edge.at(cuts[i]), left, right});
+    }
+    goes_on = visible;
+  }
+}
+
 }  // namespace
 
 // A visible piece between two regions lies on an edge of the later one: were it on an edge of the earlier one only, the
@@ -69,24 +89,7 @@ std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& region
   }
   std::vector<Boundary> out;
   for (std::size_t own = 0; own < regions.size(); ++own) {
-    for (const Edge& edge : all[own]) {
-      const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
-      const double ny = (edge.b.x - edge.a.x) / edge.length_m() * aside_m;
-      const std::vector<double> cuts = cuts_of(edge, all, own);
-      bool goes_on = false;
-      for (std::size_t i = 1; i < cuts.size(); ++i) {
-        const Point2 middle = edge.at((cuts[i - 1] + cuts[i]) / 2);
-        const int left = region_at(regions, {middle.x + nx, middle.y + ny});
-        const int right = region_at(regions, {middle.x - nx, middle.y - ny});
-        const bool visible = left != right && std::max(left, right) == static_cast<int>(own);
-        if (visible && goes_on && out.back().left == left && out.back().right == right) {
-          out.back().to = edge.at(cuts[i]);
-        } else if (visible) {
-          out.push_back({edge.at(cuts[i - 1]), edge.at(cuts[i]), left, right});
-        }
-        goes_on = visible;
-      }
-    }
+    for (const Edge& edge : all[own]) append_visible(regions, edge, cuts_of(edge, all, own), own, out);
   }
   return out;
 }
