@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "formats/ascii.hpp"
 #include "formats/fields.hpp"
 #include "formats/line_reader.hpp"
-#include "formats/lower_case.hpp"
 #include "formats/pcd.hpp"
 
 namespace curbline::tools {

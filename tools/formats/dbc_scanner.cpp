@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "formats/ascii.hpp"
 #include "formats/bad_input.hpp"
 
 namespace curbline::tools {
@@ -28,10 +29,7 @@ void DbcScanner::fail_at(long line, const std::string& what) const {
 void DbcScanner::fail_expected(const std::string& what) {
   if (at_end()) fail("the file ends here; expected " + what);
   const std::size_t end = std::min(text_.find_first_of(" \t\r\n", at_), at_ + 40);
-  std::string got = text_.substr(at_, end - at_);
-  std::replace_if(
-      got.begin(), got.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  fail(got + "; expected " + what);
+  fail(printable_ascii(text_.substr(at_, end - at_)) + "; expected " + what);
 }
 
 void DbcScanner::skip_blanks() {

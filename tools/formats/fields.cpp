@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "candump/candump.hpp"
+#include "formats/ascii.hpp"
 #include "formats/parse_number.hpp"
 
 namespace curbline::tools {
@@ -20,9 +21,7 @@ std::string_view trim(std::string_view text) {
 /// What can be shown of a field in one line of an error.
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
-  std::string out;
-  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (text.size() > most ? "..." : "");
+  return printable_ascii(text.substr(0, most)) + (text.size() > most ? "..." : "");
 }
 
 }  // namespace

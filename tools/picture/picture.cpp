@@ -8,9 +8,9 @@
 #include <regex>
 #include <string_view>
 
+#include "formats/ascii.hpp"
 #include "formats/atomic_file.hpp"
 #include "formats/bad_input.hpp"
-#include "formats/lower_case.hpp"
 #include "picture/page.hpp"
 
 namespace curbline::tools {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "can/curb_frames.hpp"
+#include "formats/ascii.hpp"
 #include "formats/decimals.hpp"
 
 namespace curbline::tools {
@@ -47,12 +48,6 @@ std::optional<double> radians_of(const std::string& unit) {
   return found == known.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// What may stand in a TOML comment.
-std::string printable(std::string text) {
-  for (char& c : text) c = c < ' ' || c > '~' ? '?' : c;
-  return text;
-}
-
 std::string order_line(can::ByteOrder order) {
   return std::string("byte_order = \"") + (order == can::ByteOrder::little ? "little" : "big") + "\"\n";
 }
@@ -70,7 +65,7 @@ Dbc dbc_of(const Robot& robot) {
   message.id = signal.id;
   message.extended = signal.extended;
   message.length = can::bytes_needed(signal);
-  message.comment = "Angle of the tilt servo of " + printable(robot.name) + ".";
+  message.comment = "Angle of the tilt servo of " + printable_ascii(robot.name) + ".";
   const std::uint32_t all_bits = signal.extended ? 0x1FFFFFFF : 0x7FF;
   if ((signal.id_mask & all_bits) != all_bits) {
     message.comment += " Any id that agrees with this one in the bits " + hexadecimal(signal.id_mask & all_bits) + ".";
@@ -114,7 +109,7 @@ Dbc curb_dbc() {
 std::string tilt_toml(const DbcTiltSignal& found, const std::string& source) {
   can::Signal signal = found.signal;
   const auto radians = radians_of(found.unit);
-  std::string text = "# " + printable(source) + ", unit \"" + printable(found.unit) + "\"\n";
+  std::string text = "# " + printable_ascii(source) + ", unit \"" + printable_ascii(found.unit) + "\"\n";
   if (!radians) text += "# Not known as an angle: multiply scale and offset by the radians of one unit.\n";
   signal.scale *= radians.value_or(1.0);
   signal.offset *= radians.value_or(1.0);
