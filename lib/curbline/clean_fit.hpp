@@ -13,9 +13,12 @@ struct CleanFit {
   static constexpr float wide_cells = 200.0f;
   /// A region narrower than that is all rim: what spreads in its cells may be a step that they lie on.
   static constexpr float rim_cells = 3.0f;
+  /// Of so many points of a cell that holds both sides of a step in halves all are of one by chance once in 32 times.
+  static constexpr float telling_points = 6.0f;
 
   bool wanted = false;  ///< of no other plane anything is counted
   bool wide = false, steep = false;
+  bool told = false;                                 ///< a clean cell is sure to be one
   float slope_m2 = 0.0f;                             ///< Dem::slope_m2() of the region's plane
   float cells = 0.0f, points = 0.0f, weight = 0.0f;  ///< of the region
   float sure = 0.0f, precision_1_m2 = 0.0f;          ///< sums over cells of what look_at() tells
@@ -39,18 +42,20 @@ struct CleanFit {
     const float beyond_m2 = (sure / precision_1_m2 - expected_m2) * points / weight - slope_m2;
     return beyond_m2 > 0.0f ? beyond_m2 : 0.0f;  // 0 if no cell tells, too
   }
-  /// A clean cell that lies beside a step, or of which one crosses it; of none the step is 0.
-  void add(PlaneMoments cell, float step_m) {
+  /// A clean cell of so many points that lies beside a step, or of which one crosses it; of none the step is 0.
+  void add(PlaneMoments cell, float cell_points, float step_m) {
+    told = told || cell_points >= telling_points;
     if (!steep) cell.zz = 0.0f;
     if (!(step_m > 0.0f)) return inner.add_cell(cell);
     beside.add_cell(cell);
     bias_m2 += cell.weight * step_m * step_m * (1.0f / 12);
   }
-  /// The plane, if there are cells enough, where it was that of the region. What is the region's stays: by it labels
-  /// go. Cells beside a step are off by up to the half of it, anywhere, all alike: one observation together.
+  /// The plane, if there are cells enough, or one that is sure to hold nothing else, where it was that of the region.
+  /// What is the region's stays: by it labels go. Cells beside a step are off by up to the half of it, anywhere, all
+  /// alike: one observation together.
   void fit(Plane& plane, const PlanePrior& prior, float common_m2, float min_cells) {
     plane.points_a_cell = points / cells;
-    if (inner.cells + beside.cells < min_cells) return;
+    if (inner.cells + beside.cells < min_cells && !told) return;
     if (bias_m2 > prior.noise_m2) beside.scale(prior.noise_m2 / bias_m2);
     inner.add(beside);
     const float share_m2 = common_m2 * (1.0f + plane.rough_m2 / prior.noise_m2);

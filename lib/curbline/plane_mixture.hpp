@@ -197,7 +197,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     if (fit.wide && is_crossed) return;
     const Label borne = label_of(s);
     if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
-    fit.add(dem.moments(i, j, cell), fit.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed));
+    fit.add(dem.moments(i, j, cell), cell.points, fit.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed));
   });
   for (std::size_t l = 0; l < fits.size(); ++l) {
     if (fits[l].wanted) fits[l].fit(planes_[l], dem.prior(), dem.common_m2(), settings_.min_cells);

@@ -62,6 +62,23 @@ TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the p
   }
 }
 
+// The corner of a pavement in that of the window: of its eight cells three hold nothing else.
+TEST_CASE("plane mixture: few cells tell the plane of a corner, if one is sure to hold nothing else") {
+  const auto corner = [](double pitch_m) {
+    auto stages = std::make_unique<Stages<>>(small_settings());
+    Noise noise;
+    const auto ground = [](double x, double y) { return x < 2.25 || y < 2.05 ? 0.0 : 0.06; };
+    for (const Point& p : test::sample({0, 2.4, 0, 2.4}, pitch_m, 0.003, noise, ground)) stages->dem.add(p);
+    stages->infer();
+    return stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(23, 22)));
+  };
+  const Plane told = corner(0.02);
+  CHECK(told.cells == 3.0f);
+  CHECK(told.height_m(2.25f, 2.2f) == Approx(0.06).margin(0.003));
+  CHECK(square(told.slope_x) + square(told.slope_y) < square(least_ramp));
+  CHECK(corner(0.05).cells > 3.0f);  // four points a cell may be of one side by chance
+}
+
 //               .:'.    a pavement overgrown with grass, of which the window holds a strip
 //              |
 //  ____________|
