@@ -184,11 +184,13 @@ auto StepHeight<limits>::deviations() const -> Deviations {
 }
 
 /// Of a plane's height beside the piece. Its fit takes what cells share for the same wherever they lie: it is no less
-/// than how far and how often they were seen makes it.
+/// than how far and how often they were seen makes it. What scan lines err each errs on its own: if all the cells of
+/// one erred alike a plane of n cells would know as much as its lines, of which a square one holds sqrt(n).
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
   const float reach_m2 = stages_.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
-  return std::max(1.0f, stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2) * piece_.variance_m2(plane);
+  const float times = std::min(stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2, square_root(plane.cells));
+  return std::max(1.0f, times) * piece_.variance_m2(plane);
 }
 
 }  // namespace curbline

@@ -571,6 +571,20 @@ TEST_CASE("curb tracer: the height of a step is less certain where few points te
   CHECK(deviation_m(1) == Approx(2.0 * deviation_m(4)).epsilon(0.1));
 }
 
+TEST_CASE("curb tracer: however much scan lines err, a height is told by as many cells as its planes have lines") {
+  const auto stages = traced(up, 0.0f, 1.2f);
+  const auto deviation_m = [&](float line_rad2) {
+    stages->dem.set_common(1e-8f, line_rad2);
+    stages->trace(0.0f, 1.2f);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    return stages->tracer.curbs()[0].height_sd_m;
+  };
+  const float known = deviation_m(0.0f);
+  // Planes of 14 and of 10 rows of 24 cells: 336 and 240 tell as much as 18 and 15.
+  CHECK(deviation_m(1.0f) > std::sqrt(15.0f) * 0.98f * known);
+  CHECK(deviation_m(1.0f) < std::sqrt(18.4f) * known);
+}
+
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
   const auto deviation_m = [](double slope) {
     const auto stages = traced([=](double x, double) { return x < 1.4 ? 0.0 : 0.12 + slope * (x - 1.4); });
