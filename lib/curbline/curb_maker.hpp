@@ -65,7 +65,9 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   if (obstacle(curb, piece)) return std::nullopt;
-  curb.position_sd_m = square_root(place_variance_m2(piece, curb, step.variance_m2()));
+  const float place_m2 = place_variance_m2(piece, curb, step.variance_m2());
+  curb.position_sd_m = square_root(place_m2);
+  step.doubt_place(place_m2);
   curb.height_sd_m = square_root(step.variance_m2());
   const float width_m = piece.gap_m - piece.cell_m - step.shadow_m();
   curb.face_width_m = one_sided ? 0.0f : std::max(0.0f, width_m);

@@ -39,6 +39,8 @@ class StepHeight {
   /// By all that tells it, of the part that the piece was made of. Moves the piece's line to the edge of a step that
   /// casts a shadow. What is no step has no height, only a variance.
   void refine(const Part& part, bool is_step, int link_reach);
+  /// The piece's place, which its height is asked for, is known to that variance.
+  void doubt_place(float place_variance_m2);
 
   /// Of the plane with the high number above that with the low one, PlanePair.
   float height_m() const { return height_m_; }
@@ -84,10 +86,14 @@ void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) 
   variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
   if (is_step && !one_sided) follow_ground(part);
   if (is_step) follow_ground_beside();
-  // Planes of different slope differ as much as the borders' place does. Rough ground hangs over its edge, anywhere
-  // within its roughness, evenly.
-  variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * piece_.place_variance_m2 +
-                  (low.rough_m2 + high.rough_m2) * (1.0f / 3);
+  // Rough ground hangs over its edge, anywhere within its roughness, evenly.
+  variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
+}
+
+/// Planes of different slope differ as much as the piece's place does.
+template <Limits limits>
+void StepHeight<limits>::doubt_place(float place_variance_m2) {
+  variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;
 }
 
 /// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. It is as

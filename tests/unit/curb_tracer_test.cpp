@@ -586,15 +586,15 @@ TEST_CASE("curb tracer: however much scan lines err, a height is told by as many
 }
 
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
-  const auto deviation_m = [](double slope) {
+  const auto with_slope = [](double slope) {
     const auto stages = traced([=](double x, double) { return x < 1.4 ? 0.0 : 0.12 + slope * (x - 1.4); });
     REQUIRE(stages->tracer.curbs().size() == 1);
     CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_up);
-    return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
+    return stages->tracer.curbs()[0];
   };
-  const double level_m = deviation_m(0.0), sloped_m = deviation_m(0.15);
-  // 24 borders on a line, each within half a cell of 5 cm before: 5 cm sqrt(4 / 3 / (2 + 24)).
-  CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.15));
+  const Curb level = with_slope(0.0), sloped = with_slope(0.15);
+  const float by_place_m2 = sloped.height_sd_m * sloped.height_sd_m - level.height_sd_m * level.height_sd_m;
+  CHECK(std::sqrt(by_place_m2) == Approx(0.15f * sloped.position_sd_m).epsilon(0.1));
 }
 
 TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its edge, not in its shadow") {
@@ -873,17 +873,18 @@ TEST_CASE("curb tracer: the variance of a step's height is that of both planes i
 }
 
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place, along y, too") {
-  const auto deviation_m = [](double before, double behind) {
+  const auto with_slopes = [](double before, double behind) {
     const auto stages =
         traced([=](double, double y) { return y < 1.4 ? before * (y - 1.4) : 0.12 + behind * (y - 1.4); }, 1.2f, 0.0f);
     REQUIRE(stages->tracer.curbs().size() == 1);
     CHECK(stages->tracer.curbs()[0].kind == CurbKind::step_up);
-    return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
+    return stages->tracer.curbs()[0];
   };
-  const double level_m = deviation_m(0.0, 0.0);
+  const Curb level = with_slopes(0.0, 0.0);
   for (const auto& [before, behind] : {std::pair{0.0, 0.15}, {-0.15, 0.0}, {0.1, -0.05}}) {
-    const double sloped_m = deviation_m(before, behind);
-    CHECK(std::sqrt(sloped_m * sloped_m - level_m * level_m) == Approx(0.15 * 0.0113).epsilon(0.2));
+    const Curb sloped = with_slopes(before, behind);
+    const float by_place_m2 = sloped.height_sd_m * sloped.height_sd_m - level.height_sd_m * level.height_sd_m;
+    CHECK(std::sqrt(by_place_m2) == Approx(0.15f * sloped.position_sd_m).epsilon(0.1));
   }
 }
 
