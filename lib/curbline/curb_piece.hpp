@@ -27,8 +27,11 @@ struct PlanePair {
   /// end it may change by no more than the repeatability of a range-finder.
   bool even(float dx_m, float dy_m) const {
     constexpr float most_change_m = 0.02f;
-    const float change_m = (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
-    return change_m >= -most_change_m && change_m <= most_change_m;
+    return magnitude(change_m(dx_m, dy_m)) <= most_change_m;
+  }
+  /// By how much it changes.
+  float change_m(float dx_m, float dy_m) const {
+    return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
   }
   /// How much steeper the one is across a line: where that lies tells how far they differ there.
   float slope_across(const LineFit::Segment& line) const {
@@ -75,6 +78,8 @@ struct CurbPiece {
   bool one_sided() const { return first.high == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
   float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
+  /// By how much its height changes from end to end, as its planes have it.
+  float change_m() const { return planes.change_m(line.x1_m - line.x0_m, line.y1_m - line.y0_m); }
   /// Of a plane's height in the middle.
   float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
 

@@ -90,10 +90,12 @@ void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) 
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
 }
 
-/// Planes of different slope differ as much as the piece's place does.
+/// Planes of different slope differ as much as the piece's place does, and along it from end to end: what was seen from
+/// several places, its sides each by itself as poses err, may be as high as anywhere on that.
 template <Limits limits>
 void StepHeight<limits>::doubt_place(float place_variance_m2) {
   variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;
+  if (stages_.dem.seen_from_several()) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
 }
 
 /// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. It is as

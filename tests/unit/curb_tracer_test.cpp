@@ -597,6 +597,25 @@ TEST_CASE("curb tracer: between planes of different slope the height is as uncer
   CHECK(std::sqrt(by_place_m2) == Approx(0.15f * sloped.position_sd_m).epsilon(0.1));
 }
 
+TEST_CASE(
+    "curb tracer: a step that grows along its piece is as uncertain as it grows, where it was seen from several "
+    "places") {
+  const auto deviation_m = [](double growth, bool drives) {
+    const auto stages = traced([=](double x, double y) { return x < 1.4 ? 0.0 : 0.12 + growth * (y - 1.2); });
+    if (drives) {
+      for (const float x_m : {-1.0f, 0.0f}) stages->dem.look_from(x_m, 0.0f);
+      stages->trace();
+    }
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
+  };
+  const double even_m = deviation_m(0.0, true), grows_m = deviation_m(0.008, true);
+  CHECK(even_m == Approx(deviation_m(0.0, false)));
+  CHECK(deviation_m(0.008, false) == Approx(even_m).epsilon(0.01));
+  // Anything within the 19.2 mm that it grows, evenly.
+  CHECK(std::sqrt(grows_m * grows_m - even_m * even_m) == Approx(0.0192 / std::sqrt(12.0)).epsilon(0.02));
+}
+
 TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its edge, not in its shadow") {
   const auto stages = traced([](double x, double) { return x < 1.4 ? 0.12 : 0.05 * (x - 1.4); });
   REQUIRE(stages->tracer.curbs().size() == 1);
