@@ -44,9 +44,11 @@ struct CleanFit {
   }
   /// A clean cell of so many points that lies beside a step, or of which one crosses it; of none the step is 0.
   void add(PlaneMoments cell, float cell_points, float step_m) {
-    told = told || cell_points >= telling_points;
     if (!steep) cell.zz = 0.0f;
-    if (!(step_m > 0.0f)) return inner.add_cell(cell);
+    if (!(step_m > 0.0f)) {
+      told = told || cell_points >= telling_points;
+      return inner.add_cell(cell);
+    }
     beside.add_cell(cell);
     bias_m2 += cell.weight * step_m * step_m * (1.0f / 12);
   }
