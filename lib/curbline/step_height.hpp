@@ -193,11 +193,13 @@ auto StepHeight<limits>::deviations() const -> Deviations {
 
 /// Of a plane's height beside the piece. Its fit takes what cells share for the same wherever they lie: it is no less
 /// than how far and how often they were seen makes it. What scan lines err each errs on its own: if all the cells of
-/// one erred alike a plane of n cells would know as much as its lines, of which a square one holds sqrt(n).
+/// one erred alike a plane of n cells would know as much as its lines, of which a square one holds sqrt(n). Of four
+/// cells and fewer the fit does not show what lines err.
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
   const float reach_m2 = stages_.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
-  const float times = std::min(stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2, square_root(plane.cells));
+  float times = stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2;
+  if (plane.cells > 4.0f) times = std::min(times, square_root(plane.cells));
   return std::max(1.0f, times) * piece_.variance_m2(plane);
 }
 

@@ -585,6 +585,20 @@ TEST_CASE("curb tracer: however much scan lines err, a height is told by as many
   CHECK(deviation_m(1.0f) < std::sqrt(18.4f) * known);
 }
 
+TEST_CASE("curb tracer: of a plane of four cells, whose fit does not show it, what scan lines err is counted in full") {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  fill(stages->dem, [&](double x, double y) { return x < 1.2 ? 0.0 : x < 1.4 && y > 1.0 && y < 1.2 ? 0.12 : nan; });
+  stages->settle();
+  const auto deviation_m = [&](float line_rad2) {
+    stages->dem.set_common(1e-8f, line_rad2);
+    stages->trace(0.0f, 1.1f);
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    return stages->tracer.curbs()[0].height_sd_m;
+  };
+  CHECK(deviation_m(1e-3f) > 2.0f * deviation_m(0.0f));  // as four lines or two it would be 1.4
+}
+
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
   const auto with_slope = [](double slope) {
     const auto stages = traced([=](double x, double) { return x < 1.4 ? 0.0 : 0.12 + slope * (x - 1.4); });
