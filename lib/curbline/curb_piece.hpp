@@ -107,7 +107,6 @@ struct CurbPiece {
  private:
   void take_means(const Part& part);
   void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
-  void take_sides(const Viewpoint& view, const Part& part);
   void take_widths(const Dem<limits>& dem, const Part& part);
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label own);
@@ -127,11 +126,14 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
+  float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
+  for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
   // Of a single border, or of two in one place, where surfaces meet at a cell that nobody has seen.
-  if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, first.axis, half_cell_m);
+  if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
+  low_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
+  low_is_near = one_sided() || low_is_right == has_right(stages.view);
   take_means(part);
   take_variances(dem, part, fit);
-  take_sides(stages.view, part);
   take_widths(dem, part);
 }
 
@@ -168,15 +170,6 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
   // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. Open ones lie
   // anywhere in their gaps, all alike.
   told_variance_m2 = ((1.0f / 6) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
-}
-
-template <Limits limits>
-void CurbPiece<limits>::take_sides(const Viewpoint& view, const Part& part) {
-  float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
-  for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
-  const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
-  low_is_right = dx_m * toward_y - dy_m * toward_x >= 0.0f;
-  low_is_near = one_sided() || low_is_right == has_right(view);
 }
 
 template <Limits limits>

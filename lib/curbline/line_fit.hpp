@@ -35,11 +35,8 @@ class LineFit {
   /// The line between the feet of two points on it, made longer by `margin_m` at both ends. Falls back to the points
   /// themselves, without a normal, if the fit has no direction.
   Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
-  /// A line of its own for a single point: across axis 0 (x) or 1 (y), `margin_m` to both sides.
-  static Segment across(float x_m, float y_m, int axis, float margin_m) {
-    return axis == 0 ? Segment{x_m, y_m - margin_m, x_m, y_m + margin_m, 1.0f, 0.0f}
-                     : Segment{x_m - margin_m, y_m, x_m + margin_m, y_m, 0.0f, 1.0f};
-  }
+  /// A line of its own for a single place: across a way, of any length above 0, `margin_m` to both sides.
+  static Segment across(float x_m, float y_m, float way_x, float way_y, float margin_m);
 
  private:
   float weight_ = 0.0f, x_ = 0.0f, y_ = 0.0f, xx_ = 0.0f, xy_ = 0.0f, yy_ = 0.0f;

@@ -31,4 +31,10 @@ LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m
   return {x_ + t0 * ux, y_ + t0 * uy, x_ + t1 * ux, y_ + t1 * uy, -uy, ux};
 }
 
+LineFit::Segment LineFit::across(float x_m, float y_m, float way_x, float way_y, float margin_m) {
+  const float length = square_root(way_x * way_x + way_y * way_y);
+  const float nx = way_x / length, ny = way_y / length, dx_m = margin_m * ny, dy_m = margin_m * nx;
+  return {x_m + dx_m, y_m - dy_m, x_m - dx_m, y_m + dy_m, nx, ny};
+}
+
 }  // namespace curbline

@@ -68,7 +68,7 @@ TEST_CASE("curb tracer: where two surfaces meet at a single cell the curb is as 
   auto stages = std::make_unique<Stages<>>(small_settings());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   fill(stages->dem, [&](double x, double y) {
-    const bool low = x < 1.3 && y<1.3, high = x> 1.2 && y > 1.2;
+    const bool low = std::max(x, y)<1.3, high = std::min(x, y)> 1.2;
     return low == high ? nan : low ? 0.0 : 0.12;
   });
   stages->settle();
@@ -81,6 +81,8 @@ TEST_CASE("curb tracer: where two surfaces meet at a single cell the curb is as 
   CHECK(0.5f * (curb.x0_m + curb.x1_m) == Approx(1.25).margin(0.001));
   CHECK(0.5f * (curb.y0_m + curb.y1_m) == Approx(1.25).margin(0.001));
   CHECK(to_far_side_m(curb, 1.2f, 1.25f) < 0.0f);
+  CHECK(to_far_side_m(curb, 1.25f, 1.2f) < 0.0f);
+  CHECK(curb.face_width_m == Approx(0.1 * std::sqrt(0.5)).margin(0.001));  // of the cell, along the way across
 }
 
 TEST_CASE("curb tracer: a probability is at most 1, however many cells agree on it") {

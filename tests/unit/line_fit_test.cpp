@@ -51,6 +51,17 @@ TEST_CASE("line fit: points in one place have no direction and stay that place")
   const auto s = fit.segment(1.0f, 2.0f, 1.0f, 2.0f, 0.05f);
   CHECK(s.x0_m == 1.0f);
   CHECK(s.y1_m == 2.0f);
+  CHECK_FALSE(s.has_direction());
+}
+
+TEST_CASE("line fit: a line of a single place lies across the way that is asked for") {
+  const auto s = LineFit::across(1.0f, 2.0f, 3.0f, -4.0f, 0.5f);
+  CHECK(s.has_direction());
+  CHECK(s.normal_x == Approx(0.6));
+  CHECK(s.normal_y == Approx(-0.8));
+  CHECK((s.x1_m - s.x0_m) * 3.0f - (s.y1_m - s.y0_m) * 4.0f == Approx(0.0).margin(1e-6));
+  CHECK(std::hypot(s.x1_m - s.x0_m, s.y1_m - s.y0_m) == Approx(1.0));
+  CHECK(0.5f * (s.x0_m + s.x1_m) == Approx(1.0));
 }
 
 }  // namespace
