@@ -31,9 +31,10 @@ struct Curb {
                           ///< step with a shadow at its edge; along the piece it changes by 2 cm at most; more where
                           ///< the ground beside it lies farther apart than its planes, as in a gutter; above 0 is a
                           ///< step up; 0 of a crease or the edge of a ramp
-  float height_sd_m = 0.0f;   ///< from both planes' posteriors, from how far and how often they were seen, what the
-                              ///< piece's place leaves open where their slopes differ, and how far the cells beside the
-                              ///< border lie off them
+  float height_sd_m = 0.0f;   ///< from both planes' posteriors and roughness, from how far and how often they were
+                              ///< seen, what the piece's place leaves open where their slopes differ, how much the
+                              ///< step grows along it if they were seen from several places, and how far the cells
+                              ///< beside the border lie off them
   float probability = 0.0f;   ///< that the cells on both sides lie on different planes, mean along the piece
   float face_width_m = 0.0f;  ///< across the piece, between the cells of both planes, less the shadow of a step
                               ///< down: to a cell; 0 of the end of a face

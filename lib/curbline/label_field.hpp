@@ -2,8 +2,9 @@
 // (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
 // from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
 // values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) out of
-// the planes near by (planes_near_by.hpp). Cost of a call: three passes over the window, four messages for each cell
-// that sends, a look at each plane near by for each whose candidates are chosen anew.
+// the planes near by (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of
+// planes_near_by, four messages for each cell that sends, a look at each plane near by for each whose candidates are
+// chosen anew.
 #pragma once
 
 #include <array>

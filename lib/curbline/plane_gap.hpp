@@ -114,10 +114,10 @@ float PlaneGap<limits>::same_plane() const {
   return same;
 }
 
-/// Where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway
-/// between the cells, unless the planes are three standard deviations or more apart: then where the cells tell. What
-/// stands on the ground, and what it hides, tells nothing. What cells tell is off by anything within each, on its own;
-/// in what stands there the edge lies anywhere: if that is the larger, or a cell is hidden, the border is open.
+/// Where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway between the cells,
+/// unless the planes are three standard deviations or more apart: then where the cells tell. What stands on the ground,
+/// and what it hides, tells nothing. What cells tell is off by anything within each, on its own; in what stands there
+/// the edge lies anywhere: if that is the larger, or a cell is hidden, the border is open.
 template <Limits limits>
 auto PlaneGap<limits>::middle() const -> Middle {
   const float cell_m = line_.pitch_m();

@@ -179,15 +179,18 @@ TEST_CASE("can log: frames of every id come in order, comments are passed over")
   CHECK_FALSE(log.next());
 }
 
-TEST_CASE("can log: what candump -d says of frames that it has lost is passed over") {
+TEST_CASE("can log: what candump -d says of frames that it has lost is counted") {
   const TemporaryDirectory dir;
   CanLogReader log(dir.write("c.log",
                              "(1.0) can0 181#00\n"
                              "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)\n"
-                             "(2.0) can0 182#00\n"));
+                             "(2.0) can0 182#00\n"
+                             "DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 4)\n"));
   CHECK(log.next()->id == 0x181);
+  CHECK(log.frames_lost() == 0);
   CHECK(log.next()->id == 0x182);
   CHECK_FALSE(log.next());
+  CHECK(log.frames_lost() == 4);
 }
 
 TEST_CASE("can log: bad lines are refused with their line") {

@@ -170,14 +170,18 @@ Fit least_squares(const Cells& cells) {
 }
 
 /// Of the cells that lie within three standard deviations of it, as the median tells them: those that a step crosses
-/// bear the label of one of its sides and hold both. Half of the cells remain at least.
+/// bear the label of one of its sides and hold both. Half of the cells remain at least. Ends when as many remain as
+/// before, or after ten passes.
 Fit fit(const Cells& cells) {
   Fit out = least_squares(cells);
-  for (int pass = 0; pass < 4; ++pass) {
+  Cells near = cells;
+  std::size_t before = 0;
+  for (int pass = 0; pass < 10 && near.size() != before; ++pass) {
     std::vector<double> off_m;
     for (const LabelledCell* c : cells) off_m.push_back(out.off_m(*c));
     const double most_m = 3 * 1.4826 * errors_of(off_m).median;
-    Cells near;
+    before = near.size();
+    near.clear();
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(near),
                  [&](const LabelledCell* c) { return out.off_m(*c) <= most_m; });
     out = least_squares(near);

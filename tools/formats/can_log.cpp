@@ -5,13 +5,23 @@
 
 #include "candump/candump.hpp"
 #include "formats/decimals.hpp"
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
+namespace {
+
+constexpr std::string_view lost = "DROPCOUNT: dropped ";  // of candump -d; how many follows
+
+}  // namespace
 
 std::optional<can::Frame> CanLogReader::next() {
   while (const auto text = source_.next()) {
     if (text->find_first_not_of(" \t") == std::string_view::npos || text->starts_with('#')) continue;
-    if (text->starts_with("DROPCOUNT: ")) continue;  // candump -d: frames that it has lost
+    if (text->starts_with(lost)) {
+      const std::string_view rest = text->substr(lost.size());
+      frames_lost_ += parse_number<std::uint64_t>(rest.substr(0, rest.find(' '))).value_or(1);
+      continue;
+    }
     const candump::ParsedLine parsed = candump::parse_line(*text);
     if (!parsed.ok()) source_.fail(std::string(parsed.error));
     interface_name_ = parsed.interface_name;

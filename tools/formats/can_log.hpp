@@ -16,18 +16,20 @@ class CanLogReader {
  public:
   explicit CanLogReader(const std::string& path) : source_(path) {}
 
-  /// The next frame, whatever its id; nothing at the end. Blank lines, # comments and what candump says of frames that
-  /// it has lost are passed over. Throws BadInput for any other line that candump does not write, and for a file
-  /// without a frame.
+  /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are passed over, what candump -d
+  /// says of frames that it has lost is counted. Throws BadInput for any other line that candump does not write, and
+  /// for a file without a frame.
   std::optional<can::Frame> next();
 
   const std::string& path() const { return source_.path(); }
   long line() const { return source_.line(); }                           ///< of the frame last given
   const std::string& interface_name() const { return interface_name_; }  ///< the same
+  std::uint64_t frames_lost() const { return frames_lost_; }             ///< by candump, so far
 
  private:
   LineReader source_;
   std::string interface_name_;
+  std::uint64_t frames_lost_ = 0;
 };
 
 /// Which frame bears a signal, for the user: "id 0x181", "id 0x181 with multiplexor 9".

@@ -35,7 +35,7 @@ struct Share {
   double from = 0, to = 1;
   bool any() const { return from < to; }
 
-  /// Leaves what of it lies where low <= start + t step <= high; from > to if nothing does, or one of them is NaN
+  /// Leaves what of it lies where low <= start + t step <= high; from > to if nothing does, or the step is NaN
   /// (Liang and Barsky 1984).
   void clip(double start, double step, double low, double high);
 };

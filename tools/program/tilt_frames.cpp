@@ -24,6 +24,10 @@ class LogFrames final : public TiltFrames {
   }
   bool ended() const override { return ended_; }
   void fail_silent() const override { throw BadInput(log_.path() + ": no more frames"); }
+  std::string remarks() const override {
+    if (log_.frames_lost() == 0) return {};
+    return log_.path() + ": " + std::to_string(log_.frames_lost()) + " frames lost by candump";
+  }
 
  private:
   /// Two servos of one id, each on a bus of its own, would be one that jumps.

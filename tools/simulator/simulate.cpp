@@ -4,8 +4,8 @@
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
 #include "formats/regions.hpp"
+#include "formats/toml_table.hpp"
 #include "formats/trajectory.hpp"
-#include "formats/whole_file.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"
 #include "simulator/truth.hpp"
@@ -111,7 +111,7 @@ SimulationSummary simulate(const Scene& scene, const std::string& robot_file, co
   const Robot robot = read_robot(robot_file);
   Simulation simulation(scene, robot, options.seed, options.duration_s);
   const Truth truth = make_truth(in_map_frame(scene), static_cast<double>(simulated_start_ns) * 1e-9);
-  const std::string robot_text = read_whole(robot_file, 1, "a robot file (TOML)");
+  const std::string robot_text = read_toml_text(robot_file, "a robot file");
 
   Recording recording(out_dir, robot, gives_poses(scene, robot));
   recording.summary.duration_s = simulation.duration_s();
