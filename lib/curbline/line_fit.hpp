@@ -35,7 +35,8 @@ class LineFit {
   /// The line between the feet of two points on it, made longer by `margin_m` at both ends. Falls back to the points
   /// themselves, without a normal, if the fit has no direction.
   Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
-  /// A line of its own for a single place: across a way, of any length above 0, `margin_m` to both sides.
+  /// A line of its own for a single place: across a way of any length, x if it has none, `margin_m` to both
+  /// sides.
   static Segment across(float x_m, float y_m, float way_x, float way_y, float margin_m);
 
  private:

@@ -121,7 +121,7 @@ float PlaneGap<limits>::same_plane() const {
 template <Limits limits>
 auto PlaneGap<limits>::middle() const -> Middle {
   const float cell_m = line_.pitch_m();
-  const auto cells = static_cast<float>(second_.along - first_.along + 1);
+  const auto cells = static_cast<float>(length() + 1);
   const float halfway_m = (static_cast<float>(first_.along) + 0.5f * cells) * cell_m;
   const Plane& first = stages_.mixture.plane(first_.label);
   const Plane& second = stages_.mixture.plane(second_.label);

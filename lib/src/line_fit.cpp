@@ -33,7 +33,8 @@ LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m
 
 LineFit::Segment LineFit::across(float x_m, float y_m, float way_x, float way_y, float margin_m) {
   const float length = square_root(way_x * way_x + way_y * way_y);
-  const float nx = way_x / length, ny = way_y / length, dx_m = margin_m * ny, dy_m = margin_m * nx;
+  const float nx = length > 0.0f ? way_x / length : 1.0f, ny = length > 0.0f ? way_y / length : 0.0f;
+  const float dx_m = margin_m * ny, dy_m = margin_m * nx;
   return {x_m + dx_m, y_m - dy_m, x_m - dx_m, y_m + dy_m, nx, ny};
 }
 

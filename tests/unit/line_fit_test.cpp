@@ -54,6 +54,13 @@ TEST_CASE("line fit: points in one place have no direction and stay that place")
   CHECK_FALSE(s.has_direction());
 }
 
+TEST_CASE("line fit: a line across ways that cancel lies across x, and is one") {
+  const auto s = LineFit::across(1.0f, 2.0f, 0.0f, 0.0f, 0.5f);
+  CHECK(s.normal_x == 1.0f);
+  CHECK(s.x0_m == 1.0f);
+  CHECK(s.y1_m - s.y0_m == Approx(1.0));
+}
+
 TEST_CASE("line fit: a line of a single place lies across the way that is asked for") {
   const auto s = LineFit::across(1.0f, 2.0f, 3.0f, -4.0f, 0.5f);
   CHECK(s.has_direction());
