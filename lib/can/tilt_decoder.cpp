@@ -2,6 +2,8 @@
 
 #include <atomic>
 
+#include "curbline/rising_times.hpp"
+
 namespace curbline::can {
 namespace {
 
@@ -45,6 +47,10 @@ std::optional<TiltReading> TiltDecoder::take(const Frame& frame) {
     count(counters_.others);
     return std::nullopt;
   }
+  if (!RisingTimes::is_time(frame.time_ns)) {
+    count(counters_.malformed);
+    return std::nullopt;
+  }
   const auto time_ns = time_of_position(frame.time_ns);
   const auto angle = decode(signal_, frame);
   if (!angle || !(*angle >= -furthest_rad && *angle <= furthest_rad)) {
@@ -60,7 +66,8 @@ std::optional<TiltReading> TiltDecoder::take(const Frame& frame) {
 }
 
 bool TiltDecoder::is_sync(const Frame& frame) const {
-  return sync_id_ && frame.id == *sync_id_ && !frame.extended && !frame.remote && !frame.error;
+  return sync_id_ && frame.id == *sync_id_ && !frame.extended && !frame.remote && !frame.error &&
+         RisingTimes::is_time(frame.time_ns);
 }
 
 void TiltDecoder::note_sync(std::int64_t time_ns) {

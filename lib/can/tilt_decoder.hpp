@@ -33,7 +33,8 @@ struct TiltDecoderCounters {
   std::uint32_t readings = 0;      ///< given out
   std::uint32_t others = 0;        ///< another id or multiplexor, remote requests, error messages
   std::uint32_t syncs = 0;         ///< SYNC frames
-  std::uint32_t malformed = 0;     ///< the servo's, but too short, not finite or no angle of a servo
+  std::uint32_t malformed = 0;     ///< the servo's, but too short, not finite, no angle of a servo or stamped with no
+                                   ///< time (RisingTimes::is_time)
   std::uint32_t without_sync = 0;  ///< the servo's, but its SYNC was not seen
 };
 

@@ -40,7 +40,9 @@ std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
   if (turn_ns_ == 0) return stamp_ns;
   if (!stamps_.admits(stamp_ns)) {
     const bool once_more = size_ > 0 && stamp_ns == newest().stamp_ns && stamp_ns != time_ns_;
-    return once_more ? std::nullopt : std::optional(stamp_ns);
+    if (!once_more) return stamp_ns;
+    ++left_out_;
+    return std::nullopt;
   }
   stamps_.take(stamp_ns);
   const Turns turns = turns_to(stamp_ns);

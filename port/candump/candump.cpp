@@ -139,11 +139,11 @@ class Writer {
 }  // namespace
 
 std::optional<std::int64_t> parse_time(std::string_view seconds) {
-  constexpr std::int64_t most_seconds = 9223372035;  // one less than 2^63 ns holds
+  constexpr std::int64_t second_ns = 1'000'000'000, latest_ns = INT64_MAX;
   const char* const last = seconds.data() + seconds.size();
   std::int64_t whole = 0;
   const auto [point, problem] = std::from_chars(seconds.data(), last, whole);
-  if (problem != std::errc{} || !is_digit(seconds[0]) || whole > most_seconds) return std::nullopt;
+  if (problem != std::errc{} || !is_digit(seconds[0]) || whole > latest_ns / second_ns) return std::nullopt;
   std::int64_t fraction_ns = 0;
   if (point != last) {
     if (*point != '.' || point + 1 == last) return std::nullopt;
@@ -153,7 +153,8 @@ std::optional<std::int64_t> parse_time(std::string_view seconds) {
       fraction_ns += (*digit - '0') * unit_ns;
     }
   }
-  return whole * 1'000'000'000 + fraction_ns;
+  if (whole == latest_ns / second_ns && fraction_ns > latest_ns % second_ns) return std::nullopt;
+  return whole * second_ns + fraction_ns;
 }
 
 ParsedLine parse_line(std::string_view line) {

@@ -97,8 +97,9 @@ TEST_CASE("candump: times are exact to the nanosecond") {
   CHECK(candump::parse_time("1290682980.1234567899") == 1290682980123456789);
   CHECK(candump::parse_time("0.1") == 100000000);
   CHECK(candump::parse_time("7") == 7000000000);
+  CHECK(candump::parse_time("9223372036.854775807") == INT64_MAX);
   for (const char* bad :
-       {"", "-1.0", "+1", "1.", ".5", "1.2.3", "1e9", "nan", "9223372036.0", "99999999999999999999"}) {
+       {"", "-1.0", "+1", "1.", ".5", "1.2.3", "1e9", "nan", "9223372036.854775808", "9223372037.0", "99999999999999999999"}) {
     CHECK_FALSE(candump::parse_time(bad));
   }
 }
@@ -139,7 +140,7 @@ TEST_CASE("candump: what candump writes for the screen is told as such") {
 TEST_CASE("candump: what is formatted is read back, and is what was read") {
   for (const char* text :
        {"(1290682980.025000) can0 181#3706D317FDFF", "(0.000001) vcan0 1FFFFFFF#", "(5.000000) can1 7FF#R8",
-        "(5.000000) can1 12345678#R", "(9223372035.999999) a 20000080#0000000000000000",
+        "(5.000000) can1 12345678#R", "(9223372036.854775) a 20000080#0000000000000000",
         "(1.500000) can0 00000123##F0011223344556677001122334455667700112233445566770011223344556677"
         "0011223344556677001122334455667700112233445566770011223344556677"}) {
     const auto line = candump::parse_line(text);

@@ -142,6 +142,18 @@ TEST_CASE("tilt decoder: a bus whose clock is set back is followed") {
   CHECK(tilt.take(position(t0 - 5000 * ms + 300 * us, 0.5))->time_ns == t0 - 5000 * ms);
 }
 
+TEST_CASE("tilt decoder: a frame whose stamp is no time is dropped, and those after it are taken") {
+  TiltDecoder tilt = decoder(default_sync_id);
+  for (int k = 0; k < 5; ++k) tilt.take(sync(t0 + 10 * ms * k));
+  for (const std::int64_t no_time_ns : {INT64_MIN, INT64_MAX}) {
+    tilt.take(sync(no_time_ns));
+    CHECK_FALSE(tilt.take(position(no_time_ns, 0.5)));
+  }
+  CHECK(tilt.counters().syncs == 5);
+  CHECK(tilt.counters().malformed == 2);
+  CHECK(tilt.take(position(t0 + 40 * ms + 300 * us, 0.5))->time_ns == t0 + 40 * ms);
+}
+
 TEST_CASE("tilt decoder: a drive may answer every n-th SYNC") {
   TiltDecoder tilt = decoder(default_sync_id);
   for (int k = 0; k < 20; ++k) {

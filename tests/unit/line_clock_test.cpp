@@ -184,6 +184,16 @@ TEST_CASE("line clock: a line that comes once more has no time if it had none, a
   CHECK(moved == 0);
 }
 
+TEST_CASE("line clock: every line that gets no time is counted, one that comes twice too") {
+  LineClock clock = clock_of(utm30lx);
+  std::uint32_t none = 0;
+  for (const Line& line : late_lines(utm30lx, 5.0, 0.05, 2000)) {
+    for (int times = 0; times < 2; ++times) none += !clock.time_of(line.stamp_ns);
+  }
+  CHECK(none > 0);
+  CHECK(clock.left_out() == none);
+}
+
 TEST_CASE("line clock: a line that comes before its turn, out of order, leaves what is known of the others") {
   LineClock clock = clock_of(utm30lx);
   const auto lines = late_lines(utm30lx, 2.0, 0.0, 1000);

@@ -8,9 +8,17 @@
 #include <utility>
 
 namespace curbline::tools {
+namespace {
+
+constexpr std::size_t chunk = 1 << 16;  ///< read at once
+
+}  // namespace
 
 LineReader::LineReader(std::string path, std::size_t max_line)
-    : path_(std::move(path)), max_line_(max_line), file_(std::fopen(path_.c_str(), "rb")), buffer_(max_line + 1) {
+    : path_(std::move(path)),
+      max_line_(max_line),
+      file_(std::fopen(path_.c_str(), "rb")),
+      buffer_(std::min(chunk, max_line + 1)) {
   if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno) + "; expected a file to read");
 }
 
@@ -63,13 +71,13 @@ std::string_view LineReader::take(std::size_t length, std::size_t end_bytes) {
   return line;
 }
 
-/// Makes room behind what is left, which is shorter than the buffer, and reads once. read() and not fread(), which
+/// Makes room behind what is left, up to the longest line and a byte, and reads once. read() and not fread(), which
 /// would wait until a pipe has filled the buffer.
 void LineReader::fill() {
   std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
   end_ -= begin_;
   begin_ = 0;
-  constexpr std::size_t chunk = 1 << 16;
+  if (end_ == buffer_.size()) buffer_.resize(std::min(2 * end_, max_line_ + 1));
   ssize_t got = 0;
   do {
     got = ::read(::fileno(file_.get()), buffer_.data() + end_, std::min(chunk, buffer_.size() - end_));

@@ -1,0 +1,170 @@
+// Any file, read as the format that FORMAT names: it is read to its end, or refused with one line that names the file.
+// Nothing else is thrown, and what has been read is what the format's reader promises.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "curbline/curbline.hpp"
+#include "formats/can_log.hpp"
+#include "formats/carmen.hpp"
+#include "formats/cloud.hpp"
+#include "formats/dbc.hpp"
+#include "formats/regions.hpp"
+#include "formats/trajectory.hpp"
+#include "fuzz/claim.hpp"
+#include "robot/robot.hpp"
+#include "simulator/scene.hpp"
+
+namespace curbline::fuzz {
+namespace {
+
+/// A file of these bytes, in memory.
+class File {
+ public:
+  File(const std::uint8_t* bytes, std::size_t size) : descriptor_(::memfd_create("fuzz", 0)) {
+    claim(descriptor_ >= 0 && ::write(descriptor_, bytes, size) == static_cast<ssize_t>(size), "there is a file");
+  }
+  ~File() { ::close(descriptor_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+/// A second name of it, with an ending: where that tells the format.
+class Named {
+ public:
+  Named(const File& file, const char* ending) : path_("/tmp/curbline-fuzz-" + std::to_string(::getpid()) + ending) {
+    claim(::symlink(file.path().c_str(), path_.c_str()) == 0, "it has a second name");
+  }
+  ~Named() { ::unlink(path_.c_str()); }
+  Named(const Named&) = delete;
+  Named& operator=(const Named&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+void read_carmen(const File& file) {
+  tools::CarmenReader reader(file.path());
+  std::int64_t last_ns = INT64_MIN;
+  while (const auto line = reader.next()) {
+    claim(line->time_ns >= last_ns, "times do not go back");
+    last_ns = line->time_ns;
+    for (const float range : line->ranges_m) claim(std::isnan(range) || range > 0.0f, "a range is above 0, or none");
+  }
+}
+
+void read_can_log(const File& file) {
+  tools::CanLogReader reader(file.path());
+  while (const auto frame = reader.next()) claim(frame->length <= 64, "a frame has 64 bytes at most");
+}
+
+void read_trajectory(const File& file) {
+  tools::TrajectoryReader reader(file.path());
+  while (const auto pose = reader.next()) {
+    const Pose p = tools::to_pose(*pose);
+    claim(
+        std::abs(p.x_m) <= Pose::furthest_m && std::abs(std::hypot(p.qx, p.qy) * std::hypot(p.qx, p.qy) +
+                                                        std::hypot(p.qz, p.qw) * std::hypot(p.qz, p.qw) - 1.0f) < 1e-3f,
+        "the pipeline takes every pose");
+  }
+}
+
+void read_points(const File& file, const char* ending) {
+  const Named named(file, ending);
+  for (const tools::Point3& p : tools::read_cloud(named.path()))
+    claim(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "every point is a place");
+}
+void read_cloud_text(const File& file) {
+  read_points(file, ".xyz");
+}
+void read_cloud_pcd(const File& file) {
+  read_points(file, ".pcd");
+}
+
+void read_regions(const File& file) {
+  for (const tools::Polygon& region : tools::read_regions(file.path()))
+    claim(region.size() >= 3, "a region has three corners at least");
+}
+
+void read_dbc(const File& file) {
+  const std::string path = file.path();
+  const tools::Dbc dbc = tools::read_dbc(path);
+  for (const tools::DbcMessage& message : dbc) {
+    for (const tools::DbcSignal& signal : message.signals) {
+      try {
+        claim(can::valid(tools::find_signal(dbc, path, message.name, signal.name).signal),
+              "a signal that is found can be decoded");
+      } catch (const tools::BadInput&) {
+      }
+    }
+  }
+}
+
+void read_robot(const File& file) {
+  constexpr Limits host{.rows = 512, .cols = 512, .planes = 255, .beams = tools::most_beams};
+  const tools::Robot robot = tools::read_robot(file.path());
+  claim(check(tools::pipeline_settings(robot), host) == Status::ok, "the pipeline takes every robot");
+  claim(can::valid(robot.tilt_signal), "its tilt signal can be decoded");
+}
+
+void read_scene(const File& file) {
+  const tools::Scene scene = tools::read_scene(file.path());
+  claim(!scene.path.waypoints.empty(), "the robot is somewhere");
+  tools::legs(scene.path);
+  tools::region_at(scene.regions, scene.path.waypoints.front());
+}
+
+struct Format {
+  const char* name;
+  void (*read)(const File&);
+};
+constexpr std::array<Format, 9> formats{{{"carmen", read_carmen},
+                                         {"can_log", read_can_log},
+                                         {"trajectory", read_trajectory},
+                                         {"cloud_text", read_cloud_text},
+                                         {"cloud_pcd", read_cloud_pcd},
+                                         {"regions", read_regions},
+                                         {"dbc", read_dbc},
+                                         {"robot", read_robot},
+                                         {"scene", read_scene}}};
+
+const Format& format() {
+  const char* name = std::getenv("FORMAT");
+  for (const Format& f : formats) {
+    if (name != nullptr && f.name == std::string_view(name)) return f;
+  }
+  std::fputs("FORMAT names none; expected one of", stderr);
+  for (const Format& f : formats) std::fprintf(stderr, " %s", f.name);
+  std::fputs("\n", stderr);
+  std::exit(2);
+}
+
+}  // namespace
+}  // namespace curbline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace curbline::fuzz;
+  static const Format& read_as = format();
+  const File file(bytes, size);
+  try {
+    read_as.read(file);
+  } catch (const curbline::tools::BadInput& bad) {
+    const std::string line = bad.what();
+    claim(line.starts_with("/proc/self/fd/") || line.starts_with("/tmp/curbline-fuzz-"), "it is told which file");
+    claim(line.find('\n') == std::string::npos, "in one line");
+    claim(line.find("expected") != std::string::npos, "with what was expected");
+  }
+  return 0;
+}
