@@ -36,11 +36,13 @@ bool curbline::daemon::heap_trapped() {
 }
 
 // The C library's own, under the names it keeps for such as this. What they give, its free() takes back.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* malloc(std::size_t size) {
   calls.fetch_add(1, std::memory_order_relaxed);

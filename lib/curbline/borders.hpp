@@ -105,7 +105,7 @@ class Borders {
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
   /// From at(first) to at(last).
   Part part(int first, int last) const {
-    const auto size = static_cast<std::size_t>(last - first + 1);
+    const auto size = static_cast<std::size_t>(last - first) + 1;
     return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size));
   }
 

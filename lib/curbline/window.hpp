@@ -116,7 +116,7 @@ class Window {
   /// First cell of the block whose border is nearest; that before as long as it is, but for half a cell.
   static std::int32_t nearest_block(float blocks, std::int32_t before) {
     constexpr float late = 0.5f + 0.5f / block_side;
-    const float moved = blocks - static_cast<float>(before / block_side);
+    const float moved = blocks - static_cast<float>(before) / block_side;
     if (moved > -late && moved < late) return before;
     return floor_to_int(blocks + 0.5f) * block_side;
   }
