@@ -97,7 +97,7 @@ bool PlaneGap<limits>::hidden() const {
   for (int back = 0; back <= widest_blur; ++back) {
     const float at = share - static_cast<float>(back) / cells;
     const int s = dem.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
-    if (s >= 0 && dem.cell(s).valid() && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return true;
+    if (s >= 0 && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return true;
   }
   return false;
 }

@@ -61,7 +61,7 @@ class TiltSnapshot {
   int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
   float angle_variance_ = 0.0f, time_variance_s2_ = 0.0f;  ///< of a reading
-  // Between the two readings that the last question fell between: empty if it did not.
+  // Between the two readings that a question fell between last; empty before one does.
   std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
   float segment_angle_rad_ = 0.0f, segment_slope_rad_s_ = 0.0f, segment_rate_rad_s_ = 0.0f;
 
@@ -98,7 +98,6 @@ TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
 /// hand.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
-  segment_from_ns_ = segment_to_ns_ = 0;
   while (cursor_ < size_ && reading(cursor_).time_ns <= time_ns) ++cursor_;
   if (size_ == 0) return {};
   if (cursor_ == 0) return beyond(time_ns, 0, 1);
