@@ -122,6 +122,25 @@ TEST_CASE("pipeline: when the window moves a plane stays where it is in the map"
   CHECK(height(2.0, 0.0) == Approx(0.2).margin(0.002));
 }
 
+TEST_CASE("pipeline: when the window moves on to another plane, however large, a plane keeps its label") {
+  const auto pipeline = started(driving_settings());
+  test::Noise noise;
+  const auto observe = [&](double from_x_m, double to_x_m) {
+    pipeline->observe(test::sample({from_x_m, to_x_m, -2, 2}, 0.05, 0.005, noise,
+                                   [](double x, double) { return x < 4.0 ? 0.0 : -0.3; }));
+    pipeline->settle();
+  };
+  observe(0.0, 4.0);
+  const Label before = pipeline->label(30, 20);
+  REQUIRE(before != no_label);
+  pipeline->add_pose({NoddingLaser::ns(0.0), 2.4f});
+  add_tilts(*pipeline, 0);
+  REQUIRE(pipeline->observe({NoddingLaser::ns(0.0), {}}) == Status::ok);
+  observe(4.0, 6.4);
+  CHECK(pipeline->label(6, 20) == before);  // at the same place
+  CHECK(pipeline->label(30, 20) != before);
+}
+
 TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
   const Drive d = drive({3.2, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without
   CHECK(d.pipeline->counters().lines_dropped == 46);                      // the first ones are extrapolated, for 0.1 s
@@ -350,6 +369,43 @@ TEST_CASE("pipeline: a line that is measured while the robot climbs is left out 
   const Rise late = rise(climb, half_way_m + 0.05);
   CHECK(late.points.empty());
   CHECK(late.pipeline->counters().lines_off_map == 1);
+}
+
+/// What a pipeline tells line by line of a drive at 0.5 m/s that begins with line `first`, up to a step, with a servo
+/// that is late, a localisation that steps after 100 lines and after 180, and a robot that climbs from the 150th on.
+std::vector<float> told_on_the_way(FullPipeline& pipeline, int first, int lines) {
+  std::vector<float> told;
+  NoddingLaser laser;
+  const double begin_s = NoddingLaser::line_time_s(first);
+  const auto x = [=](double time_s) { return 0.5 * (time_s - begin_s); };
+  for (int line = first; line < first + lines; ++line) {
+    const double t = NoddingLaser::line_time_s(line);
+    const double off_m = line < first + 100 ? 0.0 : line < first + 180 ? 0.02 : -0.01;
+    add_tilts(pipeline, line, [](double) { return 0.02; });
+    for (const double time_s : {t, t + 0.0125}) {
+      const double risen_m = std::clamp(time_s - begin_s - 3.75, 0.0, 0.1);
+      pipeline.add_pose(
+          {NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, static_cast<float>(risen_m + off_m)});
+    }
+    pipeline.take({NoddingLaser::ns(t), laser.ranges({4.0, 0.12}, line, x)});
+    const Counters& counters = pipeline.counters();
+    for (const std::uint32_t count : {counters.lines, counters.points, counters.evidences, counters.messages})
+      told.push_back(static_cast<float>(count));
+    for (const Curb& curb : pipeline.curbs())
+      told.insert(told.end(), {curb.x0_m, curb.y0_m, curb.height_m, curb.height_sd_m, static_cast<float>(curb.id)});
+    told.insert(told.end(), {pipeline.tilt_latency().offset_s(), pipeline.pose_offset().height_m});
+  }
+  return told;
+}
+
+TEST_CASE("pipeline: after init() a drive goes as with a new one, whatever it was in the middle of before") {
+  const int before = GENERATE(1, 101, 102, 153, 190, 239);
+  for (const int first : {0, before}) {  // the clock was set back, or goes on
+    const auto used = with_noisy_poses(), fresh = with_noisy_poses();
+    told_on_the_way(*used, 0, before);
+    REQUIRE(used->init(used->settings()) == Status::ok);
+    CHECK((told_on_the_way(*used, first, 200) == told_on_the_way(*fresh, first, 200)));
+  }
 }
 
 TEST_CASE("pipeline: poses that jump all the time leave a map, as they have it") {

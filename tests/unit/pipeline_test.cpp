@@ -79,6 +79,24 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   CHECK(pipeline->counters().lines == 200);
 }
 
+//           ___      35 cm wide; what lies beyond is not seen
+//          |
+//  ________|
+TEST_CASE("pipeline: a narrow top is a wall's for a robot that stands, for one that drives it may be a pavement's") {
+  const auto is_ground = [](bool still) {
+    Settings settings = NoddingLaser::settings();
+    settings.pose.still = still;
+    const auto pipeline = started(settings);
+    test::Noise noise;
+    pipeline->observe(
+        test::sample({0, 2.35, -2, 2}, 0.05, 0.005, noise, [](double x, double) { return x < 2.0 ? 0.0 : 0.25; }));
+    pipeline->settle();
+    return pipeline->label(21, 20) != pipeline->label(10, 20);
+  };
+  CHECK_FALSE(is_ground(true));
+  CHECK(is_ground(false));
+}
+
 TEST_CASE("pipeline: rain in one beam of fifty moves no curb, makes none, and takes little of the ground to drive on") {
   const auto dry = started(), wet = started();
   NoddingLaser laser, same;
