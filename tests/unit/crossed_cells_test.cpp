@@ -59,6 +59,16 @@ TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: those in which a part of the 
   }
 }
 
+TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: the same wherever the window lies in the map") {
+  const std::vector<int> expected = crossed_by(step(0.53, 0.17, 1.31, 1.88));
+  REQUIRE(expected.size() > 17);
+  WindowSettings window = test::small_settings().window;
+  window.origin_x_m = 16.0f;
+  window.origin_y_m = -8.0f;
+  dem_.init(window, PlanePrior{});
+  CHECK(crossed_by(step(16.53, -7.83, 17.31, -6.12)) == expected);
+}
+
 TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: none of a crease, nor of a brink, of which no far side is seen") {
   Curb crease = step(0.5, 0.5, 1.5, 0.5), brink = crease;
   CHECK(crossed_by(crease).size() == 11);

@@ -269,6 +269,17 @@ TEST_CASE("curb tracer: a curved border becomes several pieces along the curve")
   CHECK(total_length_m(stages->tracer.curbs()) == Approx(1.4 * 1.5708).epsilon(0.15));
 }
 
+TEST_CASE("curb tracer: a curb that turns three cells from its end is told in two pieces, whichever end that is") {
+  const bool last = GENERATE(false, true);
+  const auto stages = traced([=](double x, double y) {
+    const double turned_m = std::max(0.0, last ? y - 2.1 : 0.3 - y);
+    return up(x + 0.3 * turned_m, y);
+  });
+  REQUIRE(stages->tracer.curbs().size() == 2);
+  const double lengths_m[] = {length_m(stages->tracer.curbs()[0]), length_m(stages->tracer.curbs()[1])};
+  CHECK(std::min(lengths_m[0], lengths_m[1]) == Approx(0.3).margin(0.05));
+}
+
 //           _____
 //  |  near  |_____   not seen: the shadow of a post
 //  |        |   seen
@@ -973,7 +984,7 @@ TEST_CASE("curb tracer: ground beside a step down is carried on to the near end 
   const Curb& curb = stages->tracer.curbs()[0];
   CHECK(curb.kind == CurbKind::step_down);
   const double edge_m = 0.5 * static_cast<double>(curb.x0_m + curb.x1_m);
-  CHECK(curb.height_m == Approx(-0.12 - 0.1 * (edge_m - 1.2)).margin(0.003));
+  CHECK(curb.height_m == Approx(-0.12 - 0.1 * (edge_m - 1.2)).margin(0.001));
 }
 
 TEST_CASE("curb tracer: a step that grows along x is cut into pieces of which the height holds, from either plane") {

@@ -70,8 +70,9 @@ TEST_CASE_METHOD(GroundLabelTest, "ground label: where no step is near, readings
 
 TEST_CASE_METHOD(GroundLabelTest,
                  "ground label: the nearer of two steps tells it, and none that parts other planes or dead ones") {
-  const Curb steps[] = {step_at(1.30f), step_at(1.36f)};
+  const Curb steps[] = {step_at(1.30f), step_at(1.36f)}, other_way_round[] = {steps[1], steps[0]};
   CHECK(at(13, 10, steps) == near_);
+  CHECK(at(13, 10, other_way_round) == near_);
   Label dead = 0;
   while (stages_.mixture.plane(dead).alive()) ++dead;
   Curb other = step_at(1.32f);
