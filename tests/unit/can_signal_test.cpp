@@ -86,6 +86,7 @@ TEST_CASE("can signal: any place, length, order and sign round-trips, and other 
     encode(signal, value, f);
     REQUIRE(decode(signal, f) == value);
     CHECK(fd_length(f.length) == f.length);
+    CHECK(f.fd == (f.length > 8));
     int changed = 0;
     for (std::size_t i = 0; i < f.data.size(); ++i) {
       changed += std::popcount(static_cast<unsigned>(f.data[i] ^ again.data[i]));

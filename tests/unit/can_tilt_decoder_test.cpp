@@ -87,6 +87,7 @@ TEST_CASE("tilt decoder: a float that is no angle of a servo is malformed") {
 TEST_CASE("tilt decoder: without a valid signal nothing is decoded") {
   TiltDecoder tilt;
   CHECK_FALSE(tilt.take(position(t0, 0.5)));
+  CHECK_FALSE(tilt.take(Frame{.time_ns = t0, .length = 8}));  // of id 0, as an NMT command
   CHECK_FALSE(tilt.init(Signal{.id = 0x800}));
   CHECK_FALSE(tilt.take(position(t0, 0.5)));
   CHECK_FALSE(tilt.init(cia402_position(1), 0x800));

@@ -444,6 +444,21 @@ TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame,
   CHECK(dem.mapped_before(slot_at(dem, 0.15f, 0.05f)));
 }
 
+TEST_CASE("dem: a cell knows from where it was seen as long as it stays in a window, however much longer than wide") {
+  const bool along_x = GENERATE(true, false);
+  Map dem = make_map({.rows = along_x ? 12 : 4, .cols = along_x ? 4 : 12, .origin_x_m = 0.0f, .origin_y_m = 0.0f});
+  const auto drive_to = [&](float m) {
+    const float x_m = along_x ? m : 0.0f, y_m = along_x ? 0.0f : m;
+    dem.follow(x_m, y_m, [](int) {});
+    dem.look_from(x_m, y_m);
+  };
+  drive_to(0.0f);
+  REQUIRE(dem.add(along_x ? at(1.15, 0.05) : at(0.05, 1.15)));
+  for (int k = 1; k <= 100; ++k) drive_to(0.01f * static_cast<float>(k));
+  const Viewpoint from = dem.seen_from(slot_at(dem, along_x ? 1.15f : 0.05f, along_x ? 0.05f : 1.15f), {});
+  CHECK((along_x ? from.x_m + dem.origin_x_m() : from.y_m + dem.origin_y_m()) == Approx(0.0).margin(0.05));
+}
+
 TEST_CASE("dem: ground from before marking began is found along rows and columns, the nearest first") {
   Map dem = make_map(moving());
   const auto nearest = [&](float x_m, float y_m, int reach) {

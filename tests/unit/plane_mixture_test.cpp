@@ -62,12 +62,12 @@ TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the p
   }
 }
 
-// The corner of a pavement in that of the window: of its eight cells three hold nothing else.
+// The corner of a pavement in that of the window: of its eight cells three hold nothing else, of a longer one four.
 TEST_CASE("plane mixture: few cells tell the plane of a corner, if one is sure to hold nothing else") {
-  const auto corner = [](double pitch_m) {
+  const auto corner = [](double pitch_m, double from_y_m = 2.05) {
     auto stages = std::make_unique<Stages<>>(small_settings());
     Noise noise;
-    const auto ground = [](double x, double y) { return x < 2.25 || y < 2.05 ? 0.0 : 0.06; };
+    const auto ground = [=](double x, double y) { return x < 2.25 || y < from_y_m ? 0.0 : 0.06; };
     for (const Point& p : test::sample({0, 2.4, 0, 2.4}, pitch_m, 0.003, noise, ground)) stages->dem.add(p);
     stages->infer();
     return stages->mixture.plane(stages->mixture.region_label(stages->dem.slot(23, 22)));
@@ -77,6 +77,7 @@ TEST_CASE("plane mixture: few cells tell the plane of a corner, if one is sure t
   CHECK(told.height_m(2.25f, 2.2f) == Approx(0.06).margin(0.003));
   CHECK(square(told.slope_x) + square(told.slope_y) < square(least_ramp));
   CHECK(corner(0.05).cells > 3.0f);  // four points a cell may be of one side by chance
+  CHECK(corner(0.05, 1.95).cells == 4.0f);
 }
 
 //               .:'.    a pavement overgrown with grass, of which the window holds a strip
@@ -277,19 +278,26 @@ TEST_CASE("plane mixture: regions smaller than the bound are no planes") {
 TEST_CASE("plane mixture: with more regions than planes the largest win and the others are counted") {
   constexpr Limits two{.rows = 24, .cols = 24, .planes = 2};
   const auto stages = std::make_unique<Stages<two>>(small_settings());
-  // Strips of 16, 20, 24 and 36 % of the window, the smaller first.
-  fill(stages->dem, [](double x, double) { return x < 0.4 ? 0.0 : x < 0.9 ? 0.2 : x < 1.5 ? 0.4 : 0.6; });
+  // Strips across the window, each 20 cm higher than the one before, of so many rows.
+  const std::array<int, 4> rows = GENERATE(std::array{4, 5, 6, 9}, std::array{9, 4, 6, 5}, std::array{9, 6, 5, 4});
+  const auto strip = [&](double x_m) {
+    int k = 0;
+    for (double left_m = x_m; left_m > 0.1 * rows.at(static_cast<std::size_t>(k)); ++k)
+      left_m -= 0.1 * rows.at(static_cast<std::size_t>(k));
+    return k;
+  };
+  fill(stages->dem, [&](double x, double) { return 0.2 * strip(x); });
   stages->segment();
   stages->mix();
   CHECK(stages->counters.planes_full == 2);
   CHECK(alive(*stages) == 2);
-  const auto plane_of = [&](int i) { return stages->mixture.region_label(stages->dem.slot(i, 0)); };
-  CHECK(plane_of(0) == no_label);
-  CHECK(plane_of(5) == no_label);
-  REQUIRE(plane_of(10) != no_label);
-  REQUIRE(plane_of(20) != no_label);
-  CHECK(stages->mixture.plane(plane_of(10)).height_m(1.2f, 1.2f) == Approx(0.4).margin(1e-3));
-  CHECK(stages->mixture.plane(plane_of(20)).height_m(1.9f, 1.2f) == Approx(0.6).margin(1e-3));
+  for (int i = 0; i < 24; ++i) {
+    const float x_m = 0.1f * static_cast<float>(i) + 0.05f;
+    const int k = strip(static_cast<double>(x_m));
+    const Label label = stages->mixture.region_label(stages->dem.slot(i, 0));
+    REQUIRE((label != no_label) == (rows.at(static_cast<std::size_t>(k)) >= 6));
+    if (label != no_label) CHECK(stages->mixture.plane(label).height_m(x_m, 1.2f) == Approx(0.2 * k).margin(1e-3));
+  }
 }
 
 TEST_CASE("plane mixture: when the window moves planes move against it") {

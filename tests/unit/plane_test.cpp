@@ -92,6 +92,7 @@ TEST_CASE("plane moments: a point of weight two counts as two points there") {
 TEST_CASE("plane moments: nothing added to nothing is nothing, not NaN") {
   PlaneMoments m;
   m.add(PlaneMoments{});
+  m.add_cell(PlaneMoments{});
   CHECK(m.weight == 0.0f);
   CHECK(m.x == 0.0f);
 }

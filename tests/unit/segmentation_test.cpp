@@ -51,6 +51,13 @@ TEST_CASE("segmentation: a step well within the cells' noise does not cut a bloc
   for (const auto leaf : leaves) CHECK(leaf == 0);
 }
 
+TEST_CASE("segmentation: two like cells of a block are one leaf, if they are all that it holds, too") {
+  auto cells = block(0.0f);
+  for (std::size_t k = 0; k < cells.size(); ++k) cells[k].valid = k == 5 || k == 7;
+  const BlockLeaves leaves = cut_block(cells, 2.0f);
+  for (std::size_t k = 0; k < leaves.size(); ++k) CHECK(leaves[k] == (cells[k].valid ? 5 : 255));
+}
+
 TEST_CASE("segmentation: cells without points belong to no leaf and are reached across") {
   auto cells = block(0.0f);
   for (std::size_t i = 0; i < 4; ++i) cells[4 * i + 1].valid = false;

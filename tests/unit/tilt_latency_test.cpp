@@ -60,6 +60,19 @@ TEST_CASE("tilt latency: the lag of a sweep is found, within its standard deviat
   CHECK(std::abs(latency.offset_s() - lag_s) < 4.0f * latency.sd_s());
 }
 
+TEST_CASE("tilt latency: a line leaves open what the mean of its points does, and what they share") {
+  const int points = GENERATE(1, 4, 100);
+  TiltLatency latency = started();
+  latency.begin_line(0.2f, rate_rad_s, next_reading());
+  for (const float angle_rad : {1.2f, 1.175f}) latency.begin_line(angle_rad, -rate_rad_s, next_reading());
+  const float growth = rate_rad_s * range_m;
+  for (int k = 0; k < points; ++k) latency.compare({0.0f, point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
+  latency.end_line(-rate_rad_s);
+  const double of_mean_s = point_sd_m / growth / std::sqrt(points);
+  const double of_line_s2 = of_mean_s * of_mean_s + 0.001 * 0.001 + std::pow(0.0005 / 0.5, 2), prior_s2 = 0.01 * 0.01;
+  CHECK(latency.sd_s() == Approx(std::sqrt(1.0 / (1.0 / prior_s2 + 1.0 / of_line_s2))).epsilon(1e-3));
+}
+
 TEST_CASE("tilt latency: upward and downward sweeps have their own, which may change from sweep to sweep") {
   TiltLatency latency = started();
   test::Noise noise(2);
