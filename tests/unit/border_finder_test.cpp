@@ -505,6 +505,18 @@ TEST_CASE("border finder: what is mixed at the edge of a step down is no obstacl
   CHECK(open_borders(*stages, 24) == 0);
 }
 
+//  o
+//  __-___                    a bump that bears the ground's plane
+//        ____
+TEST_CASE("border finder: a bump on the ground is no obstacle before what an edge hides") {
+  const auto stages = traced([](double x, double y) {
+    const bool bump = x > 0.9 && x < 1.0 && y > 1.1 && y < 1.3;
+    return bump ? 0.05 : x < 1.4 ? 0.0 : x < 1.6 ? std::nan("") : -0.12;
+  });
+  CHECK(stages->label_at(9, 11) == stages->label_at(0, 11));
+  CHECK(open_borders(*stages, 24) == 0);
+}
+
 /// What a robot at (0, 1.2) has seen, traced when it has driven on.
 template <typename Height>
 std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& height_m) {
