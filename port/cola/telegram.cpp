@@ -38,11 +38,10 @@ bool begins(std::span<const std::uint8_t> content, std::string_view letters) {
   return content.size() >= letters.size() && std::memcmp(content.data(), letters.data(), letters.size()) == 0;
 }
 
-std::size_t frame(std::span<std::uint8_t> telegram, std::size_t size) {
+void frame(std::span<std::uint8_t> telegram, std::size_t size) {
   std::fill_n(telegram.begin(), 4, start);
   for (std::size_t i = 0; i < 4; ++i) telegram[4 + i] = static_cast<std::uint8_t>(size >> (24 - 8 * i));
   telegram[Format::header + size] = xor_of(telegram.subspan(Format::header, size));
-  return Format::header + size + 1;
 }
 
 }  // namespace curbline::cola

@@ -33,8 +33,8 @@ inline std::span<const std::uint8_t> content_of(std::span<const std::uint8_t> te
 /// True if the content begins with these letters.
 bool begins(std::span<const std::uint8_t> content, std::string_view letters);
 
-/// Frames the content that lies at `telegram[Format::header]` and on, `size` bytes of it. Returns the size of the
-/// telegram: header, content, sum, for which there must be room.
-std::size_t frame(std::span<std::uint8_t> telegram, std::size_t size);
+/// Frames the content that lies at `telegram[Format::header]` and on, `size` bytes of it. There must be room for
+/// header, content and sum.
+void frame(std::span<std::uint8_t> telegram, std::size_t size);
 
 }  // namespace curbline::cola
