@@ -24,6 +24,7 @@ class Controller {
   bool filters_stay_busy = false;   ///< it never lets go of them
   bool joins_amid_a_frame = false;  ///< of which it hears the rest, broken
   Words damage{};                   ///< of what comes back
+  int echo_after = 0;               ///< looks at what has happened until that comes back
   std::vector<Words> sent;
   std::uint32_t flags_after_look = 0;  ///< what happens as soon as the driver has looked at what has happened
   int resets = 0, status_reads = 0;
@@ -53,6 +54,7 @@ class Controller {
       case 0x18:
         return status();
       case 0x1C:
+        if (echo_left_ > 0 && --echo_left_ == 0) take(echo_);
         return std::exchange(core_.interrupts, core_.interrupts | std::exchange(flags_after_look, 0u));
       case 0x50:
       case 0x54:
@@ -152,7 +154,10 @@ class Controller {
     core_.interrupts |= 0x02;  // TXOK
     Words heard = core_.tx;
     for (std::size_t i = 0; i < 4; ++i) heard[i] ^= damage[i];
-    if (core_.mode == 0x02) take(heard);
+    if (core_.mode != 0x02) return;
+    echo_ = heard;
+    echo_left_ = echo_after;
+    if (echo_after == 0) take(heard);
   }
   std::uint32_t read_word(std::size_t word) {
     REQUIRE(!core_.fifo.empty());
@@ -189,6 +194,8 @@ class Controller {
   std::uint32_t filters_on_ = 0;
   std::array<std::uint32_t, 8> filters_{};  // mask, id of each
   int settling_ = 0, busy_ = 0;
+  Words echo_{};
+  int echo_left_ = 0;
 };
 
 struct Wire {
@@ -563,6 +570,12 @@ TEST_CASE("xilinx_can: the self-test passes in order, and fails for damage, for 
   CHECK(b.bus.self_test(b.settings) == Status::no_answer);
   CHECK(b.bus.open(b.settings, {}) == Status::no_answer);
   CHECK(b.bus.send(frame_of_id(1)) == Status::not_open);
+}
+
+TEST_CASE("xilinx_can: the self-test waits for its frames, which take their time to be sent") {
+  Bench b;
+  b.controller.echo_after = 1000;
+  CHECK(b.bus.self_test(b.settings) == Status::ok);
 }
 
 TEST_CASE("xilinx_can: the self-test is off the bus, and hears itself whatever filters were set") {
