@@ -25,8 +25,7 @@ constexpr std::optional<BitTiming> bit_timing(std::int64_t clock_hz, std::int64_
     if (clock_hz % (bits_s * prescaler) != 0) continue;
     const std::int64_t quanta = clock_hz / (bits_s * prescaler);
     if (quanta < 8 || quanta > 25) continue;
-    const std::int64_t before =
-        std::clamp<std::int64_t>((7 * quanta + 4) / 8, quanta - 8, std::min<std::int64_t>(quanta - 1, 17));
+    const std::int64_t before = std::clamp<std::int64_t>((7 * quanta + 4) / 8, quanta - 8, 17);
     const std::int64_t error = std::max(8 * before - 7 * quanta, 7 * quanta - 8 * before);  // in eighths of a quantum
     if (best && error * best_quanta >= best_error * quanta) continue;                       // as a share of the bit
     const int segment2 = static_cast<int>(quanta - before);
