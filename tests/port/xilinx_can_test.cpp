@@ -447,21 +447,22 @@ TEST_CASE(
     "filters") {
   Bench b;
   const std::array filters{Filter{0x181, 0x7FF, false}};
+  const std::int64_t off_ns = 7'000'000'000;
   REQUIRE(b.bus.open(b.settings, filters) == Status::ok);
   b.controller.become(0x100);
-  b.bus.receive(b.frames, 1'000);
+  b.bus.receive(b.frames, off_ns);
   CHECK(b.bus.bus() == BusState::off);
   CHECK(b.bus.send(frame_of_id(0x181)) == Status::bus_off);
-  b.bus.receive(b.frames, 99'000'000);
+  b.bus.receive(b.frames, off_ns + 99'000'000);
   CHECK(b.bus.bus() == BusState::off);
   CHECK(b.controller.resets == 1);
-  b.bus.receive(b.frames, 100'001'000);
+  b.bus.receive(b.frames, off_ns + 100'000'000);
   CHECK(b.bus.bus() == BusState::active);
   CHECK(b.bus.counters().times_bus_off == 1);
   CHECK(b.bus.counters().restarts == 1);
   b.controller.arrive(standard(0x182));
   b.controller.arrive(standard(0x181));
-  CHECK(b.bus.receive(b.frames, 100'002'000) == 1);
+  CHECK(b.bus.receive(b.frames, off_ns + 100'001'000) == 1);
 }
 
 TEST_CASE("xilinx_can: a bus-off that the controller has left by itself is one too") {
