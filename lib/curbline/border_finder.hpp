@@ -4,6 +4,7 @@
 // of links. Edges beyond which no ground is seen: ground_end.hpp. Cost: a pass over the window, and that of the gaps.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -90,7 +91,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first().label < gap.second().label;
   const LabelledCell& low = rising ? gap.first() : gap.second();
   const LabelledCell& high = rising ? gap.second() : gap.first();
-  const auto [along_m, open] = gap.middle();
+  const auto [along_m, open, empty] = gap.middle();
   Border border = Borders<limits>::on(gap.line(), along_m);
   border.probability = 1.0f - gap.same_plane();
   border.half_gap_m = 0.5f * static_cast<float>(gap.length()) * gap.line().pitch_m();
@@ -98,6 +99,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.high = high.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
   border.open = open;
+  border.empty = static_cast<std::uint8_t>(std::min(empty, 255));
   border.beside_low = beside(gap.line(), along_m, -border.sign, low.label);
   border.beside_high = beside(gap.line(), along_m, border.sign, high.label);
   return border;

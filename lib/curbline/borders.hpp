@@ -31,8 +31,9 @@ class Borders {
     Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;  ///< 0: found along x, 1: along y
     std::int8_t sign;  ///< +1 if `high` lies in the positive direction of the axis
-    bool open;         ///< the edge lies anywhere in the gap: something stands there, or hides it
-    bool chained;
+    bool open : 1;     ///< the edge lies anywhere in the gap: something stands there, or hides it
+    bool chained : 1;
+    std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
     Index next_in_cell;  ///< another border in the same cell
 
     /// In a line, which it lies off in half gaps.

@@ -157,7 +157,9 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
     if (border.open) {
       open += part.share(border) / border.half_gap_m;
     } else {
-      told += border.weight() / border.half_gap_m * dem.cell_m(border.axis);
+      const float pitch_m = dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
+      told += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
+      open += border.weight() * 0.5f * empty_m;
     }
     alike = alike && (border.open || one_sided());
   }
@@ -168,8 +170,8 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
   // Each lies anywhere in its gap, on its own; those that err alike are as little known as one of them.
   borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight() * grown;
   // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. Open ones lie
-  // anywhere in their gaps, all alike.
-  told_variance_m2 = ((1.0f / 6) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
+  // anywhere in their gaps, all alike; so do others where cells are empty, in a shadow or between the same scan lines.
+  told_variance_m2 = ((1.0f / 12) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
 }
 
 template <Limits limits>

@@ -54,6 +54,7 @@ class PlaneGap {
   struct Middle {
     float along_m;  ///< from the line's beginning
     bool open;      ///< Borders::Border::open
+    int empty;      ///< cells without a point
   };
   /// Of what parts the planes.
   Middle middle() const;
@@ -129,12 +130,13 @@ auto PlaneGap<limits>::middle() const -> Middle {
   const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f;
-  int empty = -1;  // one of them
+  int empty = 0, last_empty = 0;
   for (int along = first_.along; along <= second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
     if (!cell.valid()) {
-      empty = along;
+      ++empty;
+      last_empty = along;
       before += 0.5f;
     } else if (stages_.mixture.covered(s)) {
       covered += 1.0f;
@@ -143,10 +145,10 @@ auto PlaneGap<limits>::middle() const -> Middle {
       before += before_middle({line_.above_m(along, first) / step_m, 0.5f + line_.offset(cell)});
     }
   }
-  const bool open = covered * covered > cells - covered || (empty >= 0 && behind_obstacle(empty));
-  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open};
+  const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
+  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty};
   before = std::clamp(before, 0.0f, cells);
-  return {(static_cast<float>(first_.along) + before) * cell_m, open};
+  return {(static_cast<float>(first_.along) + before) * cell_m, open, empty};
 }
 
 /// Does something that stands on the ground hide a cell of a gap, from where the gap's far side was seen? On the way

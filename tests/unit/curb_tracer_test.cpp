@@ -669,6 +669,16 @@ TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of th
   CHECK(curb.position_sd_m == Approx(std::sqrt(place_variance_m2(*stages, curb))).epsilon(0.02));
 }
 
+//      ________      scan lines lie three empty cells apart, along the edge: where between them it is no border tells
+//  ____  ?
+TEST_CASE("curb tracer: a step between the same two scan lines is known to all that lies between them") {
+  const auto stages = traced([](double x, double y) { return x > 1.2 && x < 1.5 ? std::nan("") : up(x, y); });
+  REQUIRE(stages->tracer.curbs().size() == 1);
+  const Curb& curb = stages->tracer.curbs()[0];
+  REQUIRE(curb.kind == CurbKind::step_up);
+  CHECK(curb.position_sd_m == Approx(0.3 / std::sqrt(12.0)).epsilon(0.02));  // however many borders there are
+}
+
 TEST_CASE("curb tracer: a low step's place is known less well, as its height is") {
   const auto stages = traced([](double x, double) { return x < 1.4 ? 0.0 : 0.025; });
   REQUIRE(stages->tracer.curbs().size() == 1);
