@@ -12,7 +12,7 @@ struct Limits {
   int cols = 40;          ///< cells of the window along y, a multiple of 4
   int planes = 16;        ///< planes of the mixture, 2 to 255
   int beams = 1081;       ///< beams of a scan line
-  int tilt_samples = 64;  ///< tilt angles kept, a power of two from 4 on: 2 s of a servo that reports at 32 Hz
+  int tilt_samples = 64;  ///< tilt angles kept, a power of two from 4 on: all of a line and its wait; 2 s at 32 Hz
   int poses = 32;         ///< poses kept
   int regions = 384;      ///< leaves and standing regions that one merging pass holds
   int links = 1024;       ///< links between them
