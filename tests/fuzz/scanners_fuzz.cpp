@@ -59,27 +59,17 @@ tools::CarmenLine geometry(std::size_t beams, double first_deg, double step_deg,
 }
 
 Scanner some_scanner(Numbers& numbers) {
-  Scanner s;
-  switch (numbers.whole(0, 2)) {
-    case 0:
-      s.line = geometry(41, -5, 0.25, 30);
-      s.session = std::make_shared<scip2::Session>();
-      s.device = tools::make_scip2_device(s.line, "fuzz");
-      s.sum_up = sum_up_scip2;
-      break;
-    case 1:
-      s.line = geometry(21, -5, 0.5, 50);
-      s.session = std::make_shared<cola::Session>();
-      s.device = tools::make_cola_device(s.line, "fuzz");
-      s.sum_up = sum_up_cola;
-      break;
-    default:
-      s.line = geometry(101, -50, 1, 8);
-      s.session = std::make_shared<lms200::Session>(101);
-      s.device = tools::make_lms200_device(s.line, "fuzz");
-      s.sum_up = sum_up_lms200;
+  const int which = numbers.whole(0, 2);
+  if (which == 0) {
+    const tools::CarmenLine line = geometry(41, -5, 0.25, 30);
+    return {std::make_shared<scip2::Session>(), tools::make_scip2_device(line, "fuzz"), sum_up_scip2, line};
   }
-  return s;
+  if (which == 1) {
+    const tools::CarmenLine line = geometry(21, -5, 0.5, 50);
+    return {std::make_shared<cola::Session>(), tools::make_cola_device(line, "fuzz"), sum_up_cola, line};
+  }
+  const tools::CarmenLine line = geometry(101, -50, 1, 8);
+  return {std::make_shared<lms200::Session>(101), tools::make_lms200_device(line, "fuzz"), sum_up_lms200, line};
 }
 
 void change(Numbers& numbers, Scanner& s, Bytes& bytes) {
