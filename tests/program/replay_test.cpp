@@ -242,6 +242,18 @@ TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind
   CHECK(curb_rates(found, std::span(&rim, 1), cell_m, [](double, double) { return true; }).recall > 0.9);
 }
 
+//  |___         ___|      9 cm lower at its gutters than at its crown
+//      ---------
+TEST_CASE("program: a cambered road is one plane between its kerbs, which are as high as from their gutters") {
+  for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
+    INFO(robot);
+    const Recording logs("camber", robot);
+    const nlohmann::json figures = evaluate(logs);
+    check_curbs(figures);
+    CHECK(figures.at("v").get<double>() > 0.9);
+  }
+}
+
 //   y      y = 1: a kerb along the way that grows from 2 cm to 10 cm
 //   0      ->
 //   0                        8 m

@@ -27,6 +27,10 @@ double cast(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector
   return world.cast(from, direction);
 }
 
+// A road of which the crown lies on x = y, seen from a robot that is turned.
+const std::string cambered =
+    "[ground]\nz = 0.1\nslope = [0.02, 0.0]\ncamber = 0.04\ncrown = [[0, 0], [1, 1]]\n"
+    "[robot]\nat = [2.0, 0.0]\nyaw_deg = 45\n";
 const std::string bump = "[ground]\nz = 0\n[[region]]\nname = 'bump'\nrectangle = [2, -1, 4, 1]\nz = 0.12\n";
 
 }  // namespace
@@ -97,6 +101,8 @@ TEST_CASE("scene: bad files are refused with line and key") {
   refused(bump + "[robot]\npath = [[0, 0], [1e5, 0]]\nspeed = 0.001\n", ":8:", "robot.path takes 100000000 s");
   refused(bump + "[robot]\npath = [[0, 0], [0, 1], [1, 1]]\nturn_rate_deg_s = 1e-3\n",
           ":8:", "robot.path takes 90002 s");
+  refused("[ground]\nz = 0\ncamber = 0.01\n", ":1:", "ground.crown is missing");
+  refused("[ground]\nz = 0\ncamber = 0.01\ncrown = [[0, 0], [0, 0]]\n", ":4:", "crown is no line");
   refused("[ground\n", ":1:", "");
   refused("[robot]\n", ":1:", "no ground");
 }
@@ -113,6 +119,17 @@ TEST_CASE("scene: repeat shifts a sloping region with its plane") {
   const int last = region_at(scene.regions, {5.5, 7.5});
   REQUIRE(last == 3);
   CHECK(scene.regions[3].plane.height_m({5.5, 7.5}) == Approx(0.05));
+}
+
+TEST_CASE("scene: a cambered road falls from its crown to both sides, by the square of the way") {
+  const SurfacePlane road = scene_of(cambered).regions[0].plane;
+  CHECK(road.height_m({3, 3}) == Approx(0.1 + 0.06));
+  for (const Point2 side : {Point2{4, 2}, {2, 4}}) CHECK(road.height_m(side) == Approx(0.1 + 0.02 * side.x - 0.04));
+  CHECK(road.slope({4, 2}).x == Approx(0.02 - 0.04));
+  CHECK(road.slope({4, 2}).y == Approx(0.04));
+  const std::string copies = "[[region]]\nrectangle = [0, 0, 1, 1]\nz = 0.0\ncamber = 0.02\ncrown = [[0, 0], [0, 1]]\n";
+  const Scene repeated = scene_of(copies + "repeat = { count = [2, 1], step = [5, 0] }\n");
+  CHECK(repeated.regions[1].plane.height_m({6, 0}) == Approx(repeated.regions[0].plane.height_m({1, 0})));
 }
 
 TEST_CASE("scene: a round corner leaves the corner itself to the ground") {
@@ -142,6 +159,20 @@ TEST_CASE("ray: it hits ground, face and top of a bump where they are") {
   CHECK(cast(scene, {0, 0, 1}, {0, 0, 1}) == RayCaster::nothing);
   CHECK(cast(scene, {0, 0, 1}, {1, 0, 0}) == RayCaster::nothing);  // over everything
   CHECK(cast(scene, {-50, 0, 1}, {1, 0, -0.01}) == Approx(100));   // ground far beyond all outlines
+}
+
+TEST_CASE("ray: a cambered road is hit where it is, from above and from beside it, bent up or down") {
+  const double bend = GENERATE(0.02, -0.02);
+  const std::string road = "[[region]]\nrectangle = [-20, -20, 20, 20]\nz = 0\ncrown = [[0, 0], [1, 0]]\n";
+  const Scene scene = scene_of(road + "camber = " + std::to_string(bend) + "\n");
+  for (const Eigen::Vector3d& along : {Eigen::Vector3d{1, 0, -0.5}, {0.3, -1, -0.2}, {0, 1, -0.05}, {0, 0.2, -1}}) {
+    for (const double y : {-6.0, 0.0, 4.0}) {
+      const Eigen::Vector3d from(0, y, 1), hit = from + cast(scene, from, along) * along;
+      if (hit.z() < -19) continue;  // beside the region
+      CHECK(hit.z() == Approx(scene.regions[0].plane.height_m({hit.x(), hit.y()})).margin(1e-9));
+    }
+  }
+  CHECK(cast(scene, {0, 0, 1}, {1, 0, -0.1}) == Approx(10));  // along the crown
 }
 
 TEST_CASE("ray: one along the lines of the grid ends") {
@@ -287,6 +318,27 @@ TEST_CASE("truth: it is read as it was written") {
   CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
   std::filesystem::remove_all(dir);
   CHECK_THROWS_AS(read_truth(dir.string()), BadInput);
+}
+
+TEST_CASE("truth: a cambered road is one region, as high in the robot's frame as in the scene, and as it was written") {
+  const Scene scene = scene_of(cambered);
+  const Truth truth = make_truth(in_map_frame(scene), 0);
+  const TemporaryPath temporary("camber");
+  std::filesystem::create_directories(temporary.path);
+  {
+    std::ofstream out(temporary.path / "truth.json");
+    write_truth(out, truth);
+  }
+  const Truth read = read_truth(temporary.path.string());
+  CHECK(read.planes.size() == 1);
+  const double c = std::sqrt(0.5), standing_m = truth.terrain_height(0, 0);
+  const SurfacePlane& road = scene.regions[0].plane;
+  for (double x = -3; x < 3; x += 0.7) {
+    const double y = 0.4 * x + 1;
+    const Point2 p{2 + c * x - c * y, c * x + c * y};
+    CHECK(truth.terrain_height(x, y) - standing_m == Approx(road.height_m(p) - road.height_m({2, 0})).margin(1e-9));
+    CHECK(read.terrain_height(x, y) == Approx(truth.terrain_height(x, y)).margin(1e-12));
+  }
 }
 
 TEST_CASE("truth: in regions.gt the first polygon that holds a point is its region") {

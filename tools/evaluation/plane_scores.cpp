@@ -189,8 +189,10 @@ Fit fit(const Cells& cells) {
   return out;
 }
 
+/// In the middle of the fit.
 double angle_rad(const Fit& a, const SurfacePlane& b) {
-  const Eigen::Vector3d n(-a.sx, -a.sy, 1), m(-b.sx, -b.sy, 1);
+  const Point2 slope = b.slope({a.x_m, a.y_m});
+  const Eigen::Vector3d n(-a.sx, -a.sy, 1), m(-slope.x, -slope.y, 1);
   return std::atan2(n.cross(m).norm(), n.dot(m));
 }
 

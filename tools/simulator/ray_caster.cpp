@@ -105,10 +105,20 @@ double RayCaster::cast_in_cell(const Ray& ray, const Cell& cell, double from, do
 }
 
 double RayCaster::hit_plane(const Ray& ray, const SurfacePlane& plane) {
-  const double above = ray.origin.z() - plane.height_m({ray.origin.x(), ray.origin.y()});
-  const double fall = plane.sx * ray.direction.x() + plane.sy * ray.direction.y() - ray.direction.z();
-  const double t = above / fall;
-  return t > 0 ? t : nothing;
+  const Point2 from{ray.origin.x(), ray.origin.y()}, slope = plane.slope(from);
+  const double above = ray.origin.z() - plane.height_m(from);
+  const double fall = slope.x * ray.direction.x() + slope.y * ray.direction.y() - ray.direction.z();
+  if (plane.camber.bend_1_m == 0) {
+    const double t = above / fall;
+    return t > 0 ? t : nothing;
+  }
+  // The first time at which above - fall t + bend t^2 is 0.
+  const double aside = plane.camber.across.x * ray.direction.x() + plane.camber.across.y * ray.direction.y();
+  const double bend = 0.5 * plane.camber.bend_1_m * aside * aside, rest = fall * fall - 4 * bend * above;
+  if (!(rest >= 0)) return nothing;
+  const double sum = fall + std::copysign(std::sqrt(rest), fall);  // no two of a size are subtracted
+  const double one = 2 * above / sum, other = sum / (2 * bend);
+  return std::min(one > 0 ? one : nothing, other > 0 ? other : nothing);
 }
 
 double RayCaster::hit_face(const Ray& ray, const Face& face) {

@@ -101,8 +101,9 @@ void RayCaster::lay_grid() {
   top_m_ = -nothing;
   for (const GroundRegion& region : regions_) {
     const Bounds box = region.outline.empty() ? bounds_ : bounds(region.outline);
+    const bool bulges = region.plane.camber.bend_1_m > 0;  // no higher than without
     for (const Point2 p : rectangle({box.x0, box.y0}, {box.x1, box.y1})) {
-      top_m_ = std::max(top_m_, region.plane.height_m(p));
+      top_m_ = std::max(top_m_, bulges ? region.plane.level_m(p) : region.plane.height_m(p));
     }
   }
   for (const Prism& prism : fixed_) top_m_ = std::max(top_m_, prism.top_m);

@@ -89,22 +89,38 @@ SurfacePlane plane_through(const Polygon& corners, const std::vector<double>& z)
     rows.row(i) << 1, corner.x, corner.y;
   }
   const Eigen::Vector3d w = rows.inverse() * Eigen::Vector3d(z[0], z[1], z[2]);
-  return {w[0], w[1], w[2]};
+  return {w[0], w[1], w[2], {}};
 }
 
-SurfacePlane read_plane(TomlTable& table, const Polygon& corners) {
+SurfacePlane read_level(TomlTable& table, const Polygon& corners) {
   if (table.has("corner_z")) {
     if (corners.empty() || table.has("circle") || table.has("z") || table.has("slope")) {
       table.refuse("corner_z", "does not fit; expected a polygon or a rectangle, and neither z nor slope beside it");
     }
     return plane_through(corners, table.numbers("corner_z", 3, any));
   }
-  SurfacePlane plane{table.number("z", any), 0, 0};
+  SurfacePlane plane{table.number("z", any), 0, 0, {}};
   if (table.has("slope")) {
     const std::vector<double> slope = table.numbers("slope", 2, any);
     plane.sx = slope[0];
     plane.sy = slope[1];
   }
+  return plane;
+}
+
+/// Both of its keys, or neither.
+Camber read_camber(TomlTable& table) {
+  if (!table.has("camber") && !table.has("crown")) return {};
+  const double bend_1_m = table.number("camber", {-1, 1});
+  const std::vector<Point2> crown = table.points("crown", 2, any);
+  const double dx = crown[1].x - crown[0].x, dy = crown[1].y - crown[0].y, length = std::hypot(dx, dy);
+  if (crown.size() != 2 || !(length > 0)) table.refuse("crown", "is no line; expected two points of it");
+  return {bend_1_m, crown[0], {-dy / length, dx / length}};
+}
+
+SurfacePlane read_plane(TomlTable& table, const Polygon& corners) {
+  SurfacePlane plane = read_level(table, corners);
+  plane.camber = read_camber(table);
   return plane;
 }
 
@@ -117,7 +133,9 @@ void read_region(TomlTable& table, Scene& scene) {
     outline = with_round_corners(outline, table.number("corner_radius", positive));
   }
   read_repeat(table).each([&](Point2 by) {
-    const SurfacePlane here{plane.z0_m - plane.sx * by.x - plane.sy * by.y, plane.sx, plane.sy};
+    SurfacePlane here = plane;
+    here.z0_m -= plane.sx * by.x + plane.sy * by.y;
+    here.camber.crown = {plane.camber.crown.x + by.x, plane.camber.crown.y + by.y};
     scene.regions.push_back({name, moved(outline, by), here});
   });
   table.done();

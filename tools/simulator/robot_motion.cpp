@@ -109,8 +109,13 @@ Scene in_map_frame(const Scene& scene) {
   Scene out = scene;
   for (GroundRegion& region : out.regions) {
     for (Point2& p : region.outline) p = turn_back({p.x - at.x, p.y - at.y});
-    const Point2 slope = turn_back({region.plane.sx, region.plane.sy});
-    region.plane = {region.plane.height_m(at) - z, slope.x, slope.y};
+    const SurfacePlane& plane = region.plane;
+    const Point2 slope = turn_back({plane.sx, plane.sy}), crown = plane.camber.crown;
+    region.plane = {
+        plane.level_m(at) - z,
+        slope.x,
+        slope.y,
+        {plane.camber.bend_1_m, turn_back({crown.x - at.x, crown.y - at.y}), turn_back(plane.camber.across)}};
   }
   for (Obstacle& obstacle : out.obstacles) {
     for (Point2& p : obstacle.outline) p = turn_back({p.x - at.x, p.y - at.y});

@@ -13,10 +13,27 @@
 
 namespace curbline::tools {
 
-/// z = z0 + sx x + sy y.
+/// A road falls to both sides of its crown, by half of the camber times the square of how far away that is.
+struct Camber {
+  double bend_1_m = 0;  ///< 0: none
+  Point2 crown;         ///< a point of it
+  Point2 across;        ///< unit vector
+  double away_m(Point2 p) const { return across.x * (p.x - crown.x) + across.y * (p.y - crown.y); }
+};
+
+/// z = z0 + sx x + sy y, less what the camber takes.
 struct SurfacePlane {
   double z0_m = 0, sx = 0, sy = 0;
-  double height_m(Point2 p) const { return z0_m + sx * p.x + sy * p.y; }
+  Camber camber{};
+  double level_m(Point2 p) const { return z0_m + sx * p.x + sy * p.y; }  ///< without the camber
+  double height_m(Point2 p) const {
+    const double away_m = camber.away_m(p);
+    return level_m(p) - 0.5 * camber.bend_1_m * away_m * away_m;
+  }
+  Point2 slope(Point2 p) const {
+    const double falls = camber.bend_1_m * camber.away_m(p);
+    return {sx - falls * camber.across.x, sy - falls * camber.across.y};
+  }
 };
 
 /// A part of the ground. Without an outline it lies everywhere.

@@ -13,7 +13,11 @@ constexpr double step_m = 0.01;  // less at both ends is a crease
 constexpr double margin_m = 10;
 
 bool same(const SurfacePlane& a, const SurfacePlane& b) {
-  return std::abs(a.z0_m - b.z0_m) < 1e-9 && std::abs(a.sx - b.sx) < 1e-9 && std::abs(a.sy - b.sy) < 1e-9;
+  const auto near = [](double x, double y) { return std::abs(x - y) < 1e-9; };
+  return near(a.z0_m, b.z0_m) && near(a.sx, b.sx) && near(a.sy, b.sy) && near(a.camber.bend_1_m, b.camber.bend_1_m) &&
+         (a.camber.bend_1_m == 0 ||
+          (near(a.camber.away_m(b.camber.crown), 0) &&
+           near(a.camber.across.x * b.camber.across.y, a.camber.across.y * b.camber.across.x)));
 }
 
 int plane_index(const GroundRegion& region, std::vector<TruthPlane>& planes) {

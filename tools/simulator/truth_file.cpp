@@ -22,6 +22,10 @@ Json planes_json(const Truth& truth) {
   Json out = Json::array();
   for (const TruthPlane& p : truth.planes) {
     out.push_back({{"name", p.name}, {"z0_m", p.plane.z0_m}, {"sx", p.plane.sx}, {"sy", p.plane.sy}});
+    const Camber& camber = p.plane.camber;
+    if (camber.bend_1_m != 0) {
+      out.back()["camber"] = {{"bend_1_m", camber.bend_1_m}, {"crown_m", camber.crown}, {"across", camber.across}};
+    }
   }
   return out;
 }
@@ -65,9 +69,10 @@ class Part {
   Part(const Json& json, std::string file, std::string name = {})
       : json_(json), file_(std::move(file)), name_(std::move(name)) {}
 
+  bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
   Part at(const std::string& key) const {
     const std::string name = name_.empty() ? key : name_ + "." + key;
-    if (!json_.is_object() || !json_.contains(key)) throw BadInput(file_ + ": " + name + " is missing; " + expected);
+    if (!has(key)) throw BadInput(file_ + ": " + name + " is missing; " + expected);
     return {json_.at(key), file_, name};
   }
   std::vector<Part> parts() const {
@@ -107,12 +112,14 @@ class Part {
   }
   Polygon polygon(const std::string& key) const {
     Polygon out;
-    for (const Part& corner : at(key).parts()) {
-      const std::vector<Part> xy = corner.parts();
-      corner.check(xy.size() == 2, "[x, y]");
-      out.push_back({xy[0].place_m(), xy[1].place_m()});
-    }
+    for (const Part& corner : at(key).parts()) out.push_back(corner.point());
     return out;
+  }
+  Point2 point(const std::string& key) const { return at(key).point(); }
+  Point2 point() const {
+    const std::vector<Part> xy = parts();
+    check(xy.size() == 2, "[x, y]");
+    return {xy[0].place_m(), xy[1].place_m()};
   }
 
   static constexpr const char* expected = "expected what simulate wrote";
@@ -126,10 +133,16 @@ class Part {
   std::string file_, name_;
 };
 
+Camber camber_of(const Part& plane) {
+  if (!plane.has("camber")) return {};
+  const Part camber = plane.at("camber");
+  return {camber.number("bend_1_m"), camber.point("crown_m"), camber.point("across")};
+}
+
 void take(const Part& file, Truth& truth) {
   truth.start_time_s = file.time_s("start_time_s");
   for (const Part& p : file.at("planes").parts()) {
-    truth.planes.push_back({p.text("name"), {p.number("z0_m"), p.number("sx"), p.number("sy")}});
+    truth.planes.push_back({p.text("name"), {p.number("z0_m"), p.number("sx"), p.number("sy"), camber_of(p)}});
   }
   for (const Part& r : file.at("regions").parts()) {
     truth.regions.push_back({r.text("name"), r.polygon("polygon_m"), r.index("plane", truth.planes.size())});
