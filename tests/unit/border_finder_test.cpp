@@ -106,8 +106,8 @@ struct Street {
   double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< from `top` on it is level again
   bool turned = false;
   float laser_x_m = 0.0f, laser_z_m = 1.0f;
-  double waver = 0.0;   ///< every other half metre ends so much earlier
-  double unseen = 9.0;  ///< a cell that begins there shows nothing
+  double waver = 0.0;        ///< every other half metre ends so much earlier
+  double unseen_from = 9.0;  ///< a cell that begins there shows nothing
 
   double height(double x) const { return slope * (std::clamp(x, from, top) - from); }
   std::unique_ptr<Stages<small_limits>> traced() const {
@@ -117,7 +117,7 @@ struct Street {
         for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
           const double x = 0.1 * i + at, y = 0.1 * j + at, along = turned ? 2.4 - y : x;
           const bool early = std::fmod(turned ? x : y, 1.0) < 0.5;
-          if (along > (early ? to - waver : to) || (along > unseen && along < unseen + 0.1)) continue;
+          if (along > (early ? to - waver : to) || (along > unseen_from && along < unseen_from + 0.1)) continue;
           stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(height(along)), 1e-4f});
         }
       }
@@ -174,7 +174,7 @@ TEST_CASE("border finder: a face beyond which nothing is seen ends at an edge, i
 }
 
 TEST_CASE("border finder: a face of which a row of cells is not seen ends where it does all the same") {
-  const std::vector<double> ends = Street{.to = 1.5, .turned = GENERATE(false, true), .unseen = 1.3}.ends();
+  const std::vector<double> ends = Street{.to = 1.5, .turned = GENERATE(false, true), .unseen_from = 1.3}.ends();
   REQUIRE(ends.size() == 1);
   CHECK(ends[0] == Approx(1.5).margin(0.015));
 }
