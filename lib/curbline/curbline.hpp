@@ -48,7 +48,6 @@
 #include "curbline/gain_heap.hpp"        // which merge gains most
 #include "curbline/plane.hpp"            // moments, fit
 #include "curbline/plane_evidence.hpp"   // that points lie on one plane, or on two that are parted
-#include "curbline/bend.hpp"             // whether two planes follow one bent surface
 
 // Regions to planes that keep their labels.
 #include "curbline/region_ranking.hpp"   // which regions become planes, under which labels

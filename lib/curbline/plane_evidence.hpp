@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "curbline/bend.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 
@@ -55,14 +54,9 @@ class PlaneEvidence {
   /// meet at an angle that is more by three standard deviations (a crease). About 250 operations.
   bool parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const;
 
-  /// How ground would be bent that two planes follow: they meet halfway between their centroids, but for two standard
-  /// deviations of what the points of a place share, nothing jumps along their border, and the angle is no more than
-  /// three times that of usual ground. None of regions of fewer cells than 20: of a row or two the slope is open.
-  Bend bend(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const;
-
  private:
   bool step_between(const Plane& first, const Plane& second, const BorderRise& border) const;
-  float jump_m(const Plane& first, const Plane& second, const BorderRise& border) const;
+  bool rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const;
   bool crease_between(const Plane& first, const Plane& second) const;
   float log_gamma_of(float cells) const {
     const auto n = static_cast<unsigned>(cells);

@@ -54,18 +54,7 @@ class RegionGraph {
   /// merged nodes, a few each as a rule. Cost of each: a PlaneEvidence and a heap move.
   int merge(const PlaneEvidence& evidence);
 
-  /// After merge(): calls visit(a, b, border) for each two roots that are neighbours, with what their border shows.
-  template <typename Visit>
-  void for_each_border(Visit&& visit) const {
-    for (std::size_t p = 0; p < heap_.size(); ++p) {
-      const Index l = heap_.at(p);
-      visit(end_[2 * l].target, end_[2 * l + 1].target, border(link_[l]));
-    }
-  }
-  /// After that: two nodes have one root, if they have not. Links stay as they are.
-  void join(Index a, Index b);
-
-  /// The node that a node has become part of by merge() and join().
+  /// The node that a node has become part of by merge().
   Index root(Index node) const { return node_[node].parent; }
 
  private:
@@ -107,8 +96,7 @@ class RegionGraph {
     both.add(b.moments);
     return evidence.gain(a.moments, a.score, b.moments, b.score, both, [&] { return border(link_[link]); });
   }
-  // Called, as gain().
-  [[gnu::noinline]] BorderRise border(const Link& link) const {
+  BorderRise border(const Link& link) const {
     if (link.pairs == 0) return {};
     const auto pairs = static_cast<float>(link.pairs);
     const float share = 1.0f / pairs;
@@ -240,16 +228,6 @@ int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
     while (node_[node_[n].parent].parent != node_[n].parent) node_[n].parent = node_[node_[n].parent].parent;
   }
   return evidences;
-}
-
-template <Limits limits>
-void RegionGraph<limits>::join(Index a, Index b) {
-  const Index root_a = root(a), root_b = root(b);
-  if (root_a == root_b) return;
-  node_[root_a].moments.add(node_[root_b].moments);
-  for (Index n = 0; n < static_cast<Index>(nodes_); ++n) {
-    if (node_[n].parent == root_b) node_[n].parent = root_a;
-  }
 }
 
 /// Computes all stale gains. Returns how many.

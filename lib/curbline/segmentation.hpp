@@ -2,14 +2,13 @@
 // 2004) inside each block of 4 x 4 cells, by heights above what the ground leans; regions, leaves merged by evidence
 // (region_graph.hpp). A scan line re-cuts the blocks that it touched, dissolves the regions that it touched and their
 // neighbours into leaves and merges again: that is how a region splits. What no line touched stands. What stands on the
-// ground parts no regions. Those that follow one bent surface are one plane to the mixture (bend.hpp).
+// ground parts no regions.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "curbline/bend.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/dem.hpp"
 #include "curbline/link.hpp"
@@ -64,8 +63,7 @@ class Segmentation {
 
   /// Follows the cells that were touched, in working memory that is the caller's. `ground` is the plane of the ground,
   /// a level one if none is known. What is obstructed(slot) parts no regions: those on both sides are neighbours too.
-  /// Cost: five passes over the window, 16 cells a touched block, the merging, and a pass for each two regions that may
-  /// follow one bent surface, most_bends at most; nothing if no cell was touched.
+  /// Cost: five passes over the window, 16 cells a touched block, and the merging; nothing if no cell was touched.
   template <typename Obstructed>
   void update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed, Counters& counters);
 
@@ -84,7 +82,6 @@ class Segmentation {
  private:
   using Node = typename RegionGraph<limits>::Index;
   static constexpr Node no_node = RegionGraph<limits>::none;
-  static constexpr std::size_t most_bends = 4;  ///< pairs: a road of five planes
 
   void cut_touched_blocks(const Dem<limits>& dem, const Plane& ground);
   void cut(const Dem<limits>& dem, int row, int col, const Plane& lean);
@@ -92,8 +89,6 @@ class Segmentation {
   template <typename Obstructed>
   void build_graph(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) const;
   void name_regions(const Dem<limits>& dem, Work& work);
-  void join_bent(const Dem<limits>& dem, Work& work) const;
-  bool follow(const Dem<limits>& dem, const Work& work, Node a, Node b, const Bend& bend) const;
   /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
   Region representative(int slot) const {
     return region_[slot] == none || dissolved_.contains(region_[slot]) ? leaf_[slot] : region_[slot];
@@ -117,7 +112,6 @@ void Segmentation<limits>::update(const Dem<limits>& dem, Work& work, const Plan
   build_graph(dem, work, obstructed, counters);
   counters.evidences += static_cast<std::uint32_t>(work.graph.merge(evidence_));
   name_regions(dem, work);
-  join_bent(dem, work);
 }
 
 template <Limits limits>
@@ -222,40 +216,6 @@ void Segmentation<limits>::name_regions(const Dem<limits>& dem, Work& work) {
     region_[s] = region;
   });
   dissolved_.clear();
-}
-
-/// Regions that follow one bent surface have one root from here on; by name they stay apart, and merge anew from there.
-template <Limits limits>
-void Segmentation<limits>::join_bent(const Dem<limits>& dem, Work& work) const {
-  std::array<std::array<Node, 2>, most_bends> joined;
-  std::size_t asked = 0, joins = 0;
-  work.graph.for_each_border([&](Node a, Node b, const BorderRise& border) {
-    if (asked == most_bends) return;
-    const Bend bend = evidence_.bend(work.graph.moments(a), work.graph.moments(b), border);
-    if (!bend.any()) return;
-    ++asked;
-    if (follow(dem, work, a, b, bend)) joined[joins++] = {a, b};
-  });
-  for (std::size_t k = 0; k < joins; ++k) work.graph.join(joined[k][0], joined[k][1]);
-}
-
-/// Do the cells of two regions follow a bend?
-template <Limits limits>
-bool Segmentation<limits>::follow(const Dem<limits>& dem, const Work& work, Node a, Node b, const Bend& bend) const {
-  BendTally tally(bend);
-  const std::array<Node, 2> nodes{a, b};
-  const std::array<Plane, 2> planes{fit_plane(work.graph.moments(a), dem.prior()),
-                                    fit_plane(work.graph.moments(b), dem.prior())};
-  const std::array<float, 2> means_m2{tally.square_m2(work.graph.moments(a)), tally.square_m2(work.graph.moments(b))};
-  dem.for_each_valid([&](int i, int j, int s) {
-    const Node leaf = work.node_of_cell[s];
-    if (leaf == no_node) return;
-    const Node root = work.graph.root(leaf);
-    const std::size_t k = root == a ? 0 : 1;
-    if (root != nodes[k]) return;
-    tally.add(dem.moments(i, j, dem.cell(s)), planes[k], means_m2[k]);
-  });
-  return tally.bent(dem.prior().noise_m2);
 }
 
 }  // namespace curbline

@@ -39,13 +39,13 @@ bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const 
   const float at_first_m = above_m(first), at_second_m = above_m(second);
   if (at_first_m * at_second_m > 0.0f && apart(first, at_first_m) && apart(second, at_second_m)) return true;
   const float mean_m = 0.5f * (at_first_m + at_second_m);
-  return mean_m * mean_m > 4.0f * share_m2 && jump_m(first, second, border) * mean_m > 0.0f;
+  return mean_m * mean_m > 4.0f * share_m2 && rises(first, second, border, mean_m);
 }
 
-/// By how much the ground jumps along the border, 0 if it is not sure to. Where it is one bent surface it rises there
-/// by the mean of both planes' slopes.
-float PlaneEvidence::jump_m(const Plane& first, const Plane& second, const BorderRise& border) const {
-  if (!(border.pairs > 0.0f)) return 0.0f;
+/// Does the ground jump along the border, up if `toward` is above 0, else down? Where it is one bent surface it rises
+/// there by the mean of both planes' slopes.
+bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const {
+  if (!(border.pairs > 0.0f)) return false;
   const float share_m2 = prior_.common_m2();
   const float slope_x = 0.5f * (first.slope_x + second.slope_x), slope_y = 0.5f * (first.slope_y + second.slope_y);
   const float jump_m = border.rise_m - slope_x * border.dx_m - slope_y * border.dy_m;
@@ -53,23 +53,7 @@ float PlaneEvidence::jump_m(const Plane& first, const Plane& second, const Borde
       2.0f * share_m2 / border.pairs +
       0.25f * (first.rise_variance_m2(border.dx_m, border.dy_m) + second.rise_variance_m2(border.dx_m, border.dy_m));
   const float square_m2 = jump_m * jump_m;
-  return square_m2 > share_m2 && square_m2 > gate * variance_m2 ? jump_m : 0.0f;
-}
-
-Bend PlaneEvidence::bend(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const {
-  constexpr float least_cells = 20.0f;
-  if (a.cells < least_cells || b.cells < least_cells) return {};
-  const Plane first = fit_plane(a, prior_), second = fit_plane(b, prior_);
-  const float x = second.slope_x - first.slope_x, y = second.slope_y - first.slope_y;
-  const float dx_m = second.x_m - first.x_m, dy_m = second.y_m - first.y_m;
-  const float angle_2 = x * x + y * y, way = x * dx_m + y * dy_m;  // the way times the angle
-  if (!(angle_2 > 0.0f) || square(angle_2) > gate * square(Bend::usual_1_m * way)) return {};
-  const float middle_x_m = first.x_m + 0.5f * dx_m, middle_y_m = first.y_m + 0.5f * dy_m;
-  const float apart_m = second.height_m(middle_x_m, middle_y_m) - first.height_m(middle_x_m, middle_y_m);
-  if (square(apart_m) > 4.0f * prior_.common_m2()) return {};
-  if (jump_m(first, second, border) != 0.0f) return {};
-  const float angle = square_root(angle_2);
-  return {x / angle, y / angle, angle_2 / way};
+  return jump_m * toward > 0.0f && square_m2 > share_m2 && square_m2 > gate * variance_m2;
 }
 
 /// The angle, across the line along which they meet, and what is known of it; all times its own square.

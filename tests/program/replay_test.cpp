@@ -244,13 +244,10 @@ TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind
 
 //  |___         ___|      9 cm lower at its gutters than at its crown
 //      ---------
-TEST_CASE("program: a cambered road is one plane between its kerbs, which are as high as from their gutters") {
+TEST_CASE("program: the kerbs of a cambered road are found, within half a cell and 1 cm") {
   for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
     INFO(robot);
-    const Recording logs("camber", robot);
-    const nlohmann::json figures = evaluate(logs);
-    check_curbs(figures);
-    CHECK(figures.at("v").get<double>() > 0.9);
+    check_curbs(evaluate(Recording("camber", robot)));
   }
 }
 

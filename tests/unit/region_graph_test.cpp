@@ -68,26 +68,6 @@ TEST_CASE("region graph: a merged node has the moments of both") {
   CHECK(merged.zz == Approx(both.zz));
 }
 
-TEST_CASE("region graph: neighbours that are joined have one root and the moments of both, once") {
-  const auto graph = std::make_unique<Graph>();
-  test::Noise noise;
-  graph->clear(0.1f, 0.1f);
-  const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
-  const auto c = add(*graph, leaf(0.8, 0.0, 0.12, noise));
-  for (const auto& [from, to] : {std::pair{a, b}, {b, c}}) graph->link(from, to);
-  graph->merge(PlaneEvidence{});
-  REQUIRE(graph->root(b) != graph->root(c));
-  int borders = 0;
-  graph->for_each_border([&](Graph::Index, Graph::Index, const BorderRise&) { ++borders; });
-  CHECK(borders == 1);
-  const float points = graph->moments(graph->root(a)).points + graph->moments(c).points;
-  graph->join(b, c);
-  graph->join(c, a);
-  CHECK(graph->root(c) == graph->root(a));
-  CHECK(graph->root(b) == graph->root(a));
-  CHECK(graph->moments(graph->root(a)).points == points);
-}
-
 TEST_CASE("region graph: a second link between two nodes takes no place, whichever end comes first") {
   constexpr Limits two{.regions = 8, .links = 2};
   const auto graph = std::make_unique<RegionGraph<two>>();
