@@ -31,7 +31,8 @@ inline constexpr std::uint16_t default_sync_id = 0x80;
 struct TiltDecoderCounters {
   std::uint32_t frames = 0;
   std::uint32_t readings = 0;      ///< given out
-  std::uint32_t others = 0;        ///< another id or multiplexor, remote requests, error messages
+  std::uint32_t others = 0;        ///< another id or multiplexor, remote requests, error messages, SYNC
+                                   ///< frames stamped with no time
   std::uint32_t syncs = 0;         ///< SYNC frames
   std::uint32_t malformed = 0;     ///< the servo's, but too short, not finite, no angle of a servo or stamped with no
                                    ///< time (RisingTimes::is_time)

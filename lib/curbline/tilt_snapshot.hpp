@@ -40,7 +40,10 @@ class TiltSnapshot {
   /// Number of the reading up to which the last answer goes; the same for all times between two readings.
   std::uint32_t reading_number() const { return written_ - static_cast<std::uint32_t>(size_ - cursor_); }
   /// Lets the next question be an earlier one.
-  void rewind() { cursor_ = 0; }
+  void rewind() {
+    cursor_ = 0;
+    segment_from_ns_ = segment_to_ns_ = 0;
+  }
 
  private:
   /// Not inlined, so that at() is, which is asked for each beam: 16,000 instructions a line of a Cortex-M7.

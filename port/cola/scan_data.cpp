@@ -1,6 +1,7 @@
 #include "cola/scan_data.hpp"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "cola/telegram.hpp"
@@ -64,8 +65,8 @@ ScanResult read_ranges(Numbers& in, double scale, double offset, ScanData& data,
   if (!in.good() || data.count == 0) return ScanResult::malformed;
   for (std::size_t i = 0; i < data.count; ++i) {
     const auto value = static_cast<std::uint16_t>(values[2 * i] << 8 | values[2 * i + 1]);
-    ranges_m[i] = value < first_range ? std::numeric_limits<float>::quiet_NaN()
-                                      : static_cast<float>((value * scale + offset) / 1000.0);
+    const auto range_m = static_cast<float>((value * scale + offset) / 1000.0);
+    ranges_m[i] = value < first_range || range_m < 0.0f ? std::numeric_limits<float>::quiet_NaN() : range_m;
   }
   return ScanResult::ok;
 }
@@ -79,7 +80,10 @@ ScanResult parse_scan_data(std::span<const std::uint8_t> content, ScanData& data
   for (std::uint16_t channel = 0; channel < channels && in.good(); ++channel) {
     const auto name = in.take(5);
     const double scale = in.f32(), offset = in.f32();
-    if (in.good() && begins(name, "DIST1")) return read_ranges(in, scale, offset, data, ranges_m);
+    if (in.good() && begins(name, "DIST1")) {
+      if (!(scale > 0.0 && std::isfinite(scale) && std::isfinite(offset))) return ScanResult::malformed;
+      return read_ranges(in, scale, offset, data, ranges_m);
+    }
     in.take(6);  // angles
     const std::uint16_t count = in.u16();
     in.take(std::size_t{2} * count);

@@ -23,13 +23,13 @@ struct ScanData {
 
 enum class ScanResult : unsigned char {
   ok,
-  malformed,  ///< the counts do not fit the content
+  malformed,  ///< the counts do not fit the content, or scale and offset are those of no range
   no_dist1,   ///< no channel of distances to the first echo
   too_many,   ///< more values than `ranges_m` holds
 };
 
 /// Reads what follows "LMDscandata " into `data` and `ranges_m`: metres, NaN where the value is below 16, which mean
-/// errors (0: no return).
+/// errors (0: no return), or the range below 0.
 ScanResult parse_scan_data(std::span<const std::uint8_t> content, ScanData& data, std::span<float> ranges_m);
 
 }  // namespace curbline::cola

@@ -43,6 +43,7 @@ class File {
 class Named {
  public:
   Named(const File& file, const char* ending) : path_("/tmp/curbline-fuzz-" + std::to_string(::getpid()) + ending) {
+    ::unlink(path_.c_str());  // of one that was stopped
     claim(::symlink(file.path().c_str(), path_.c_str()) == 0, "it has a second name");
   }
   ~Named() { ::unlink(path_.c_str()); }

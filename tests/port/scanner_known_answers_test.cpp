@@ -142,6 +142,30 @@ TEST_CASE("cola: values below 16 are no returns, the scale multiplies, other cha
   }
 }
 
+TEST_CASE("cola: a scale that is no number above 0 is malformed, a range below 0 no return") {
+  const auto read = [](std::uint32_t scale, std::uint32_t offset, float& range_m) {
+    Bytes content(38, 0);
+    for (const int byte : std::initializer_list<int>{0, 1, 'D', 'I', 'S', 'T', '1'})
+      content.push_back(static_cast<std::uint8_t>(byte));
+    for (const std::uint32_t number : {scale, offset, 0u}) {
+      for (const int shift : {24, 16, 8, 0}) content.push_back(static_cast<std::uint8_t>(number >> shift));
+    }
+    for (const int byte : {0x13, 0x88, 0, 1, 0x03, 0xE8}) content.push_back(static_cast<std::uint8_t>(byte));
+    cola::ScanData data;
+    return cola::parse_scan_data(content, data, std::span(&range_m, 1));
+  };
+  constexpr std::uint32_t one = 0x3F800000, minus_one = 0xBF800000, infinite = 0x7F800000, no_number = 0x7FC00000;
+  float range_m = 0.0f;
+  REQUIRE(read(one, 0, range_m) == cola::ScanResult::ok);
+  CHECK(range_m == 1.0f);
+  for (const std::uint32_t scale : {0u, minus_one, infinite, no_number})
+    CHECK(read(scale, 0, range_m) == cola::ScanResult::malformed);
+  for (const std::uint32_t offset : {infinite, no_number})
+    CHECK(read(one, offset, range_m) == cola::ScanResult::malformed);
+  REQUIRE(read(one, 0xC5000000, range_m) == cola::ScanResult::ok);  // 2048 mm nearer than 1 m
+  CHECK(std::isnan(range_m));
+}
+
 TEST_CASE("cola: a scanner that answers in CoLa A, or refuses, is a problem that says so") {
   cola::Session session;
   session.restart({});

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """golden.py BUILD [--keep]: are the desk's results of the drives, every curb and counter, those on record in tests/replay/golden.csv?
 
-A change of the algorithm is meant to change some, a change of its form none: the record tells which of both a commit is. --keep writes it anew.
-The drives are those of tools/boards/drives.py; where the recorded ones are absent theirs are not compared, and that is said.
+A change of the algorithm is meant to change some, a change of its form none: the record tells which of both a commit is. --keep runs the desk and
+writes anew what it gives. The drives are those of tools/boards/drives.py; where the recorded ones are absent theirs are not compared, nor written
+anew, and that is said.
 """
 import csv
 import hashlib
@@ -24,27 +25,32 @@ def results_of(build):
             for drive in drives.all_drives(build)}
 
 
-def keep(found):
-    if not drives.RECORDED.is_dir():
-        sys.exit(f"--keep: {RECORD} holds results of all drives, and the recorded ones are not there")
+def on_record():
+    with open(RECORD, newline="") as file:
+        return {row["drive"]: row["sha256"] for row in csv.DictReader(file)}
+
+
+def keep(rows):
     with open(RECORD, "w", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows([("drive", "sha256"), *sorted(found.items())])
+        csv.writer(file, lineterminator="\n").writerows([("drive", "sha256"), *sorted(rows.items())])
 
 
 def main(build, keeps):
-    found = results_of(build)
     if keeps:
-        keep(found)
-    with open(RECORD, newline="") as file:
-        record = {row["drive"]: row["sha256"] for row in csv.DictReader(file)}
-    changed = sorted(name for name in found if record.get(name) != found[name])
+        run_drives.main(build, boards.REFERENCE)
+    found, record = results_of(build), on_record()
     absent = sorted(set(record) - set(found))
     if absent:
-        print(f"NOT COMPARED, as they are not there: {' '.join(absent)}")
-    if changed:
+        print(f"{'KEPT AS THEY WERE' if keeps else 'NOT COMPARED'}, as they are not there: {' '.join(absent)}")
+    changed = sorted(name for name in found if record.get(name) != found[name])
+    if changed and not keeps:
         sys.exit(f"results of {len(changed)} of {len(found)} drives are not those on record: {' '.join(changed)}\n"
                  f"where that is meant: tests/replay/golden.py {build} --keep")
-    print(f"{len(found)} drives, the results on record")
+    if keeps:
+        keep(record | found)
+        print(f"{len(changed)} of {len(found)} drives changed")
+    else:
+        print(f"{len(found)} drives, the results on record")
 
 
 if __name__ == "__main__":

@@ -98,8 +98,8 @@ TEST_CASE("candump: times are exact to the nanosecond") {
   CHECK(candump::parse_time("0.1") == 100000000);
   CHECK(candump::parse_time("7") == 7000000000);
   CHECK(candump::parse_time("9223372036.854775807") == INT64_MAX);
-  for (const char* bad :
-       {"", "-1.0", "+1", "1.", ".5", "1.2.3", "1e9", "nan", "9223372036.854775808", "9223372037.0", "99999999999999999999"}) {
+  for (const char* bad : {"", "-1.0", "+1", "1.", ".5", "1.2.3", "1e9", "nan", "9223372036.854775808", "9223372037.0",
+                          "99999999999999999999"}) {
     CHECK_FALSE(candump::parse_time(bad));
   }
 }
