@@ -38,8 +38,8 @@ class Numbers {
   std::uint32_t bits32() { return data_.ConsumeIntegral<std::uint32_t>(); }
   std::uint8_t byte() { return data_.ConsumeIntegral<std::uint8_t>(); }
   std::string text() { return data_.ConsumeRandomLengthString(); }
-  /// Any time there is, most of them near 0.
-  std::int64_t time_ns() { return data_.ConsumeIntegral<std::int64_t>() >> whole(0, 40); }
+  /// Any time of 146 years, to either side of 0 and mostly near it.
+  std::int64_t time_ns() { return data_.ConsumeIntegral<std::int64_t>() >> whole(1, 40); }
 
   /// Leaves it, or makes it one in its range, or any.
   void change(float& value, float low, float high) {
