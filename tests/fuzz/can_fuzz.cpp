@@ -10,7 +10,7 @@
 #include "can/tilt_decoder.hpp"
 #include "candump/candump.hpp"
 #include "fuzz/claim.hpp"
-#include "fuzz/numbers.hpp"
+#include "fuzz/run.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -102,14 +102,13 @@ void log_lines(Numbers& numbers) {
 }
 
 }  // namespace
-}  // namespace curbline::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  curbline::fuzz::Numbers numbers(bytes, size);
+void run(Numbers& numbers) {
   if (numbers.flag()) {
-    curbline::fuzz::signals(numbers);
+    signals(numbers);
   } else {
-    curbline::fuzz::log_lines(numbers);
+    log_lines(numbers);
   }
-  return 0;
 }
+
+}  // namespace curbline::fuzz

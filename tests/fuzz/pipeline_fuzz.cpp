@@ -6,7 +6,7 @@
 
 #include "curbline/curbline.hpp"
 #include "fuzz/claim.hpp"
-#include "fuzz/numbers.hpp"
+#include "fuzz/run.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -177,6 +177,8 @@ void look_at_cells() {
   }
 }
 
+}  // namespace
+
 void run(Numbers& numbers) {
   const Settings settings = some_settings(numbers);
   const bool good = pipeline.init(settings) == Status::ok;
@@ -212,11 +214,4 @@ void run(Numbers& numbers) {
   }
 }
 
-}  // namespace
 }  // namespace curbline::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  curbline::fuzz::Numbers numbers(bytes, size);
-  curbline::fuzz::run(numbers);
-  return 0;
-}

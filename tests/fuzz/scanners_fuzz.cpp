@@ -1,15 +1,14 @@
 // Any bytes from a scanner, among its own telegrams, whole or changed, with sums that fit or not: a session gives out
 // lines that can be used, goes on, and says what it drops.
 #include <cmath>
-#include <memory>
+#include <string>
+#include <utility>
 
-#include "cola/session.hpp"
 #include "fuzz/claim.hpp"
-#include "fuzz/numbers.hpp"
-#include "lms200/session.hpp"
+#include "fuzz/run.hpp"
 #include "lms200/telegram.hpp"
-#include "scanner/device.hpp"
-#include "scip2/session.hpp"
+#include "port/scanner_support.hpp"
+#include "scip2/codec.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -21,9 +20,10 @@ void sum_up_scip2(Bytes& bytes) {
   std::size_t begin = 0;
   for (std::size_t end = 0; end < bytes.size(); ++end) {
     if (bytes[end] != '\n') continue;
-    unsigned sum = 0;
-    for (std::size_t i = begin; i + 1 < end; ++i) sum += bytes[i];
-    if (begin > 0 && end > begin + 1) bytes[end - 1] = static_cast<std::uint8_t>((sum & 0x3F) + 0x30);  // not the echo
+    const std::string line(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                           bytes.begin() + static_cast<std::ptrdiff_t>(end));
+    if (begin > 0 && line.size() > 1)  // not the echo
+      bytes[end - 1] = static_cast<std::uint8_t>(scip2::sum_of(line.substr(0, line.size() - 1)));
     begin = end + 1;
   }
 }
@@ -40,39 +40,18 @@ void sum_up_lms200(Bytes& bytes) {
   bytes[size + 1] = static_cast<std::uint8_t>(crc >> 8);
 }
 
-struct Scanner {
-  std::shared_ptr<scanner::Session> session;
-  std::unique_ptr<tools::Device> device;
-  void (*sum_up)(Bytes&);
-  tools::CarmenLine line;
-};
-
-tools::CarmenLine geometry(std::size_t beams, double first_deg, double step_deg, double longest_m) {
-  constexpr double degree = 3.14159265358979 / 180;
-  tools::CarmenLine line;
-  line.start_angle_rad = first_deg * degree;
-  line.angular_resolution_rad = step_deg * degree;
-  line.field_of_view_rad = line.angular_resolution_rad * static_cast<double>(beams - 1);
-  line.maximum_range_m = longest_m;
-  line.ranges_m.assign(beams, 1.5f);
-  return line;
+void sum_up(tools::Protocol protocol, Bytes& bytes) {
+  switch (protocol) {
+    case tools::Protocol::scip2:
+      return sum_up_scip2(bytes);
+    case tools::Protocol::cola:
+      return sum_up_cola(bytes);
+    case tools::Protocol::lms200:
+      return sum_up_lms200(bytes);
+  }
 }
 
-Scanner some_scanner(Numbers& numbers) {
-  const int which = numbers.whole(0, 2);
-  if (which == 0) {
-    const tools::CarmenLine line = geometry(41, -5, 0.25, 30);
-    return {std::make_shared<scip2::Session>(), tools::make_scip2_device(line, "fuzz"), sum_up_scip2, line};
-  }
-  if (which == 1) {
-    const tools::CarmenLine line = geometry(21, -5, 0.5, 50);
-    return {std::make_shared<cola::Session>(), tools::make_cola_device(line, "fuzz"), sum_up_cola, line};
-  }
-  const tools::CarmenLine line = geometry(101, -50, 1, 8);
-  return {std::make_shared<lms200::Session>(101), tools::make_lms200_device(line, "fuzz"), sum_up_lms200, line};
-}
-
-void change(Numbers& numbers, Scanner& s, Bytes& bytes) {
+void change(Numbers& numbers, tools::Protocol protocol, Bytes& bytes) {
   for (int changes = numbers.whole(0, 4); changes > 0 && !bytes.empty(); --changes) {
     const auto at = static_cast<std::size_t>(numbers.whole(0, static_cast<int>(bytes.size()) - 1));
     switch (numbers.whole(0, 3)) {
@@ -86,7 +65,7 @@ void change(Numbers& numbers, Scanner& s, Bytes& bytes) {
         bytes[at] = numbers.byte();
     }
   }
-  if (numbers.flag()) s.sum_up(bytes);
+  if (numbers.flag()) sum_up(protocol, bytes);
 }
 
 void look_at(const scanner::Session& session) {
@@ -96,11 +75,13 @@ void look_at(const scanner::Session& session) {
   session.log_time_ns(1'700'000'000'000'000'000);
 }
 
+}  // namespace
+
 void run(Numbers& numbers) {
-  Scanner s = some_scanner(numbers);
+  test::Scanner s = std::move(test::small_scanners()[static_cast<std::size_t>(numbers.whole(0, 2))]);
   scanner::Now now{1'800'000'000'000'000'000, 0};
   const auto take = [&](Bytes bytes) {
-    change(numbers, s, bytes);
+    change(numbers, s.protocol, bytes);
     std::span<const std::uint8_t> left(bytes);
     while (s.session->take(left, now)) look_at(*s.session);
     claim(left.empty(), "all bytes are used");
@@ -122,19 +103,12 @@ void run(Numbers& numbers) {
         break;
       }
       default:
-        if (s.device->measuring()) take(s.device->telegram(s.line));
+        if (s.device->measuring()) take(s.device->telegram(s.first));
     }
-    s.line.time_ns += numbers.seldom() ? numbers.time_ns() / 4 : 20'000'000;
-    s.line.time_ns &= INT64_MAX / 2;
+    s.first.time_ns += numbers.seldom() ? numbers.time_ns() / 4 : 20'000'000;
+    s.first.time_ns &= INT64_MAX / 2;
     s.session->problem();
   }
 }
 
-}  // namespace
 }  // namespace curbline::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  curbline::fuzz::Numbers numbers(bytes, size);
-  curbline::fuzz::run(numbers);
-  return 0;
-}

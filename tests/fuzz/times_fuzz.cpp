@@ -4,7 +4,7 @@
 
 #include "curbline/curbline.hpp"
 #include "fuzz/claim.hpp"
-#include "fuzz/numbers.hpp"
+#include "fuzz/run.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -70,14 +70,13 @@ void queue(Numbers& numbers) {
 }
 
 }  // namespace
-}  // namespace curbline::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  curbline::fuzz::Numbers numbers(bytes, size);
+void run(Numbers& numbers) {
   if (numbers.flag()) {
-    curbline::fuzz::clock(numbers);
+    clock(numbers);
   } else {
-    curbline::fuzz::queue(numbers);
+    queue(numbers);
   }
-  return 0;
 }
+
+}  // namespace curbline::fuzz

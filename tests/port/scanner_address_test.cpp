@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "byte_stream/byte_stream.hpp"
+#include "scanner_listener.hpp"
 #include "scanner_support.hpp"
 
 extern "C" {

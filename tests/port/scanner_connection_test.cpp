@@ -11,6 +11,7 @@
 #include "cola/session.hpp"
 #include "lms200/session.hpp"
 #include "scanner/live_scanner.hpp"
+#include "scanner_listener.hpp"
 #include "scanner_support.hpp"
 #include "scip2/session.hpp"
 

@@ -9,6 +9,7 @@
 #include "cola/session.hpp"
 #include "lms200/session.hpp"
 #include "scanner/live_scanner.hpp"
+#include "scanner_listener.hpp"
 #include "scanner_support.hpp"
 #include "support/heap_count.hpp"
 #include "tools/formats_support.hpp"

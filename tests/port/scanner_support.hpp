@@ -53,20 +53,4 @@ std::string carmen_text(const CarmenLine& geometry, int count);
 
 Bytes from_hex(const std::string& text);
 
-/// Listens on an address of this machine; nobody accepts, the kernel connects as many as `queue` all the same.
-class Listener {
- public:
-  explicit Listener(const char* host = "127.0.0.1", std::uint16_t at_port = 0, int queue = 4);
-  ~Listener();
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  std::uint16_t port() const { return port_; }
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-  std::uint16_t port_ = 0;
-};
-
 }  // namespace curbline::test
