@@ -2,11 +2,11 @@
 // your board's is in port.hpp, what is your robot's in robot.hpp.
 #include <array>
 
-#include "can/curb_frames.hpp"
-#include "can/tilt_decoder.hpp"
-#include "curbline/line_queue.hpp"
+#include "curbline/can/curb_frames.hpp"
+#include "curbline/can/tilt_decoder.hpp"
+#include "curbline/intake/line_queue.hpp"
+#include "curbline/intake/tilt_watch.hpp"
 #include "curbline/pipeline.hpp"
-#include "curbline/tilt_watch.hpp"
 #include "port.hpp"
 #include "robot.hpp"
 #include "runtime.hpp"

@@ -1,7 +1,7 @@
 // Your robot. Every setting has its unit, range and reason in lib/curbline/settings.hpp.
 #pragma once
 
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/settings.hpp"
 
@@ -28,7 +28,7 @@ inline constexpr int queued_lines = 3;
 /// What it needs of the way to either side: half its width, and what it strays.
 inline constexpr float half_width_m = 0.4f;
 
-/// Where the angle lies in the servo's frames. Others: lib/can/servo_presets.hpp, or a Signal of your own.
+/// Where the angle lies in the servo's frames. Others: lib/curbline/can/servo_presets.hpp, or a Signal of your own.
 inline curbline::can::Signal tilt_signal() {
   return curbline::can::cia402_position(1);
 }

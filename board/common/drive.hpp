@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "curbline/pipeline.hpp"
 #include "drive_log/drive_log.hpp"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <csignal>
 
-#include "can/curb_frames.hpp"
+#include "curbline/can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "heap_trap.hpp"

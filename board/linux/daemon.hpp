@@ -14,9 +14,9 @@
 #include <optional>
 #include <string>
 
-#include "can/tilt_decoder.hpp"
 #include "curb_server.hpp"
-#include "curbline/tilt_watch.hpp"
+#include "curbline/can/tilt_decoder.hpp"
+#include "curbline/intake/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
 #include "program/host_pipeline.hpp"

@@ -1,5 +1,6 @@
-// Where scan lines wait for their tilt (curbline/line_queue.hpp), between the context that reads the scanner and the
-// one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750 kB, no heap.
+// Where scan lines wait for their tilt (curbline/intake/line_queue.hpp), between the context that reads the scanner and
+// the one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750 kB, no
+// heap.
 #pragma once
 
 #include <array>
@@ -7,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "curbline/line_queue.hpp"
+#include "curbline/intake/line_queue.hpp"
 #include "robot/robot.hpp"
 
 namespace curbline::daemon {

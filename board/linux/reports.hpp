@@ -5,13 +5,13 @@
 #include <span>
 #include <string_view>
 
-#include "can/tilt_decoder.hpp"
 #include "curb_server.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curb.hpp"
-#include "curbline/line_queue.hpp"
-#include "curbline/tilt_latency.hpp"
-#include "curbline/tilt_watch.hpp"
+#include "curbline/curbs/curb.hpp"
+#include "curbline/intake/line_queue.hpp"
+#include "curbline/intake/tilt_latency.hpp"
+#include "curbline/intake/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "scanner_thread.hpp"
 #include "socketcan/socketcan.hpp"

@@ -3,89 +3,89 @@
 
 // clang-format off
 // What all share.
-#include "curbline/limits.hpp"           // sizes, at compile time
-#include "curbline/settings.hpp"         // geometry, noise and tuning, at run time
-#include "curbline/status.hpp"           // how a call ended
-#include "curbline/counters.hpp"         // what was dropped, refused, done
-#include "curbline/math.hpp"             // exp, log, sine: the same bits everywhere
-#include "curbline/frames.hpp"           // map <- base <- tilt <- laser
-#include "curbline/grid.hpp"             // numbers of cells and planes, directions
-#include "curbline/index_set.hpp"        // a set of such numbers, as bits
-#include "curbline/per_cell.hpp"         // what a stage keeps for each cell
+#include "curbline/limits.hpp"                  // sizes, at compile time
+#include "curbline/settings.hpp"                // geometry, noise and tuning, at run time
+#include "curbline/status.hpp"                  // how a call ended
+#include "curbline/counters.hpp"                // what was dropped, refused, done
+#include "curbline/math.hpp"                    // exp, log, sine: the same bits everywhere
+#include "curbline/frames.hpp"                  // map <- base <- tilt <- laser
+#include "curbline/grid.hpp"                    // numbers of cells and planes, directions
+#include "curbline/index_set.hpp"               // a set of such numbers, as bits
+#include "curbline/per_cell.hpp"                // what a stage keeps for each cell
 
 // Before the pipeline.
-#include "curbline/scan_line.hpp"        // in: ranges
-#include "curbline/rising_times.hpp"     // what comes late; a clock that is set back
-#include "curbline/line_clock.hpp"       // times of lines that bear that of their arrival
-#include "curbline/line_queue.hpp"       // lines that wait for their tilt
-#include "curbline/tilt_watch.hpp"       // whether the servo is alive
+#include "curbline/scan_line.hpp"               // in: ranges
+#include "curbline/intake/rising_times.hpp"     // what comes late; a clock that is set back
+#include "curbline/intake/line_clock.hpp"       // times of lines that bear that of their arrival
+#include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt
+#include "curbline/intake/tilt_watch.hpp"       // whether the servo is alive
 
 // A line to its points.
-#include "curbline/extrapolation.hpp"    // how angles and poses go on beyond the newest
-#include "curbline/tilt_reading.hpp"     // in: an angle of the servo
-#include "curbline/tilt_track.hpp"       // its readings over time, from an interrupt
-#include "curbline/tilt_snapshot.hpp"    // the tilt at each beam
-#include "curbline/sweep_turns.hpp"      // where the servo turns round
-#include "curbline/tilt_latency.hpp"     // how late its readings are, found on the way
-#include "curbline/pose.hpp"             // in: a pose of the robot
-#include "curbline/pose_track.hpp"       // poses over time, where they jump and step
-#include "curbline/pose_offset.hpp"      // whether a step was the robot's or its localisation's
-#include "curbline/point.hpp"            // a point, and from where it is seen
-#include "curbline/line_projection.hpp"  // beams to points with variance
-#include "curbline/map_comparison.hpp"   // what a line says against the map
-#include "curbline/line_intake.hpp"      // all of these together
+#include "curbline/intake/extrapolation.hpp"    // how angles and poses go on beyond the newest
+#include "curbline/tilt_reading.hpp"            // in: an angle of the servo
+#include "curbline/intake/tilt_track.hpp"       // its readings over time, from an interrupt
+#include "curbline/intake/tilt_snapshot.hpp"    // the tilt at each beam
+#include "curbline/intake/sweep_turns.hpp"      // where the servo turns round
+#include "curbline/intake/tilt_latency.hpp"     // how late its readings are, found on the way
+#include "curbline/pose.hpp"                    // in: a pose of the robot
+#include "curbline/intake/pose_track.hpp"       // poses over time, where they jump and step
+#include "curbline/intake/pose_offset.hpp"      // whether a step was the robot's or its localisation's
+#include "curbline/point.hpp"                   // a point, and from where it is seen
+#include "curbline/intake/line_projection.hpp"  // beams to points with variance
+#include "curbline/intake/map_comparison.hpp"   // what a line says against the map
+#include "curbline/intake/line_intake.hpp"      // all of these together
 
 // Points to cells.
-#include "curbline/cell.hpp"             // normal-inverse-gamma posterior of a cell
-#include "curbline/viewpoints.hpp"       // from where a laser that drives has seen the cells
-#include "curbline/window.hpp"           // where cells lie, in the map and in memory
-#include "curbline/dem.hpp"              // what is in them
+#include "curbline/map/cell.hpp"                // normal-inverse-gamma posterior of a cell
+#include "curbline/map/viewpoints.hpp"          // from where a laser that drives has seen the cells
+#include "curbline/map/window.hpp"              // where cells lie, in the map and in memory
+#include "curbline/map/dem.hpp"                 // what is in them
 
 // Cells to regions.
-#include "curbline/link.hpp"             // neighbours on a row or column
-#include "curbline/segmentation.hpp"     // leaves, regions
-#include "curbline/region_graph.hpp"     // merging by evidence
-#include "curbline/gain_heap.hpp"        // which merge gains most
-#include "curbline/plane.hpp"            // moments, fit
-#include "curbline/plane_evidence.hpp"   // that points lie on one plane, or on two that are parted
+#include "curbline/regions/link.hpp"            // neighbours on a row or column
+#include "curbline/regions/segmentation.hpp"    // leaves, regions
+#include "curbline/regions/region_graph.hpp"    // merging by evidence
+#include "curbline/regions/gain_heap.hpp"       // which merge gains most
+#include "curbline/plane.hpp"                   // moments, fit
+#include "curbline/regions/plane_evidence.hpp"  // that points lie on one plane, or on two that are parted
 
 // Regions to planes that keep their labels.
-#include "curbline/region_ranking.hpp"   // which regions become planes, under which labels
-#include "curbline/clean_fit.hpp"        // fit to cells that hold nothing else
-#include "curbline/obstacles.hpp"        // which planes are of what stands on the ground
-#include "curbline/run.hpp"              // cells of one plane in line, as the laser sees them
-#include "curbline/strip_tally.hpp"      // what these tell of a plane
-#include "curbline/ground.hpp"           // which planes are ground
-#include "curbline/plane_mixture.hpp"    // all of these together
-#include "curbline/common_noise.hpp"     // what cells about their planes err alike
+#include "curbline/planes/region_ranking.hpp"   // which regions become planes, under which labels
+#include "curbline/planes/clean_fit.hpp"        // fit to cells that hold nothing else
+#include "curbline/planes/obstacles.hpp"        // which planes are of what stands on the ground
+#include "curbline/planes/run.hpp"              // cells of one plane in line, as the laser sees them
+#include "curbline/planes/strip_tally.hpp"      // what these tell of a plane
+#include "curbline/planes/ground.hpp"           // which planes are ground
+#include "curbline/planes/plane_mixture.hpp"    // all of these together
+#include "curbline/planes/common_noise.hpp"     // what cells about their planes err alike
 
 // Labels of cells.
-#include "curbline/planes_near_by.hpp"   // which planes a cell may bear
-#include "curbline/label_site.hpp"       // beliefs and messages of a cell
-#include "curbline/label_field.hpp"      // belief propagation
+#include "curbline/labels/planes_near_by.hpp"   // which planes a cell may bear
+#include "curbline/labels/label_site.hpp"       // beliefs and messages of a cell
+#include "curbline/labels/label_field.hpp"      // belief propagation
 
 // Labels to curbs.
-#include "curbline/curb_stages.hpp"      // what curbs are found in
-#include "curbline/cell_line.hpp"        // a row or column
-#include "curbline/beside.hpp"           // the ground beside a border
-#include "curbline/borders.hpp"          // where labels change, and chains of such places
-#include "curbline/plane_gap.hpp"        // where between two planes the edge lies, to a part of a cell
-#include "curbline/border_finder.hpp"    // all such places of the window
-#include "curbline/ground_end.hpp"       // edges of which only one side is seen
-#include "curbline/line_fit.hpp"         // a line through borders
-#include "curbline/curb_piece.hpp"       // borders on one line
-#include "curbline/shadow.hpp"           // of a step down
-#include "curbline/curb.hpp"             // out: a curb
-#include "curbline/step_height.hpp"      // how high it is, if it is a step
-#include "curbline/curb_maker.hpp"       // its kind, its place, how well that is known
-#include "curbline/curb_tracer.hpp"      // from borders to curbs
-#include "curbline/crossed_cells.hpp"    // where steps go, for the planes of the next line
+#include "curbline/curbs/curb_stages.hpp"       // what curbs are found in
+#include "curbline/curbs/cell_line.hpp"         // a row or column
+#include "curbline/curbs/beside.hpp"            // the ground beside a border
+#include "curbline/curbs/borders.hpp"           // where labels change, and chains of such places
+#include "curbline/curbs/plane_gap.hpp"         // where between two planes the edge lies, to a part of a cell
+#include "curbline/curbs/border_finder.hpp"     // all such places of the window
+#include "curbline/curbs/ground_end.hpp"        // edges of which only one side is seen
+#include "curbline/line_fit.hpp"                // a line through borders
+#include "curbline/curbs/curb_piece.hpp"        // borders on one line
+#include "curbline/shadow.hpp"                  // of a step down
+#include "curbline/curbs/curb.hpp"              // out: a curb
+#include "curbline/curbs/step_height.hpp"       // how high it is, if it is a step
+#include "curbline/curbs/curb_maker.hpp"        // its kind, its place, how well that is known
+#include "curbline/curbs/curb_tracer.hpp"       // from borders to curbs
+#include "curbline/curbs/crossed_cells.hpp"     // where steps go, for the planes of the next line
 
 // What may be asked.
-#include "curbline/ground_label.hpp"     // of which plane the ground under a cell is
-#include "curbline/passability.hpp"      // where a robot may drive
+#include "curbline/curbs/ground_label.hpp"      // of which plane the ground under a cell is
+#include "curbline/curbs/passability.hpp"       // where a robot may drive
 
 // All of it, in order.
-#include "curbline/workspace.hpp"        // memory that stages share
+#include "curbline/workspace.hpp"               // memory that stages share
 #include "curbline/pipeline.hpp"
 // clang-format on

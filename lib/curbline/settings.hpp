@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "curbline/cell.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/map/cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/status.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <new>
 
-#include "curbline/curb_tracer.hpp"
-#include "curbline/label_field.hpp"
-#include "curbline/line_intake.hpp"
-#include "curbline/segmentation.hpp"
+#include "curbline/curbs/curb_tracer.hpp"
+#include "curbline/intake/line_intake.hpp"
+#include "curbline/labels/label_field.hpp"
+#include "curbline/regions/segmentation.hpp"
 
 namespace curbline {
 

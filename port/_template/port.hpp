@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "can/curb_frames.hpp"
-#include "can/frame.hpp"
-#include "can/signal.hpp"
+#include "curbline/can/curb_frames.hpp"
+#include "curbline/can/frame.hpp"
+#include "curbline/can/signal.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 

@@ -18,7 +18,7 @@
 #include <span>
 #include <string_view>
 
-#include "can/frame.hpp"
+#include "curbline/can/frame.hpp"
 
 namespace curbline::candump {
 

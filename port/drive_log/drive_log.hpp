@@ -13,9 +13,9 @@
 #include <span>
 #include <type_traits>
 
-#include "can/signal.hpp"
+#include "curbline/can/signal.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curb.hpp"
+#include "curbline/curbs/curb.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"

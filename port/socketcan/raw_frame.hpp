@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "can/frame.hpp"
+#include "curbline/can/frame.hpp"
 
 namespace curbline::socketcan {
 

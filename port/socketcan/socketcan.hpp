@@ -26,8 +26,8 @@
 #include <cstdint>
 #include <span>
 
-#include "can/filter.hpp"
-#include "can/frame.hpp"
+#include "curbline/can/filter.hpp"
+#include "curbline/can/frame.hpp"
 
 namespace curbline::socketcan {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "can/frame.hpp"
+#include "curbline/can/frame.hpp"
 
 namespace curbline::xilinx_can {
 

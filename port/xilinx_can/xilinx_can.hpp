@@ -29,8 +29,8 @@
 #include <optional>
 #include <span>
 
-#include "can/filter.hpp"
-#include "can/frame.hpp"
+#include "curbline/can/filter.hpp"
+#include "curbline/can/frame.hpp"
 #include "xilinx_can/bit_timing.hpp"
 #include "xilinx_can/registers.hpp"
 

@@ -16,7 +16,7 @@ import run_drives  # noqa: E402
 
 CURB = struct.Struct("<9f4H")
 COUNTERS = 4 * (Path(__file__).resolve().parents[2] / "lib/curbline/counters.hpp").read_text().count("std::uint32_t")
-AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # of lib/can/curb_frames.hpp
+AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # of lib/curbline/can/curb_frames.hpp
 HALF_WIDTH = 0.5  # of template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # in a record of a frame
 

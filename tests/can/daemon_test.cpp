@@ -5,7 +5,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "can/curb_frames.hpp"
+#include "curbline/can/curb_frames.hpp"
 #include "formats/can_log.hpp"
 #include "formats/csv.hpp"
 #include "service.hpp"

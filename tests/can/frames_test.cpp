@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bus.hpp"
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 #include "support/heap_count.hpp"
 
 namespace curbline::socketcan::testing {

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "bus.hpp"
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 #include "support/heap_count.hpp"
 #include "support/nodding_pipeline.hpp"
 

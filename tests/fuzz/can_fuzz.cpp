@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "can/curb_frames.hpp"
-#include "can/signal.hpp"
-#include "can/tilt_decoder.hpp"
 #include "candump/candump.hpp"
+#include "curbline/can/curb_frames.hpp"
+#include "curbline/can/signal.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "fuzz/claim.hpp"
 #include "fuzz/run.hpp"
 

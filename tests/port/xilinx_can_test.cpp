@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "curbline/pipeline.hpp"
 #include "evaluation/curbs.hpp"
 #include "evaluation/truth_samples.hpp"

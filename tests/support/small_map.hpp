@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "curbline/crossed_cells.hpp"
-#include "curbline/curb_tracer.hpp"
-#include "curbline/dem.hpp"
-#include "curbline/label_field.hpp"
-#include "curbline/plane_mixture.hpp"
-#include "curbline/segmentation.hpp"
+#include "curbline/curbs/crossed_cells.hpp"
+#include "curbline/curbs/curb_tracer.hpp"
+#include "curbline/labels/label_field.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+#include "curbline/regions/segmentation.hpp"
 #include "curbline/workspace.hpp"
 #include "support/terrain.hpp"
 

@@ -1,9 +1,9 @@
 #include <sstream>
 #include <vector>
 
-#include "can/servo_presets.hpp"
-#include "can/signal.hpp"
 #include "candump/candump.hpp"
+#include "curbline/can/servo_presets.hpp"
+#include "curbline/can/signal.hpp"
 #include "formats/can_log.hpp"
 #include "formats_support.hpp"
 

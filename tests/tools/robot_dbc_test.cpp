@@ -3,7 +3,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "can/curb_frames.hpp"
+#include "curbline/can/curb_frames.hpp"
 #include "formats_support.hpp"
 #include "robot/signal_dbc.hpp"
 

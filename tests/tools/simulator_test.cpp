@@ -1,6 +1,6 @@
 // The simulated sensors, and the directory that they are written to.
-#include "can/signal.hpp"
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/signal.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"

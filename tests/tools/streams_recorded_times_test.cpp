@@ -1,7 +1,7 @@
 // Recorded times for frames that come over a bus again.
 #include "program/recorded_times.hpp"
 
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 #include "formats_support.hpp"
 
 namespace curbline::tools::testing {

@@ -1,6 +1,6 @@
 // What the cells beside a border say of a side of a step: that its ground lies elsewhere, or how wrong its plane may
 // be.
-#include "curbline/beside.hpp"
+#include "curbline/curbs/beside.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Where edges are found, and how far before their shadow.
-#include "curbline/border_finder.hpp"
+#include "curbline/curbs/border_finder.hpp"
 
 #include <catch2/catch.hpp>
 

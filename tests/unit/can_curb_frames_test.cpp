@@ -1,5 +1,5 @@
 // Curbs as frames: bytes as the header says, both ways, and values that no frame can hold.
-#include "can/curb_frames.hpp"
+#include "curbline/can/curb_frames.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "can/servo_presets.hpp"
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/servo_presets.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 
 using namespace curbline;
 using namespace curbline::can;

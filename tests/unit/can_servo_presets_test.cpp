@@ -1,5 +1,5 @@
 // The presets of servos against frames of their manuals and of real buses.
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

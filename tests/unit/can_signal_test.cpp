@@ -1,5 +1,5 @@
 // Signals of servos: known frames to known angles, and round trips over every layout.
-#include "can/signal.hpp"
+#include "curbline/can/signal.hpp"
 
 #include <algorithm>
 #include <bit>

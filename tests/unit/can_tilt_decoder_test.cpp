@@ -1,5 +1,5 @@
 // Frames to tilt readings: what is given out, what is dropped and counted, and the time that SYNC gives.
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 
 #include <atomic>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <random>
 #include <thread>
 
-#include "can/servo_presets.hpp"
+#include "curbline/can/servo_presets.hpp"
 
 using namespace curbline;
 using namespace curbline::can;

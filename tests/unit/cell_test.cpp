@@ -1,6 +1,6 @@
 // A cell against the posterior of a Gaussian with unknown mean and variance, computed from all points at once in
 // double.
-#include "curbline/cell.hpp"
+#include "curbline/map/cell.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

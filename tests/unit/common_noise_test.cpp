@@ -1,5 +1,5 @@
 // The share of a cell's noise that is common to its points, found again from fields of known variance and correlation.
-#include "curbline/common_noise.hpp"
+#include "curbline/planes/common_noise.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Cells that the edges of steps cross.
-#include "curbline/crossed_cells.hpp"
+#include "curbline/curbs/crossed_cells.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // Curbs beside each other: which are one edge, and their kinds' names.
-#include "curbline/curb.hpp"
+#include "curbline/curbs/curb.hpp"
 
 #include <algorithm>
 #include <array>

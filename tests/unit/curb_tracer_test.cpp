@@ -1,5 +1,5 @@
 // Curbs from labels: where they lie, how high they are, which way they go, and what is not one.
-#include "curbline/curb_tracer.hpp"
+#include "curbline/curbs/curb_tracer.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // The rolling window as a ring in two dimensions: which cells are valid, and what they hold, after every move.
-#include "curbline/dem.hpp"
+#include "curbline/map/dem.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "curbline/link.hpp"
+#include "curbline/regions/link.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {

@@ -1,5 +1,5 @@
 // The best first, whatever was changed and taken out before: against a look at all.
-#include "curbline/gain_heap.hpp"
+#include "curbline/regions/gain_heap.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstddef>

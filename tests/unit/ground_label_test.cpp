@@ -1,5 +1,5 @@
 // The plane under a cell's middle, by the side of a curb on which it lies.
-#include "curbline/ground_label.hpp"
+#include "curbline/curbs/ground_label.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Which planes are ground, drawn as cross-sections.
-#include "curbline/ground.hpp"
+#include "curbline/planes/ground.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Beliefs against the Potts field enumerated in double, and what the field does over time: deferral, refreshing,
 // settling.
-#include "curbline/label_field.hpp"
+#include "curbline/labels/label_field.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "curbline/link.hpp"
+#include "curbline/regions/link.hpp"
 #include "support/small_map.hpp"
 
 namespace curbline {

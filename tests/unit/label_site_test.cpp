@@ -1,5 +1,5 @@
 // The arithmetic of beliefs of one cell: what is heard, taken back, kept and said.
-#include "curbline/label_site.hpp"
+#include "curbline/labels/label_site.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Times of lines that bear the time of their arrival, by three lasers: a turn of 25, 20 and 13.3 ms. Delays are
 // exponential, as those of a host are: never below 0, most of them short, few of them long.
-#include "curbline/line_clock.hpp"
+#include "curbline/intake/line_clock.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

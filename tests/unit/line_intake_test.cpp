@@ -1,5 +1,5 @@
 // A line on its way in: what is refused before it changes anything, and what the map is told.
-#include "curbline/line_intake.hpp"
+#include "curbline/intake/line_intake.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Beams to points: against the chain of transforms in double, and their variance against simulated errors.
-#include "curbline/line_projection.hpp"
+#include "curbline/intake/line_projection.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "curbline/tilt_track.hpp"
+#include "curbline/intake/tilt_track.hpp"
 #include "support/terrain.hpp"
 
 namespace curbline {

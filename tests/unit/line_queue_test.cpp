@@ -1,6 +1,6 @@
 // Lines that wait for their tilt: when each is given out, in which order, and what becomes of those for which there is
 // no room.
-#include "curbline/line_queue.hpp"
+#include "curbline/intake/line_queue.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // What a line says against ground that an earlier sweep has mapped: which of its points are asked, and of what.
-#include "curbline/map_comparison.hpp"
+#include "curbline/intake/map_comparison.hpp"
 
 #include <catch2/catch.hpp>
 #include <memory>

@@ -1,5 +1,5 @@
 // Where a robot may drive.
-#include "curbline/passability.hpp"
+#include "curbline/curbs/passability.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

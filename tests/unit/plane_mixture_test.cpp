@@ -1,5 +1,5 @@
 // Labels of planes over time: who keeps its label, who is born, who dies, and who wins when there are too many.
-#include "curbline/plane_mixture.hpp"
+#include "curbline/planes/plane_mixture.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "curbline/plane_evidence.hpp"
+#include "curbline/regions/plane_evidence.hpp"
 #include "support/moments.hpp"
 #include "support/terrain.hpp"
 

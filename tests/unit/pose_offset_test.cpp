@@ -1,5 +1,5 @@
 // Who has stepped, the robot or its localisation, and by what the poses are set back.
-#include "curbline/pose_offset.hpp"
+#include "curbline/intake/pose_offset.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

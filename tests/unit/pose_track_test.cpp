@@ -1,5 +1,5 @@
 // The robot's pose between and beyond the poses that were given.
-#include "curbline/pose_track.hpp"
+#include "curbline/intake/pose_track.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // Merging by evidence on graphs small enough to check by hand or by trying everything.
-#include "curbline/region_graph.hpp"
+#include "curbline/regions/region_graph.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

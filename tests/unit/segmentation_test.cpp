@@ -1,5 +1,5 @@
 // Leaves and regions: where they part, where they join, and what a scan line leaves alone.
-#include "curbline/segmentation.hpp"
+#include "curbline/regions/segmentation.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

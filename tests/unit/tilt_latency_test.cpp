@@ -1,5 +1,5 @@
 // A servo's latency, from ground that is seen twice.
-#include "curbline/tilt_latency.hpp"
+#include "curbline/intake/tilt_latency.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The tilt servo's readings: interpolation and its bounds, bad readings, and a reader beside a writer that never waits.
-#include "curbline/tilt_track.hpp"
+#include "curbline/intake/tilt_track.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // The servo's watch: each change is told once, and its state is that of the newest reading's age.
-#include "curbline/tilt_watch.hpp"
+#include "curbline/intake/tilt_watch.hpp"
 
 #include <catch2/catch.hpp>
 

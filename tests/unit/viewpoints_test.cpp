@@ -1,5 +1,5 @@
 // The places that a laser has seen from, under numbers that a cell can bear.
-#include "curbline/viewpoints.hpp"
+#include "curbline/map/viewpoints.hpp"
 
 #include <catch2/catch.hpp>
 

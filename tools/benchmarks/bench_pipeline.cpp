@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "program/host_pipeline.hpp"
 #include "reference/reference.hpp"
 #include "robot/robot.hpp"

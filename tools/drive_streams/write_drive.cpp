@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"

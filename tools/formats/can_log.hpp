@@ -6,8 +6,8 @@
 #include <ostream>
 #include <string>
 
-#include "can/frame.hpp"
-#include "can/signal.hpp"
+#include "curbline/can/frame.hpp"
+#include "curbline/can/signal.hpp"
 #include "formats/line_reader.hpp"
 
 namespace curbline::tools {

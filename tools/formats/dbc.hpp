@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "can/signal.hpp"
+#include "curbline/can/signal.hpp"
 
 namespace curbline::tools {
 

@@ -1,12 +1,12 @@
 // The scan lines of a CARMEN log as a robot's laser measured them: their beams are its own, and where they bear the
-// times of their arrival on a host, they get those of the mirror's turns (curbline/line_clock.hpp). Stamps that lie on
-// turns are kept to the nanosecond.
+// times of their arrival on a host, they get those of the mirror's turns (curbline/intake/line_clock.hpp). Stamps that
+// lie on turns are kept to the nanosecond.
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "curbline/line_clock.hpp"
+#include "curbline/intake/line_clock.hpp"
 #include "formats/carmen.hpp"
 
 namespace curbline::tools {

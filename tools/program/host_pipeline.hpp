@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "curbline/curb.hpp"
+#include "curbline/curbs/curb.hpp"
 #include "curbline/pipeline.hpp"
 #include "curbline/settings.hpp"
 #include "map/map.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <set>
 
-#include "curbline/dem.hpp"
+#include "curbline/map/dem.hpp"
 #include "formats/decimals.hpp"
 #include "program/host_pipeline.hpp"
 

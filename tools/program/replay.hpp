@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "formats/trajectory.hpp"
 #include "picture/picture.hpp"
 #include "program/host_pipeline.hpp"

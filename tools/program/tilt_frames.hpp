@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "can/signal.hpp"
+#include "curbline/can/signal.hpp"
 #include "formats/can_log.hpp"
 
 namespace curbline::tools {

@@ -2,8 +2,8 @@
 // need to know of the machine.
 #pragma once
 
-#include "can/servo_presets.hpp"
-#include "can/signal.hpp"
+#include "curbline/can/servo_presets.hpp"
+#include "curbline/can/signal.hpp"
 #include "curbline/settings.hpp"
 
 #include <cstdint>
@@ -51,7 +51,7 @@ struct Robot {
   LabelSettings labels{};
   CurbSettings curbs{};
   can::Signal tilt_signal = can::cia402_position(1);
-  std::optional<std::uint16_t> tilt_sync_id{};  ///< angles are sampled on this frame (can/tilt_decoder.hpp)
+  std::optional<std::uint16_t> tilt_sync_id{};  ///< angles are sampled on this frame (curbline/can/tilt_decoder.hpp)
   Sweep sweep{};
   SimulatedErrors simulated{};
 };

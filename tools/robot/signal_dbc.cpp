@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "can/curb_frames.hpp"
+#include "curbline/can/curb_frames.hpp"
 #include "formats/ascii.hpp"
 #include "formats/decimals.hpp"
 

@@ -13,7 +13,7 @@ namespace curbline::tools {
 /// of the id that need not agree are said in a comment, since DBC has no word for them.
 Dbc dbc_of(const Robot& robot);
 
-/// The frames of can/curb_frames.hpp.
+/// The frames of curbline/can/curb_frames.hpp.
 Dbc curb_dbc();
 
 /// The tables [tilt.signal] and [tilt.signal.multiplexor], ready to paste into a description; `source` is a comment

@@ -1,7 +1,7 @@
 #include "robot/parts.hpp"
 
-#include "can/servo_presets.hpp"
-#include "can/tilt_decoder.hpp"
+#include "curbline/can/servo_presets.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -1,6 +1,6 @@
 #include "robot/parts.hpp"
 
-#include "curbline/dem.hpp"
+#include "curbline/map/dem.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -1,6 +1,6 @@
 #include "simulator/simulation.hpp"
 
-#include "can/signal.hpp"
+#include "curbline/can/signal.hpp"
 #include "formats/bad_input.hpp"
 
 #include <algorithm>

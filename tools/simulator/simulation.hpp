@@ -9,7 +9,7 @@
 // white noise of position and attitude.
 #pragma once
 
-#include "can/frame.hpp"
+#include "curbline/can/frame.hpp"
 #include "curbline/scan_line.hpp"
 #include "simulator/ray_caster.hpp"
 #include "simulator/robot_motion.hpp"

@@ -1,0 +1,84 @@
+// Curbs for the rest of the robot, as CAN frames: what a motor or brake controller needs of the curb ahead, without
+// JSON and without Linux. Written by the daemon or by firmware: after each scan line that was taken a CurbAhead, then a
+// CurbStatus; after one that was dropped (no tilt, say) a CurbStatus alone, since nothing new is known of the way.
+// tools/robots/curb_ahead.dbc is their DBC.
+//
+// Both are standard frames of ids that CANopen (CiA 301) leaves free, and of the preset servos only an ODrive of node
+// 53 uses: see shares_ids(). All numbers are little endian, x ahead and y left of the base frame.
+//
+// CurbAhead, 0x6A0, 8 bytes, one for the nearest step on the way, or, without one, the nearest crease or edge of a
+// ramp:
+//   bits 0-15   distance_m     u16, 1 mm: x of the point of the curb that is nearest to the robot, 0 to 65.534 m
+//   bits 16-31  lateral_m      i16, 1 mm: y of that point, +-32.767 m
+//   bits 32-47  height_m       i16, 1 mm: far side less near side, above 0 is a step up
+//   bits 48-55  height_sd_m    u8, 1 mm; 255 is 0.255 m or more
+//   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp
+//   bits 58-63  probability    u6, 0.02, 0 to 1
+// CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
+//   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver that sees it
+//                              stand, or sees no CurbStatus, does not trust CurbAhead
+//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/tilt_watch.hpp
+//   bits 16-23  curbs          u8, in the window; 255 is 255 or more
+//
+// Values out of range are clamped; NaN of a distance, place or height gives "nothing ahead". Pure, no state: may be
+// called from anywhere. About 200 steps a frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "curbline/can/frame.hpp"
+#include "curbline/can/signal.hpp"
+#include "curbline/curbs/curb.hpp"
+#include "curbline/intake/tilt_watch.hpp"
+#include "curbline/pose.hpp"
+
+namespace curbline::can {
+
+inline constexpr std::uint32_t curb_ahead_id = 0x6A0, curb_status_id = 0x6A1;
+
+struct CurbAhead {
+  float distance_m = 0.0f, lateral_m = 0.0f;
+  float height_m = 0.0f, height_sd_m = 0.0f;
+  CurbKind kind = CurbKind::crease;
+  float probability = 0.0f;
+};
+
+struct CurbStatus {
+  std::uint8_t counter = 0;
+  TiltState tilt = TiltState::never;
+  std::uint32_t curbs = 0;
+};
+
+/// The curb that a robot at a pose meets first when it drives straight on, curbs being in the map frame: in its base
+/// frame, of those that reach into x >= 0 within half_width_m to either side, the one whose nearest point there has the
+/// lowest x. A step before what is none: the gutter before a kerb does not hide it. O(curbs).
+std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m);
+
+/// The frame for a curb, or, with nothing, for a way without one.
+Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);
+Frame curb_status_frame(const CurbStatus& status);
+
+/// Does a servo on the same bus send these ids, or a SYNC? Then it wants another id: two nodes that send one id destroy
+/// each other's frames. An ODrive, of which the signal is one frame, has 32 ids in a row.
+bool shares_ids(const Signal& tilt, std::optional<std::uint16_t> sync_id = std::nullopt);
+
+/// The other way. False if the frame is another one or too short; `curb` is nothing if nothing is ahead.
+bool read_curb_ahead(const Frame& frame, std::optional<CurbAhead>& curb);
+bool read_curb_status(const Frame& frame, CurbStatus& status);
+
+/// A field of these frames, for those who describe them.
+struct CurbField {
+  const char* message;
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  Signal signal;
+  double minimum, maximum;  ///< of what is sent
+};
+
+/// All of them, in the order above; static storage.
+std::span<const CurbField> curb_fields();
+
+}  // namespace curbline::can

@@ -1,0 +1,71 @@
+// Frames of a bus in, tilt readings out: the step between a CAN port and Pipeline::add_tilt(). What is not the servo's
+// is passed over, what is damaged is dropped, and both are counted. One object of about 200 bytes, no heap, at most
+// 128 steps a frame.
+//
+// CANopen drives can sample their position on the SYNC frame and send it when the bus is free: then the angle is that
+// of the SYNC's time, not of its own arrival, which comes up to a millisecond later and jitters. A position whose SYNC
+// was not seen is dropped, since its time is unknown: one that comes with no SYNC since the one before, or later after
+// its SYNC than SYNCs are apart. How far they are is the median of the last five gaps, which a lost or repeated SYNC
+// does not move; before the second SYNC 5 ms are allowed. (CiA 301, SYNC object 0x1005; TPDO
+// transmission types 1 to 240.)
+//
+// take() may be called from an interrupt or a receive thread, one of them; counters() from anywhere, beside take() too.
+// init() must not run beside either: before the interrupt is enabled, or with it masked.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "curbline/can/frame.hpp"
+#include "curbline/can/signal.hpp"
+#include "curbline/tilt_reading.hpp"
+
+namespace curbline::can {
+
+/// The SYNC frame's id unless a CANopen network was set up otherwise.
+inline constexpr std::uint16_t default_sync_id = 0x80;
+
+/// Every frame taken is in exactly one of the others. All wrap at 2^32.
+struct TiltDecoderCounters {
+  std::uint32_t frames = 0;
+  std::uint32_t readings = 0;      ///< given out
+  std::uint32_t others = 0;        ///< another id or multiplexor, remote requests, error messages, SYNC
+                                   ///< frames stamped with no time
+  std::uint32_t syncs = 0;         ///< SYNC frames
+  std::uint32_t malformed = 0;     ///< the servo's, but too short, not finite, no angle of a servo or stamped with no
+                                   ///< time (RisingTimes::is_time)
+  std::uint32_t without_sync = 0;  ///< the servo's, but its SYNC was not seen
+};
+
+class TiltDecoder {
+ public:
+  /// Starts afresh. With sync_id (11 bits) positions are taken as sampled on that frame. False, and nothing is decoded
+  /// until the next init(), if the signal is not valid(), or the id is too large or the signal's own.
+  bool init(const Signal& signal, std::optional<std::uint16_t> sync_id = std::nullopt);
+
+  /// The reading that this frame completes, if it does. Its time is the frame's or its SYNC's.
+  std::optional<TiltReading> take(const Frame& frame);
+
+  /// A snapshot; each number is whole, and they may be a frame apart.
+  TiltDecoderCounters counters() const;
+
+ private:
+  bool is_sync(const Frame& frame) const;
+  void note_sync(std::int64_t time_ns);
+  std::optional<std::int64_t> time_of_position(std::int64_t arrival_ns);
+  std::int64_t sync_period_ns() const;
+
+  Signal signal_{};
+  std::optional<std::uint16_t> sync_id_{};
+  bool ready_ = false;
+  bool sync_pending_ = false;              ///< a SYNC has come since the last position
+  std::optional<std::int64_t> sync_ns_{};  ///< time of the newest SYNC
+  std::array<std::int64_t, 5> gaps_ns_{};  ///< between the newest ones, a ring
+  std::size_t gaps_ = 0;                   ///< in the ring
+  std::size_t next_gap_ = 0;               ///< which is replaced next
+  mutable TiltDecoderCounters counters_{};
+};
+
+}  // namespace curbline::can

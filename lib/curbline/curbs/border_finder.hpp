@@ -1,0 +1,126 @@
+// Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
+// that lie on no plane of the ground, and those that hold something of both sides, are looked through; plane_gap.hpp
+// tells by them where the edge lies, and whether a step down hides what is between planes farther apart than the reach
+// of links. Edges beyond which no ground is seen: ground_end.hpp. Cost: a pass over the window, and that of the gaps.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/counters.hpp"
+#include "curbline/curbs/beside.hpp"
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/cell_line.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/ground_end.hpp"
+#include "curbline/curbs/plane_gap.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/plane.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class BorderFinder {
+ public:
+  BorderFinder(const CurbStages<limits>& stages, int link_reach)
+      : stages_(stages), ends_(stages, link_reach), link_reach_(link_reach) {}
+
+  /// Fills `borders`, which are empty.
+  void find(Borders<limits>& borders, Counters& counters) const;
+
+ private:
+  using Border = typename Borders<limits>::Border;
+  using Line = CellLine<limits>;
+  using Gap = PlaneGap<limits>;
+
+  // Called: inlined twice it would not fit the flash's budget.
+  template <typename Add>
+  [[gnu::noinline]] void cross(const Gap& gap, Add&& add) const;
+  Border border_of(const Gap& gap) const;
+  Beside beside(const Line& line, float border_m, int toward, Label label) const;
+
+  const CurbStages<limits>& stages_;
+  const GroundEnds<limits> ends_;
+  const int link_reach_;
+};
+
+/// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
+template <Limits limits>
+void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) const {
+  const Dem<limits>& dem = stages_.dem;
+  const auto add = [&](const Border& border) { counters.borders_full += !borders.add(dem, border); };
+  const auto end_before = [&](const Line& line, int veil) {
+    if (const auto brink = ends_.brink(line, veil)) add(*brink);
+  };
+  const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
+    if (before.label != no_label && before.label != here.label) cross({stages_, line, before, here}, add);
+    before = here;
+  };
+  std::array<LabelledCell, limits.cols> before_in_col{};
+  LabelledCell before_in_row;
+  int row = -1;
+  dem.for_each_valid([&](int i, int j, int s) {
+    const Label label = stages_.field.label(s);
+    if (!stages_.bears_ground(s) || !stages_.lies_on(i, j, dem.cell(s), stages_.mixture.plane(label))) {
+      end_before({dem, 0, j}, i), end_before({dem, 1, i}, j);
+      return;
+    }
+    if (i != row) before_in_row = {};
+    row = i;
+    pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {dem, 0, j});
+    pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {dem, 1, i});
+  });
+}
+
+/// Calls add(border) for that in a gap, unless it is too wide, and for those where a face on one of its sides ends.
+template <Limits limits>
+template <typename Add>
+void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
+  if (gap.length() > link_reach_ && !gap.hidden()) return;
+  add(border_of(gap));
+  if (const auto end = ends_.of_face(gap.line(), gap.first(), -1)) add(*end);
+  if (const auto end = ends_.of_face(gap.line(), gap.second(), 1)) add(*end);
+}
+
+template <Limits limits>
+auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
+  const bool rising = gap.first().label < gap.second().label;
+  const LabelledCell& low = rising ? gap.first() : gap.second();
+  const LabelledCell& high = rising ? gap.second() : gap.first();
+  const auto [along_m, open, empty] = gap.middle();
+  Border border = Borders<limits>::on(gap.line(), along_m);
+  border.probability = 1.0f - gap.same_plane();
+  border.half_gap_m = 0.5f * static_cast<float>(gap.length()) * gap.line().pitch_m();
+  border.low = low.label;
+  border.high = high.label;
+  border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
+  border.open = open;
+  border.empty = static_cast<std::uint8_t>(std::min(empty, 255));
+  border.beside_low = beside(gap.line(), along_m, -border.sign, low.label);
+  border.beside_high = beside(gap.line(), along_m, border.sign, high.label);
+  return border;
+}
+
+/// Of two cells after the one that a border lies in, along the axis (toward 1) or against it (-1). One that holds more
+/// than the side's plane may lie before them.
+template <Limits limits>
+Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
+  const Plane& plane = stages_.mixture.plane(label);
+  const float slope_m2 = line.dem.slope_m2(plane);
+  const auto lies_alone = [&](int along) {
+    return along >= 0 && along < line.cells() && stages_.holds_alone(line.slot(along), label, slope_m2);
+  };
+  const float border = border_m / line.pitch_m();
+  int nearer = static_cast<int>(border) + toward;
+  if (!lies_alone(nearer)) nearer += toward;
+  const int farther = nearer + toward;
+  if (!lies_alone(nearer) || !lies_alone(farther)) return {};
+  const float away = static_cast<float>(toward) * (static_cast<float>(nearer) + 0.5f - border);
+  return Beside::of(line.above_m(nearer, plane), line.above_m(farther, plane), away);
+}
+
+}  // namespace curbline

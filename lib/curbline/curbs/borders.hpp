@@ -1,0 +1,185 @@
+// Border points between two planes on the rows and columns of the window (BorderFinder), and their chaining into
+// polylines. Working memory of one call of CurbTracer::trace().
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "curbline/curbs/beside.hpp"
+#include "curbline/curbs/cell_line.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Borders {
+ public:
+  using Index = std::uint16_t;
+
+  struct Border {
+    float x_m, y_m;                  ///< in the window's frame
+    float probability;               ///< that the cells on both sides lie on different planes
+    float half_gap_m;                ///< between the cells of the one and the other
+    float drop_m;                    ///< of a brink: to the lowest that is seen behind it; else 0
+    Beside beside_low, beside_high;  ///< of the sides of `low` and `high`
+    Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
+    std::int8_t axis;  ///< 0: found along x, 1: along y
+    std::int8_t sign;  ///< +1 if `high` lies in the positive direction of the axis
+    bool open : 1;     ///< the edge lies anywhere in the gap: something stands there, or hides it
+    bool chained : 1;
+    std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
+    Index next_in_cell;  ///< another border in the same cell
+
+    /// In a line, which it lies off in half gaps.
+    float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
+    /// The direction, of grid.hpp, in which the side of one of its planes lies.
+    std::size_t toward(Label label) const {
+      return static_cast<std::size_t>(direction(axis, label == high ? sign : -sign));
+    }
+  };
+
+  /// Borders of a chain that follow each other. Those of one shadow err alike: all open ones together weigh as one
+  /// observation, unless there are no others.
+  class Part {
+   public:
+    struct Iterator {
+      const Border* all;
+      const Index* at;
+      const Border& operator*() const { return all[*at]; }
+      Iterator& operator++() { return ++at, *this; }
+      bool operator!=(const Iterator& other) const { return at != other.at; }
+    };
+
+    Part(const Border* all, std::span<const Index> part) : all_(all), part_(part) {
+      int open = 0;
+      for (const Border& border : *this) open += border.open;
+      if (open > 0 && open < size()) open_share_ = 1.0f / static_cast<float>(open);
+      for (const Border& border : *this) observations_ += share(border);
+    }
+
+    int size() const { return static_cast<int>(part_.size()); }
+    const Border& operator[](int k) const { return all_[part_[static_cast<std::size_t>(k)]]; }
+    const Border& front() const { return all_[part_.front()]; }
+    const Border& back() const { return all_[part_.back()]; }
+    Iterator begin() const { return {all_, part_.data()}; }
+    Iterator end() const { return {all_, part_.data() + part_.size()}; }
+
+    /// As how many observations one counts, and all of them.
+    float share(const Border& border) const { return border.open ? open_share_ : 1.0f; }
+    float observations() const { return observations_; }
+
+   private:
+    const Border* all_;
+    std::span<const Index> part_;
+    float open_share_ = 1.0f, observations_ = 0.0f;
+  };
+
+  /// One on a row or column, with nothing but its place.
+  static Border on(const CellLine<limits>& line, float along_m) {
+    Border border{};
+    border.x_m = line.x_m(along_m);
+    border.y_m = line.y_m(along_m);
+    border.axis = static_cast<std::int8_t>(line.axis);
+    return border;
+  }
+
+  void clear() {
+    size_ = 0;
+    in_cell_.fill(none);
+  }
+  int size() const { return size_; }
+  bool chained(int border) const { return border_[static_cast<std::size_t>(border)].chained; }
+
+  /// False if the store is full.
+  bool add(const Dem<limits>& dem, Border border);
+
+  /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each,
+  /// within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50
+  /// look-ups a border; (2 reach + 1)^2 where no other lies within two cells.
+  int chain(const Dem<limits>& dem, int border, int reach);
+  const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
+  /// From at(first) to at(last).
+  Part part(int first, int last) const {
+    const auto size = static_cast<std::size_t>(last - first) + 1;
+    return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size));
+  }
+
+ private:
+  static constexpr Index none = 0xFFFF;
+
+  int walk(const Dem<limits>& dem, Index start, int reach);
+  Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
+  /// Before the window's ends in the first cell, beyond them in the last.
+  int cell_of(const Dem<limits>& dem, const Border& border) const {
+    const auto within = [](float cells, int count) { return std::clamp(static_cast<int>(cells), 0, count - 1); };
+    return dem.slot(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
+  }
+
+  std::array<Border, limits.borders> border_;
+  PerCell<Index, limits> in_cell_;
+  std::array<Index, limits.borders> chain_;  ///< of the polyline in hand, in order
+  int size_;
+};
+
+template <Limits limits>
+bool Borders<limits>::add(const Dem<limits>& dem, Border border) {
+  if (size_ == limits.borders) return false;
+  Index& head = in_cell_[cell_of(dem, border)];
+  border.next_in_cell = head;
+  head = static_cast<Index>(size_);
+  border_[static_cast<std::size_t>(size_++)] = border;
+  return true;
+}
+
+template <Limits limits>
+int Borders<limits>::chain(const Dem<limits>& dem, int border, int reach) {
+  // Walk to an end of the polyline, then chain it from there.
+  const int walked = walk(dem, static_cast<Index>(border), reach);
+  for (int k = 0; k < walked; ++k) border_[chain_[static_cast<std::size_t>(k)]].chained = false;
+  return walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
+}
+
+template <Limits limits>
+int Borders<limits>::walk(const Dem<limits>& dem, Index start, int reach) {
+  int length = 0;
+  for (Index b = start; b != none;) {
+    border_[b].chained = true;
+    chain_[static_cast<std::size_t>(length++)] = b;
+    const Index near = nearest(dem, border_[b], 2);
+    b = near != none ? near : nearest(dem, border_[b], reach);
+  }
+  return length;
+}
+
+/// The nearest border of the same planes that is in no chain yet.
+template <Limits limits>
+auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int reach) const -> Index {
+  const int ci = static_cast<int>(from.x_m / dem.cell_x_m()), cj = static_cast<int>(from.y_m / dem.cell_y_m());
+  const int first_i = std::max(ci - reach, 0), last_i = std::min(ci + reach, dem.rows() - 1);
+  const int first_j = std::max(cj - reach, 0), last_j = std::min(cj + reach, dem.cols() - 1);
+  Index best = none;
+  float best_m2 = 1e30f;
+  for (int i = first_i; i <= last_i; ++i) {
+    for (int j = first_j; j <= last_j; ++j) {
+      for (Index b = in_cell_[dem.slot(i, j)]; b != none; b = border_[b].next_in_cell) {
+        const Border& border = border_[b];
+        if (border.chained || border.low != from.low || border.high != from.high) continue;
+        const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;
+        const float m2 = dx * dx + dy * dy;
+        if (m2 < best_m2) {
+          best_m2 = m2;
+          best = b;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace curbline

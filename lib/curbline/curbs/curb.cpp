@@ -1,0 +1,87 @@
+#include "curbline/curbs/curb.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "curbline/math.hpp"
+
+namespace curbline {
+namespace {
+
+/// Of a piece: how far a place lies along it from its first end, and aside, on its left, the far side.
+struct Line {
+  explicit Line(const Curb& curb)
+      : x0_m(curb.x0_m),
+        y0_m(curb.y0_m),
+        dx_m(curb.x1_m - curb.x0_m),
+        dy_m(curb.y1_m - curb.y0_m),
+        length_m(length_of(curb)) {}
+
+  float along_m(float x_m, float y_m) const { return ((x_m - x0_m) * dx_m + (y_m - y0_m) * dy_m) / length_m; }
+  float left_m(float x_m, float y_m) const { return ((y_m - y0_m) * dx_m - (x_m - x0_m) * dy_m) / length_m; }
+
+  float x0_m, y0_m, dx_m, dy_m, length_m;
+};
+
+}  // namespace
+
+const char* to_string(CurbKind kind) {
+  switch (kind) {
+    case CurbKind::step_up:
+      return "step_up";
+    case CurbKind::step_down:
+      return "step_down";
+    case CurbKind::crease:
+      return "crease";
+    case CurbKind::ramp_edge:
+      return "ramp_edge";
+  }
+  return "unknown";
+}
+
+CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
+  const float across =
+      border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
+  const float steep = magnitude(across);
+  const float step_m = magnitude(drawn.height_m);
+  const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
+  const float cell_m2 = std::max(drawn.texture_m2, mean_m2);
+  const float unknown_m2 = square(drawn.height_sd_m) + cell_m2 + square(steep) * drawn.place_variance_m2;
+  const float open_m = first.steeper_than_ground() || second.steeper_than_ground() ? steep * drawn.half_gap_m : 0.0f;
+  if (step_m > open_m + 2.0f * square_root(unknown_m2)) return CurbKind::step_up;
+  const auto is_ramp = [&](const Plane& plane) {
+    const float slope = border.normal_x * plane.slope_x + border.normal_y * plane.slope_y;
+    return slope > least_ramp || slope < -least_ramp;
+  };
+  return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
+}
+
+void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told) {
+  for (std::size_t k = 0; k < curbs.size(); ++k) {
+    const float length_m = length_of(curbs[k]);
+    told[k] = false;
+    for (std::size_t o = 0; is_step(curbs[k]) && o < curbs.size() && !told[k]; ++o) {
+      const float other_m = length_of(curbs[o]);
+      const bool longer = other_m > length_m || (other_m == length_m && o < k);
+      told[k] = longer && is_step(curbs[o]) && overlap_m(curbs[k], curbs[o], cell_m) > length_m - cell_m;
+    }
+  }
+}
+
+float to_far_side_m(const Curb& curb, float x_m, float y_m) {
+  const Line line(curb);
+  const float along_m = line.along_m(x_m, y_m);
+  return along_m >= 0.0f && along_m <= line.length_m ? line.left_m(x_m, y_m) : std::numeric_limits<float>::infinity();
+}
+
+float overlap_m(const Curb& now, const Curb& before, float near_m) {
+  const Line line(before);
+  if (!(line.length_m > 0.0f)) return 0.0f;
+  const float aside_m = line.left_m(0.5f * (now.x0_m + now.x1_m), 0.5f * (now.y0_m + now.y1_m));
+  if (aside_m > near_m || aside_m < -near_m) return 0.0f;
+  const float a = line.along_m(now.x0_m, now.y0_m), b = line.along_m(now.x1_m, now.y1_m);
+  return std::min(line.length_m, std::max(a, b)) - std::max(0.0f, std::min(b, a));
+}
+
+}  // namespace curbline

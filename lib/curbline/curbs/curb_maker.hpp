@@ -1,0 +1,134 @@
+// Makes a curb of a straight part of a chain of borders: what kind it is, how high (step_height.hpp), where it lies and
+// how well that is known. Cost: 60 operations a border, eight cells beside each border of a step, and a pass over the
+// window where there is a deep drop.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/curb.hpp"
+#include "curbline/curbs/curb_piece.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/step_height.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// For one call of CurbTracer::trace().
+template <Limits limits>
+class CurbMaker {
+ public:
+  using Border = typename Borders<limits>::Border;
+  using Part = typename Borders<limits>::Part;
+
+  CurbMaker(const CurbSettings& settings, const CurbStages<limits>& stages) : settings_(settings), stages_(stages) {}
+
+  PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
+
+  /// Which ends of its chain a part is at.
+  struct Ends {
+    bool first, last;
+  };
+  /// None of the side of an obstacle, nor of a step that only one row or column shows and no ground behind.
+  std::optional<Curb> make(const Part& part, const Ends& at);
+
+ private:
+  using Piece = CurbPiece<limits>;
+
+  static Curb without_height(const Piece& piece);
+  static float place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2);
+  bool obstacle(const Curb& curb, const Piece& piece);
+  const Plane& nearest_ground();
+  void set_ends(const Piece& piece, Curb& curb) const;
+
+  const CurbSettings& settings_;
+  const CurbStages<limits>& stages_;
+  const Plane* nearest_ground_ = nullptr;  ///< until a deep drop asks for it
+};
+
+template <Limits limits>
+std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
+  Piece piece(stages_, part);
+  if (at.first) piece.go_on(stages_, settings_.link_reach, Piece::End::first);
+  if (at.last) piece.go_on(stages_, settings_.link_reach, Piece::End::second);
+  StepHeight<limits> step(stages_, piece);
+  Curb curb = without_height(piece);
+  curb.kind = kind_of(piece.planes.low, piece.planes.high, piece.line, step.drawn());
+  const bool one_sided = piece.one_sided();
+  if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a row's or column's alone is no line
+  step.refine(part, is_step(curb), settings_.link_reach);
+  if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
+  if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
+  if (obstacle(curb, piece)) return std::nullopt;
+  const float place_m2 = place_variance_m2(piece, curb, step.variance_m2());
+  curb.position_sd_m = square_root(place_m2);
+  step.doubt_place(place_m2);
+  curb.height_sd_m = square_root(step.variance_m2());
+  const float width_m = piece.gap_m - piece.cell_m - step.shadow_m();
+  curb.face_width_m = one_sided ? 0.0f : std::max(0.0f, width_m);
+  set_ends(piece, curb);
+  return curb;
+}
+
+template <Limits limits>
+Curb CurbMaker<limits>::without_height(const Piece& piece) {
+  Curb curb;
+  curb.near_label = piece.low_is_near ? piece.first.low : piece.first.high;
+  curb.far_label = piece.low_is_near ? piece.first.high : piece.first.low;
+  curb.probability = std::min(1.0f, piece.probability);  // a mean, rounded
+  return curb;
+}
+
+/// Of a piece's middle, across it.
+template <Limits limits>
+float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2) {
+  if (!is_step(curb) || piece.one_sided()) return piece.borders_variance_m2;
+  const float cell_variance_m2 = 0.5f * (piece.planes.low.fit_variance_m2 + piece.planes.high.fit_variance_m2);
+  return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
+}
+
+/// Is a step the side of an obstacle: higher than any, or the drop behind one, from where no robot gets to?
+template <Limits limits>
+bool CurbMaker<limits>::obstacle(const Curb& curb, const Piece& piece) {
+  if (curb.height_m >= -settings_.max_step_m) return curb.height_m > settings_.max_step_m;
+  const Plane& near = stages_.mixture.plane(curb.near_label);
+  return near.height_m(piece.x_m, piece.y_m) - nearest_ground().height_m(piece.x_m, piece.y_m) > settings_.max_step_m;
+}
+
+/// The plane that is borne nearest to the laser: the robot's own ground, as far as is seen.
+template <Limits limits>
+const Plane& CurbMaker<limits>::nearest_ground() {
+  if (nearest_ground_ != nullptr) return *nearest_ground_;
+  int nearest = 0;
+  float least_m2 = -1.0f;
+  stages_.dem.for_each_valid([&](int i, int j, int s) {
+    if (stages_.field.label(s) == no_label || !stages_.mixture.on_ground(s)) return;
+    const float away_m2 = square((static_cast<float>(i) + 0.5f) * stages_.dem.cell_x_m() - stages_.view.x_m) +
+                          square((static_cast<float>(j) + 0.5f) * stages_.dem.cell_y_m() - stages_.view.y_m);
+    if (least_m2 >= 0.0f && away_m2 >= least_m2) return;
+    least_m2 = away_m2;
+    nearest = stages_.field.label(s);
+  });
+  nearest_ground_ = &stages_.mixture.plane(nearest);
+  return *nearest_ground_;
+}
+
+/// In the map frame, the near side to the right of the way from the first to the second.
+template <Limits limits>
+void CurbMaker<limits>::set_ends(const Piece& piece, Curb& curb) const {
+  const float x_m = stages_.dem.origin_x_m(), y_m = stages_.dem.origin_y_m();
+  curb.x0_m = x_m + piece.line.x0_m;
+  curb.y0_m = y_m + piece.line.y0_m;
+  curb.x1_m = x_m + piece.line.x1_m;
+  curb.y1_m = y_m + piece.line.y1_m;
+  if (piece.low_is_right == piece.low_is_near) return;
+  std::swap(curb.x0_m, curb.x1_m);
+  std::swap(curb.y0_m, curb.y1_m);
+}
+
+}  // namespace curbline

@@ -1,0 +1,260 @@
+// A straight piece of a chain of borders (borders.hpp) before it is a curb: the line that they lie on, what they tell
+// on the mean, how far the line goes on beyond them, and from where what lies beside it was seen. Cost: 40 operations a
+// border, and of a robot that drives a look at the cells beside it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/curbs/beside.hpp"
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/line_fit.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+/// The planes that a border parts. Where no ground is seen beyond it the near one stands for the other, too: no step
+/// but the drop, no known slope.
+struct PlanePair {
+  const Plane &low, &high;  ///< by number
+
+  /// Is the step between them one height from one place to another, (dx, dy) from it? From the middle of a piece to an
+  /// end it may change by no more than the repeatability of a range-finder.
+  bool even(float dx_m, float dy_m) const {
+    constexpr float most_change_m = 0.02f;
+    return magnitude(change_m(dx_m, dy_m)) <= most_change_m;
+  }
+  /// By how much it changes.
+  float change_m(float dx_m, float dy_m) const {
+    return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
+  }
+  /// How much steeper the one is across a line: where that lies tells how far they differ there.
+  float slope_across(const LineFit::Segment& line) const {
+    return (high.slope_x - low.slope_x) * line.normal_x + (high.slope_y - low.slope_y) * line.normal_y;
+  }
+};
+
+/// Borders that lie on one line; means of what they tell.
+template <Limits limits>
+struct CurbPiece {
+  using Border = typename Borders<limits>::Border;
+  using Part = typename Borders<limits>::Part;
+  using Stages = CurbStages<limits>;
+
+  /// How far borders lie off their line, in half gaps, is normal, of a variance that is inverse gamma before one is
+  /// seen: a0, and b0 as of what lies anywhere from -1 to 1. The prior is 2 b0, to which the sum of the squares is
+  /// added.
+  static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
+
+  const Border& first;  ///< all of them part the same planes
+  PlanePair planes;
+  LineFit::Segment line{};
+  float x_m = 0.0f, y_m = 0.0f;  ///< mean of the borders
+  float drop_m = 0.0f;           ///< of a brink
+  float probability = 0.0f, half_gap_m = 0.0f;
+  Beside beside_low{}, beside_high{};  ///< sums
+  float borders;                       ///< how many
+  float observations;                  ///< as how many they weigh, Borders::Part
+  float place_variance_m2 = 0.0f;      ///< of a border, across the line
+  float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
+  float told_variance_m2 = 0.0f;       ///< the same of a step, whose cells tell where in the gap it lies
+  float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
+  bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
+  bool low_is_right = false;           ///< of the line, from its first end to its second
+
+  /// Fits a line to the borders and takes the mean of what they tell.
+  CurbPiece(const Stages& stages, const Part& part);
+
+  static PlanePair planes_of(const Stages& stages, const Border& border) {
+    const Label beyond = border.high == no_label ? border.low : border.high;
+    return {stages.mixture.plane(border.low), stages.mixture.plane(beyond)};
+  }
+  /// Is no ground seen on the other side of `low`?
+  bool one_sided() const { return first.high == no_label; }
+  float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
+  float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
+  /// By how much its height changes from end to end, as its planes have it.
+  float change_m() const { return planes.change_m(line.x1_m - line.x0_m, line.y1_m - line.y0_m); }
+  /// Of a plane's height in the middle.
+  float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
+
+  enum class End : std::uint8_t { first, second };  ///< of its line
+  /// Where one of its sides is not seen no border tells of a line. From the end of a chain it goes on cell by cell, as
+  /// long as one side is that of its plane, the other no other plane's, and its height one; no farther than to the
+  /// middle of the widest gap that a chain bridges, nor than a quarter of its length, where the variance of where it
+  /// lies has doubled.
+  void go_on(const Stages& stages, int link_reach, End end);
+  /// Mean square of how far heights shift the line of a step. Each cell of the gap, the ones on both sides too, tells
+  /// by its own height where in it the edge lies. If the step's is wrong by a share of it all are off by half of that
+  /// share, at most by half the gap; if a cell's own is, it alone is off by that share, at most by all of it.
+  float shifted_m2(float step_m, float height_variance_m2, float cell_variance_m2) const {
+    const float each = 1.0f / square(step_m);
+    const float all = height_variance_m2 * each, own = cell_variance_m2 * each;
+    return square(0.5f * gap_m) * std::min(1.0f, all) + (gap_m + cell_m) * cell_m * std::min(1.0f, own) / observations;
+  }
+  /// Does it look from the right of the line?
+  bool has_right(const Viewpoint& view) const {
+    return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
+  }
+  /// From where the lower side of a piece was seen last: the mean of its cells next to the borders.
+  static Viewpoint seen_from(const Stages& stages, const Part& part, int link_reach, Label lower);
+
+ private:
+  void take_means(const Part& part);
+  void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
+  void take_widths(const Dem<limits>& dem, const Part& part);
+  enum class Side : std::uint8_t { unseen, own, other };
+  static Side side(const Stages& stages, float x_m, float y_m, Label own);
+  static int cell_beside(const Stages& stages, const Border& border, int link_reach, Label own);
+};
+
+template <Limits limits>
+CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
+    : first(part.front()),
+      planes(planes_of(stages, first)),
+      borders(static_cast<float>(part.size())),
+      observations(part.observations()) {
+  const Dem<limits>& dem = stages.dem;
+  LineFit fit;
+  for (const Border& border : part) fit.add(border.x_m, border.y_m, border.weight() * part.share(border));
+  x_m = fit.x_m();
+  y_m = fit.y_m();
+  const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
+  line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
+  float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
+  for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
+  // Of a single border, or of two in one place, where surfaces meet at a cell that nobody has seen.
+  if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
+  low_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
+  low_is_near = one_sided() || low_is_right == has_right(stages.view);
+  take_means(part);
+  take_variances(dem, part, fit);
+  take_widths(dem, part);
+}
+
+template <Limits limits>
+void CurbPiece<limits>::take_means(const Part& part) {
+  for (const Border& border : part) {
+    const float each = part.share(border) / observations;
+    drop_m += each * border.drop_m;
+    probability += each * border.probability;
+    half_gap_m += each * border.half_gap_m;
+    beside_low.add(border.beside_low);
+    beside_high.add(border.beside_high);
+  }
+}
+
+template <Limits limits>
+void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit) {
+  float told = 0.0f, open = 0.0f;
+  bool alike = true;  // do they err: each is open, or has no far plane
+  for (const Border& border : part) {
+    if (border.open) {
+      open += part.share(border) / border.half_gap_m;
+    } else {
+      const float pitch_m = dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
+      told += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
+      open += border.weight() * 0.5f * empty_m;
+    }
+    alike = alike && (border.open || one_sided());
+  }
+  const float n = observations;
+  // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
+  place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
+  const float grown = fit.grown(middle_x_m(), middle_y_m());
+  // Each lies anywhere in its gap, on its own; those that err alike are as little known as one of them.
+  borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight() * grown;
+  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. Open ones lie
+  // anywhere in their gaps, all alike; so do others where cells are empty, in a shadow or between the same scan lines.
+  told_variance_m2 = ((1.0f / 12) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
+}
+
+template <Limits limits>
+void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
+  for (const Border& border : part) {
+    const float cosine = border.axis == 0 ? line.normal_x : line.normal_y;
+    const float across = part.share(border) / observations * magnitude(cosine);
+    gap_m += 2.0f * border.half_gap_m * across;
+    cell_m += dem.cell_m(border.axis) * across;
+  }
+}
+
+/// What is seen of one side of a line, which should be of the plane `own`.
+template <Limits limits>
+auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label own) -> Side {
+  const Dem<limits>& dem = stages.dem;
+  const int slot = dem.slot_within(x_m, y_m);
+  if (slot < 0 || !dem.cell(slot).valid() || !stages.mixture.on_ground(slot)) return Side::unseen;
+  const Label label = stages.field.label(slot);
+  return label == own ? Side::own : label == no_label ? Side::unseen : Side::other;
+}
+
+template <Limits limits>
+void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
+  const bool from_second = end == End::first;
+  const float from_x = from_second ? line.x1_m : line.x0_m, from_y = from_second ? line.y1_m : line.y0_m;
+  float& end_x = from_second ? line.x0_m : line.x1_m;
+  float& end_y = from_second ? line.y0_m : line.y1_m;
+  const float dx_m = end_x - from_x, dy_m = end_y - from_y;
+  const float length_m = square_root(dx_m * dx_m + dy_m * dy_m);
+  if (!(length_m > 0.0f)) return;
+  const float pitch_m = 0.5f * (stages.dem.cell_x_m() + stages.dem.cell_y_m());
+  const float step_x = dx_m * pitch_m / length_m, step_y = dy_m * pitch_m / length_m;
+  const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
+  const float aside_m = std::max(pitch_m, half_gap_m);
+  const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
+  const float high_x = line.normal_x * to_high_m, high_y = line.normal_y * to_high_m;
+  const float most = 0.25f * length_m / pitch_m;
+  for (int k = 1; 2 * k <= link_reach && static_cast<float>(k) <= most; ++k) {
+    const float middle_x = end_x + 0.5f * step_x, middle_y = end_y + 0.5f * step_y;
+    const Side high = side(stages, middle_x + high_x, middle_y + high_y, first.high);
+    const Side low = side(stages, middle_x - high_x, middle_y - high_y, first.low);
+    if (high == Side::other || low == Side::other || (high == Side::unseen && low == Side::unseen)) return;
+    if (!planes.even(end_x + step_x - from_x, end_y + step_y - from_y)) return;
+    end_x += step_x;
+    end_y += step_y;
+  }
+}
+
+/// The cell nearest to a border, on the side of the plane `own`, that bears it; -1 if none does.
+template <Limits limits>
+int CurbPiece<limits>::cell_beside(const Stages& stages, const Border& border, int link_reach, Label own) {
+  const Dem<limits>& dem = stages.dem;
+  const std::size_t d = border.toward(own);
+  const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
+  int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
+  for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
+    const int slot = dem.slot(i, j);
+    if (dem.cell(slot).valid() && stages.field.label(slot) == own) return slot;
+    i += step_i[d];
+    j += step_j[d];
+  }
+  return -1;
+}
+
+template <Limits limits>
+Viewpoint CurbPiece<limits>::seen_from(const Stages& stages, const Part& part, int link_reach, Label lower) {
+  Viewpoint mean = stages.view;
+  if (!stages.dem.seen_from_several()) return mean;
+  float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
+  for (const Border& border : part) {
+    const int slot = cell_beside(stages, border, link_reach, lower);
+    if (slot < 0) continue;
+    const Viewpoint view = stages.dem.seen_from(slot, stages.view);
+    sum_x += view.x_m;
+    sum_y += view.y_m;
+    cells += 1.0f;
+  }
+  if (cells > 0.0f) {
+    mean.x_m = sum_x / cells;
+    mean.y_m = sum_y / cells;
+  }
+  return mean;
+}
+
+}  // namespace curbline

@@ -1,0 +1,204 @@
+// Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
+// chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height, of
+// which curb_maker.hpp makes curbs. Each keeps its number from call to call. Cost: a pass over the window, another
+// where there is a deep drop, 50 look-ups a border point, as many again for one with an empty cell in its gap, 60
+// operations for each border of what is left of a chain and each of its pieces, and 20 for each pair of curbs, and of
+// one and one of the call before.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "curbline/counters.hpp"
+#include "curbline/curbs/border_finder.hpp"
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/curb.hpp"
+#include "curbline/curbs/curb_maker.hpp"
+#include "curbline/curbs/curb_piece.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/labels/label_field.hpp"
+#include "curbline/line_fit.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class CurbTracer {
+ public:
+  void init(const CurbSettings& settings) {
+    settings_ = settings;
+    curbs_ = 0;
+    last_id_ = 0;
+  }
+
+  /// Working memory of one trace().
+  struct Work {
+    Borders<limits> borders;
+    std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of three borders at least
+    std::array<Curb, limits.curbs> curb;
+    std::array<bool, limits.curbs> told;  ///< told_by_longer()
+    int curbs;
+  };
+
+  /// Finds all curbs of the window, in working memory that is the caller's.
+  void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
+             const Viewpoint& view, Work& work, Counters& counters);
+
+  /// What the last trace() found. Valid until the next.
+  std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
+
+ private:
+  using Border = typename Borders<limits>::Border;
+  using Part = typename Borders<limits>::Part;
+  using Ends = typename CurbMaker<limits>::Ends;
+  using Piece = CurbPiece<limits>;
+
+  static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
+  static int bend(const Part& part);
+  static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
+  static void tell_once(Work& work, float cell_m);
+  void keep_ids(Work& work, float near_m);
+
+  CurbSettings settings_{};
+  std::array<Curb, limits.curbs> curb_{};
+  int curbs_ = 0;
+  std::uint16_t last_id_ = 0;
+};
+
+template <Limits limits>
+void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
+                               const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
+  work.curbs = 0;
+  work.borders.clear();
+  const CurbStages<limits> stages{dem, mixture, field, view};
+  BorderFinder<limits>(stages, settings_.link_reach).find(work.borders, counters);
+  CurbMaker<limits> maker(settings_, stages);
+  for (int b = 0; b < work.borders.size(); ++b) {
+    if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
+  }
+  const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
+  tell_once(work, cell_m);
+  keep_ids(work, 2.0f * cell_m);
+}
+
+template <Limits limits>
+void CurbTracer<limits>::tell_once(Work& work, float cell_m) {
+  const auto found = static_cast<std::size_t>(work.curbs);
+  told_by_longer(std::span(work.curb.data(), found), cell_m, work.told);
+  work.curbs = 0;
+  for (std::size_t k = 0; k < found; ++k) {
+    if (!work.told[k]) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
+  }
+}
+
+/// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were
+/// found; others get new numbers.
+template <Limits limits>
+void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
+  for (int n = 0; n < work.curbs; ++n) {
+    Curb& now = work.curb[static_cast<std::size_t>(n)];
+    Curb* same = nullptr;
+    float most_m = 0.0f;
+    for (int o = 0; o < curbs_; ++o) {
+      Curb& before = curb_[static_cast<std::size_t>(o)];
+      if (before.id == 0 || is_step(before) != is_step(now)) continue;
+      const float length_m = overlap_m(now, before, near_m);
+      if (length_m <= most_m) continue;
+      most_m = length_m;
+      same = &before;
+    }
+    now.id = 0;
+    if (same == nullptr) continue;
+    now.id = same->id;
+    same->id = 0;  // taken
+  }
+  const std::span<const Curb> kept(work.curb.data(), static_cast<std::size_t>(work.curbs));
+  const auto new_id = [&] {
+    do {
+      last_id_ = static_cast<std::uint16_t>(last_id_ == 65535 ? 1 : last_id_ + 1);
+    } while (std::any_of(kept.begin(), kept.end(), [this](const Curb& curb) { return curb.id == last_id_; }));
+    return last_id_;
+  };
+  for (int n = 0; n < work.curbs; ++n) {
+    Curb& curb = curb_[static_cast<std::size_t>(n)];
+    curb = work.curb[static_cast<std::size_t>(n)];
+    if (curb.id == 0) curb.id = new_id();
+  }
+  curbs_ = work.curbs;
+}
+
+/// Splits the chain where it bends, halves what is straight until its height is one, and gives out the pieces in order.
+template <Limits limits>
+void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters) {
+  int first = 0;
+  const PlanePair planes = maker.planes_of(work.borders.at(first));
+  const auto even_to = [&](const Border& to) {
+    const Border& from = work.borders.at(first);
+    return planes.even(to.x_m - from.x_m, to.y_m - from.y_m);
+  };
+  std::size_t parts = 0;  // whose ends are known; the next one's last
+  work.ends[parts++] = length - 1;
+  while (parts > 0) {
+    const int last = work.ends[parts - 1], split = bend(work.borders.part(first, last));
+    if (split >= 0) {
+      work.ends[parts++] = first + split;
+      continue;
+    }
+    --parts;
+    while (first <= last) {
+      int end = last;
+      while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
+      give_out(maker, work.borders.part(first, end), {first == 0, end == length - 1}, work, counters);
+      first = end + 1;
+    }
+  }
+}
+
+/// The last border of the first of two lines that follow the others better than one does, -1 if one is enough: by the
+/// evidence of how far they lie off, in half gaps, normal noise of unknown variance, before it is seen with the weight
+/// of four as if each lay anywhere within its gap. All open borders are one observation together. Another line has two
+/// parameters and a place to begin, each of which costs half the logarithm of the number of borders (Schwarz 1978). Two
+/// borders always lie on a line: it takes three to follow one.
+template <Limits limits>
+int CurbTracer<limits>::bend(const Part& part) {
+  LineFit before, after;
+  const auto weight = [&](const Border& border) { return border.weight() * part.share(border); };
+  for (const Border& border : part) after.add(border.x_m, border.y_m, weight(border));
+  const float one = after.squares(), n = part.observations();
+  float two = one;
+  int found = -1;
+  for (int k = 0; k < part.size() - 3; ++k) {
+    const Border& border = part[k];
+    const float border_weight = weight(border);
+    before.add(border.x_m, border.y_m, border_weight);
+    after.remove(border.x_m, border.y_m, border_weight);
+    if (k < 2) continue;
+    const float squares = before.squares() + after.squares();
+    if (squares >= two) continue;
+    two = squares;
+    found = k;
+  }
+  if (found < 0) return -1;
+  const float gain =
+      (Piece::place_a0 + 0.5f * n) * log((Piece::place_prior + one) / (Piece::place_prior + two)) - 1.5f * log(n);
+  return gain > 0.0f ? found : -1;
+}
+
+template <Limits limits>
+void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work,
+                                  Counters& counters) {
+  if (work.curbs == limits.curbs) {
+    ++counters.curbs_full;
+    return;
+  }
+  if (const std::optional<Curb> curb = maker.make(part, at)) work.curb[static_cast<std::size_t>(work.curbs++)] = *curb;
+}
+
+}  // namespace curbline

@@ -1,0 +1,123 @@
+// Edges that are found although no ground is seen beyond, on a row or column of the window:
+//   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
+//     as well as the face; what lies beyond is flatter than the rays.
+//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
+//     or belong to what stands there, follow the ground, away from the laser, and lie below it. They fall as far as is
+//     seen of the step.
+// Cost: a look at each cell of a face, a veil and an obstacle.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/cell_line.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/plane.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class GroundEnds {
+ public:
+  using Border = typename Borders<limits>::Border;
+  using Line = CellLine<limits>;
+
+  GroundEnds(const CurbStages<limits>& stages, int link_reach) : stages_(stages), link_reach_(link_reach) {}
+
+  /// Of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it is no
+  /// face, or does not end in the window.
+  std::optional<Border> of_face(const Line& line, const LabelledCell& first, int toward) const;
+  /// Before a cell, if that is the first of a veil, as the laser sees it. What stands on the ground does not lie below
+  /// it: a cell of an obstacle that does, if it was seen over the edge, mixes what lies behind that, as a veil.
+  std::optional<Border> brink(const Line& line, int first_of_veil) const;
+
+ private:
+  static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
+
+  Border border_behind(const Line& line, int last, int toward, float along_m) const;
+
+  const CurbStages<limits>& stages_;
+  const int link_reach_;
+};
+
+/// The points of the last cell reach as far beyond their centroid as they lie before it. Where the next one would have
+/// been is open to a cell.
+template <Limits limits>
+auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, int toward) const
+    -> std::optional<Border> {
+  const Plane& plane = stages_.mixture.plane(first.label);
+  const auto sign = static_cast<float>(toward);
+  const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
+  if (rise <= steepest_ramp || line.away(stages_.view, first.along) != toward) return std::nullopt;
+
+  const int widest = static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);  // touched, when it lies across cells
+  int last = first.along;
+  while (const int g = line.next_valid(last, toward, link_reach_)) {
+    last += toward * g;
+    if (stages_.field.label(line.slot(last)) != first.label || toward * (last - first.along) >= widest)
+      return std::nullopt;
+  }
+  const bool at_end = last == 0 || last == line.cells() - 1;
+  if (at_end) return std::nullopt;  // the window's, perhaps not the face's
+
+  const float centroid = sign * line.offset(line.cell(last));
+  const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
+  Border border = border_behind(line, last, toward, (static_cast<float>(last) + 0.5f + sign * edge) * line.pitch_m());
+  border.half_gap_m = line.pitch_m();
+  return border;
+}
+
+/// The veil falls on to the far side of its last cell.
+template <Limits limits>
+auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std::optional<Border> {
+  const int toward = line.away(stages_.view, first_of_veil);
+  const int before = line.next_valid(first_of_veil, -toward, link_reach_);
+  const int edge = first_of_veil - toward * before;
+  if (before == 0 || !stages_.bears_ground(line.slot(edge))) return std::nullopt;
+  const auto on_plane = [&](int along, Label label) {
+    return stages_.lies_on(line.row(along), line.col(along), line.cell(along), stages_.mixture.plane(label));
+  };
+  const Label label = stages_.field.label(line.slot(edge));
+  const Plane& plane = stages_.mixture.plane(label);
+  const auto below = [&](int along) { return line.above_m(along, plane) < 0.0f && !on_plane(along, label); };
+  const auto may_fall = [&](int along) {
+    const int s = line.slot(along);
+    return stages_.is_veil(s) || (stages_.mixture.covered(s) && below(along) &&
+                                  line.away(line.dem.seen_from(s, stages_.view), along) == toward);
+  };
+  if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
+  int last = first_of_veil;
+  while (const int g = line.next_valid(last, toward, link_reach_)) {
+    const int next = last + toward * g;
+    const int s = line.slot(next);
+    if (stages_.bears_ground(s) &&
+        (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s))))
+      return std::nullopt;
+    if (!may_fall(next)) break;
+    last = next;
+  }
+  if (!below(last)) return std::nullopt;
+
+  const auto cells = static_cast<float>(toward * (last - edge));
+  Border border = border_behind(line, edge, toward, static_cast<float>(edge + (toward > 0 ? 1 : 0)) * line.pitch_m());
+  border.half_gap_m = 0.5f * line.pitch_m();
+  border.drop_m = -line.above_m(last, plane) * cells / (cells - 0.5f);
+  return border;
+}
+
+/// `high` is no_label, and on the side of what is not seen, behind the last cell of a plane.
+template <Limits limits>
+auto GroundEnds<limits>::border_behind(const Line& line, int last, int toward, float along_m) const -> Border {
+  const Label label = stages_.field.label(line.slot(last));
+  Border border = Borders<limits>::on(line, along_m);
+  border.probability = stages_.field.belief(line.dem, line.row(last), line.col(last)).of(label);
+  border.low = label;
+  border.high = no_label;
+  border.sign = static_cast<std::int8_t>(toward);
+  return border;
+}
+
+}  // namespace curbline

@@ -1,0 +1,50 @@
+// Where a robot may drive: what steps and slopes its builder says it can take, asked of the map and of curbs. Unknown
+// ground is not passable.
+#pragma once
+
+#include "curbline/curbs/curb.hpp"
+#include "curbline/labels/label_field.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+
+namespace curbline {
+
+struct Mobility {
+  float max_step_m = 0.0f;     ///< up or down, >= 0
+  float max_slope_rad = 0.0f;  ///< against the map's x and y plane, [0, pi / 2)
+};
+
+/// May a plane be driven on?
+bool passable(const Plane& plane, const Mobility& mobility);
+
+/// May a curb be crossed? A step if it is no higher than max_step_m with a probability of 97.5 %; a crease or the edge
+/// of a ramp if both its planes are no steeper than max_slope_rad.
+bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
+
+/// May a wheel stand in cell (i, j) and leave it? If its plane is ground and not too steep, the heights within it
+/// spread over no more than the step (the width of an even distribution of their variance, that of noise taken off),
+/// and neither it nor a next cell within two cells along x and y lies a step off the plane. O(1).
+template <Limits limits>
+bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
+              int j, const Mobility& mobility) {
+  const int slot = dem.slot(i, j);
+  const Label label = field.label(slot);
+  if (!dem.cell(slot).valid() || label == no_label || !passable(mixture.plane(label), mobility)) return false;
+  const Plane& plane = mixture.plane(label);
+  const float square_m2 = mobility.max_step_m * mobility.max_step_m;
+  const auto level = [&](int a, int b, const Cell& cell) {
+    const float off_m = dem.above_m(a, b, cell, plane);
+    return off_m * off_m <= square_m2;
+  };
+  const Cell& here = dem.cell(slot);
+  const float spread_m2 = dem.spread_m2(here);
+  if (!level(i, j, here) || 12.0f * spread_m2 > square_m2 * here.weight) return false;
+  for (std::size_t d = 0; d < directions; ++d) {
+    const int g = dem.next_valid(slot, static_cast<int>(d), 2);
+    const int a = i + g * step_i[d], b = j + g * step_j[d];
+    if (g > 0 && !level(a, b, dem.cell(dem.slot(a, b)))) return false;
+  }
+  return true;
+}
+
+}  // namespace curbline

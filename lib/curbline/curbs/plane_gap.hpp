@@ -1,0 +1,184 @@
+// A gap between two planes on a row or column of the window: from a cell that bears the one to the next that bears the
+// other. Whether a step down hides what a wide one lacks, where in it the edge lies, to a part of a cell, and how
+// likely there is one. Cost: a look at each cell of the gap, and along the ray to it where one is empty.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "curbline/curbs/cell_line.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+/// What a cell shows of a step that crosses it, along the way from the near side to the far one.
+struct CrossedCell {
+  float far_share;  ///< of the step: 0 if the cell's mean height is that of the near plane, 1 if of the far one
+  float centroid;   ///< of its points, in cells from its near side
+};
+
+/// How much of a cell lies before the middle of what parts the planes, in cells. With as many points a metre on both
+/// planes, each sum over the cells of a gap is exact for
+///   - a vertical face that shows any number of points: 1/2 - far_share + centroid is where it stands;
+///   - a sloped face as densely seen as the planes;
+///   - a gap without points, of which the cells on both sides hold a part: their centroids tell how much, and half of
+///     it is counted.
+/// A centroid is not bounded: what a few points lie off by lot averages out.
+float before_middle(const CrossedCell& cell);
+
+template <Limits limits>
+class PlaneGap {
+ public:
+  using Line = CellLine<limits>;
+
+  PlaneGap(const CurbStages<limits>& stages, const Line& line, const LabelledCell& first, const LabelledCell& second)
+      : stages_(stages), line_(line), first_(first), second_(second) {}
+
+  const Line& line() const { return line_; }
+  /// The cells beside it, the first one's place below the second's.
+  const LabelledCell& first() const { return first_; }
+  const LabelledCell& second() const { return second_; }
+  /// From the one to the other, in cells.
+  int length() const { return second_.along - first_.along; }
+
+  /// Does a step down hide what a wide gap lacks?
+  [[gnu::noinline]] bool hidden() const;  // called: inlined twice it would not fit the flash's budget
+  /// Probability that the cells on both sides lie on one plane.
+  float same_plane() const;
+  struct Middle {
+    float along_m;  ///< from the line's beginning
+    bool open;      ///< Borders::Border::open
+    int empty;      ///< cells without a point
+  };
+  /// Of what parts the planes.
+  Middle middle() const;
+
+ private:
+  static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
+
+  /// The cells beside it, as the laser sees them.
+  struct Sides {
+    const LabelledCell &near, &far;
+  };
+  Sides sides() const {
+    return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
+  }
+  bool behind_obstacle(int along) const;
+  auto belief(int along) const { return stages_.field.belief(stages_.dem, line_.row(along), line_.col(along)); }
+
+  const CurbStages<limits>& stages_;
+  const Line line_;
+  const LabelledCell first_, second_;
+};
+
+/// Then nothing stands in it, and the ray to its far cell has passed over the plane that ends at its near one: where it
+/// met that plane, or a blur before, lie cells that bear it.
+template <Limits limits>
+bool PlaneGap<limits>::hidden() const {
+  const Dem<limits>& dem = stages_.dem;
+  const auto [near, far] = sides();
+  const int i = line_.row(far.along), j = line_.col(far.along), far_slot = dem.slot(i, j);
+  const Viewpoint from = dem.seen_from(far_slot, stages_.view);
+  const Plane& plane = stages_.mixture.plane(near.label);
+  const Cell& cell = dem.cell(far_slot);
+  const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem.above_m(i, j, cell, plane);
+  if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
+  for (int along = first_.along + 1; along < second_.along; ++along) {
+    if (stages_.mixture.obstructed(dem, line_.slot(along))) return false;
+  }
+  const float dx_m = dem.centroid_x_m(i, cell) - from.x_m, dy_m = dem.centroid_y_m(j, cell) - from.y_m;
+  const float share = above_m / (above_m + below_m);  // of the ray, up to the plane
+  const float cells = square_root(square(dx_m / dem.cell_x_m()) + square(dy_m / dem.cell_y_m()));
+  for (int back = 0; back <= widest_blur; ++back) {
+    const float at = share - static_cast<float>(back) / cells;
+    const int s = dem.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
+    if (s >= 0 && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return true;
+  }
+  return false;
+}
+
+template <Limits limits>
+float PlaneGap<limits>::same_plane() const {
+  const auto p = belief(first_.along), q = belief(second_.along);
+  float same = 0.0f;
+  for (std::size_t m = 0; m < p.label.size(); ++m) {
+    for (std::size_t n = 0; n < q.label.size(); ++n) {
+      if (p.label[m] == q.label[n] && p.label[m] != no_label) same += p.probability[m] * q.probability[n];
+    }
+  }
+  return same;
+}
+
+/// Where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway between the cells,
+/// unless the planes are three standard deviations or more apart: then where the cells tell. What stands on the ground,
+/// and what it hides, tells nothing. What cells tell is off by anything within each, on its own; in what stands there
+/// the edge lies anywhere: if that is the larger, or a cell is hidden, the border is open.
+template <Limits limits>
+auto PlaneGap<limits>::middle() const -> Middle {
+  const float cell_m = line_.pitch_m();
+  const auto cells = static_cast<float>(length() + 1);
+  const float halfway_m = (static_cast<float>(first_.along) + 0.5f * cells) * cell_m;
+  const Plane& first = stages_.mixture.plane(first_.label);
+  const Plane& second = stages_.mixture.plane(second_.label);
+  const float x_m = line_.x_m(halfway_m), y_m = line_.y_m(halfway_m);
+  const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
+  float before = 0.0f;  // in cells, from the first one's near side
+  float covered = 0.0f;
+  int empty = 0, last_empty = 0;
+  for (int along = first_.along; along <= second_.along; ++along) {
+    const int s = line_.slot(along);
+    const Cell& cell = line_.dem.cell(s);
+    if (!cell.valid()) {
+      ++empty;
+      last_empty = along;
+      before += 0.5f;
+    } else if (stages_.mixture.covered(s)) {
+      covered += 1.0f;
+      before += 0.5f;
+    } else {
+      before += before_middle({line_.above_m(along, first) / step_m, 0.5f + line_.offset(cell)});
+    }
+  }
+  const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
+  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty};
+  before = std::clamp(before, 0.0f, cells);
+  return {(static_cast<float>(first_.along) + before) * cell_m, open, empty};
+}
+
+/// Does something that stands on the ground hide a cell of a gap, from where the gap's far side was seen? On the way
+/// there a cell that bears no ground lies above the planes of both sides: the face of a step up lies between them.
+template <Limits limits>
+bool PlaneGap<limits>::behind_obstacle(int along) const {
+  const Dem<limits>& dem = stages_.dem;
+  const Sides cells_beside = sides();
+  const Plane& near = stages_.mixture.plane(cells_beside.near.label);
+  const Plane& far = stages_.mixture.plane(cells_beside.far.label);
+  const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
+    return dem.above_m(i, j, cell, plane) > 0.0f && !stages_.lies_on(i, j, cell, plane);
+  };
+  const Viewpoint from = dem.seen_from(line_.slot(cells_beside.far.along), stages_.view);
+  const float middle_m = (static_cast<float>(along) + 0.5f) * line_.pitch_m();
+  const float x_m = line_.x_m(middle_m), y_m = line_.y_m(middle_m);
+  const float dx = (from.x_m - x_m) / dem.cell_x_m(), dy = (from.y_m - y_m) / dem.cell_y_m();
+  const float cells = square_root(dx * dx + dy * dy);
+  float x = x_m / dem.cell_x_m(), y = y_m / dem.cell_y_m();
+  for (float passed = 1.0f; passed < cells; passed += 1.0f) {
+    x += dx / cells;
+    y += dy / cells;
+    const int i = static_cast<int>(x), j = static_cast<int>(y);
+    if (!(x >= 0.0f) || !(y >= 0.0f) || i >= dem.rows() || j >= dem.cols()) return false;
+    const int s = dem.slot(i, j);
+    const Cell& cell = dem.cell(s);
+    if (!cell.valid() || stages_.bears_ground(s)) continue;
+    if (above(i, j, cell, near) && above(i, j, cell, far)) return true;
+  }
+  return false;
+}
+
+}  // namespace curbline

@@ -1,0 +1,206 @@
+// How high the step at a piece of curb is, and how well that is known: by its planes, at the edge that casts a shadow,
+// and by the ground along it and beside it where that lies off them. Cost: eight cells beside each border.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "curbline/curbs/beside.hpp"
+#include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/curb.hpp"
+#include "curbline/curbs/curb_piece.hpp"
+#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+#include "curbline/shadow.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class StepHeight {
+ public:
+  using Border = typename Borders<limits>::Border;
+  using Part = typename Borders<limits>::Part;
+  using Piece = CurbPiece<limits>;
+
+  /// As its planes tell in the middle of a piece, which must outlive it.
+  StepHeight(const CurbStages<limits>& stages, Piece& piece) : stages_(stages), piece_(piece) {
+    const auto [low, high] = piece.planes;
+    const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
+    height_m_ = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
+  }
+
+  /// What tells whether it is a step: kind_of().
+  DrawnBorder drawn() const;
+  /// By all that tells it, of the part that the piece was made of. Moves the piece's line to the edge of a step that
+  /// casts a shadow. What is no step has no height, only a variance.
+  void refine(const Part& part, bool is_step, int link_reach);
+  /// The piece's place, which its height is asked for, is known to that variance.
+  void doubt_place(float place_variance_m2);
+
+  /// Of the plane with the high number above that with the low one, PlanePair.
+  float height_m() const { return height_m_; }
+  float variance_m2() const { return variance_m2_; }
+  /// How wide its shadow is; 0 if it casts none.
+  float shadow_m() const { return shadow_m_; }
+
+ private:
+  void leave_shadow(const Part& part, int link_reach);
+  static float carried_m(const Plane& plane, float dx_m, float dy_m);
+  GroundAlong ground_along(const Part& part, Label label) const;
+  void follow_ground(const Part& part);
+  void follow_ground_beside();
+  struct Deviations {
+    Deviation low, high;
+  };
+  // Called: inlined three times it takes 320 bytes of flash more.
+  [[gnu::noinline]] Deviations deviations() const;
+  float plane_variance_m2(const Plane& plane) const;
+
+  const CurbStages<limits>& stages_;
+  Piece& piece_;
+  float height_m_, variance_m2_ = 0.0f, shadow_m_ = 0.0f;
+};
+
+template <Limits limits>
+DrawnBorder StepHeight<limits>::drawn() const {
+  const Deviations sides = deviations();
+  const float too_far_m2 = sides.low.too_far_m2(piece_.borders) + sides.high.too_far_m2(piece_.borders);
+  const auto [low, high] = piece_.planes;
+  const float sd_m = square_root(piece_.variance_m2(low) + piece_.variance_m2(high) + too_far_m2);
+  return {height_m_, sd_m, piece_.half_gap_m, piece_.place_variance_m2, stages_.dem.prior().texture_m2};
+}
+
+template <Limits limits>
+void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) {
+  const bool one_sided = piece_.one_sided();
+  if (!is_step) height_m_ = 0.0f;
+  if (is_step && !one_sided) leave_shadow(part, link_reach);
+  const auto [low, high] = piece_.planes;
+  // The errors of a plane are common to the piece: they do not average out. Behind a brink as much again as is seen may
+  // be hidden, or less, evenly.
+  variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
+  if (is_step && !one_sided) follow_ground(part);
+  if (is_step) follow_ground_beside();
+  // Rough ground hangs over its edge, anywhere within its roughness, evenly.
+  variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
+}
+
+/// Planes of different slope differ as much as the piece's place does, and along it from end to end: what was seen from
+/// several places, its sides each by itself as poses err, may be as high as anywhere on that.
+template <Limits limits>
+void StepHeight<limits>::doubt_place(float place_variance_m2) {
+  variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;
+  if (stages_.dem.seen_from_several()) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
+}
+
+/// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. It is as
+/// high as its planes lie apart at the edge, where its line moves to.
+template <Limits limits>
+void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
+  const bool high_is_upper = height_m_ > 0.0f;
+  const Viewpoint view =
+      Piece::seen_from(stages_, part, link_reach, high_is_upper ? piece_.first.low : piece_.first.high);
+  const bool upper_is_right = high_is_upper != piece_.low_is_right;
+  if (piece_.has_right(view) != upper_is_right) return;
+  const auto [low, high] = piece_.planes;
+  const Plane &above = high_is_upper ? high : low, &below = high_is_upper ? low : high;
+  const float above_m = view.z_m - above.height_m(piece_.x_m, piece_.y_m);
+  const float x_m = piece_.line.x0_m, y_m = piece_.line.y0_m;
+  shadow_m_ = move_before_shadow(piece_.line, view, {magnitude(height_m_), above_m, piece_.gap_m + piece_.cell_m});
+  const float dx_m = piece_.line.x0_m - x_m, dy_m = piece_.line.y0_m - y_m;
+  const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
+  height_m_ += high_is_upper ? rise_m : -rise_m;
+}
+
+/// What a plane rises on the way to where nothing of it is seen: less than its slope makes, by the share that the
+/// square of that way has beside the mean square of how far its cells reach along it. A strip of two rows, of which one
+/// holds something of the other side, tells no slope to go by.
+template <Limits limits>
+float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) {
+  const float beyond = plane.rise_variance_m2(dx_m, dy_m) * plane.cells / plane.fit_variance_m2;
+  return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
+}
+
+/// As the cells of a side tell that lie a little farther from the borders of a piece, on those of rows and columns that
+/// lie more across it: each cell once.
+template <Limits limits>
+GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) const {
+  const Dem<limits>& dem = stages_.dem;
+  const Plane& plane = stages_.mixture.plane(label);
+  const float slope_m2 = dem.slope_m2(plane);
+  const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
+  float cells = 0.0f, above_m = 0.0f;
+  for (const Border& border : part) {
+    if (border.axis != across) continue;
+    const std::size_t d = border.toward(label);
+    int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
+    for (int k = 1; k <= GroundAlong::farthest; ++k) {
+      i += step_i[d];
+      j += step_j[d];
+      if (!dem.contains(i, j)) break;
+      const int s = dem.slot(i, j);
+      if (k < GroundAlong::nearest || !stages_.holds_alone(s, label, slope_m2)) continue;
+      cells += 1.0f;
+      above_m += dem.above_m(i, j, dem.cell(s), plane);
+    }
+  }
+  return GroundAlong::of(cells, above_m, plane);
+}
+
+/// A step is as high as the ground along it, where that lies off the planes. What the cells next to it lie off is then
+/// told from there. Where those tell on their own they are nearer: of a gutter three cells wide and the road beside it
+/// the mean would be told.
+template <Limits limits>
+void StepHeight<limits>::follow_ground(const Part& part) {
+  const Deviations beside = deviations();
+  for (const bool high : {false, true}) {
+    if ((high ? beside.high : beside.low).found()) continue;
+    const Plane& plane = high ? piece_.planes.high : piece_.planes.low;
+    const GroundAlong ground = ground_along(part, high ? piece_.first.high : piece_.first.low);
+    height_m_ += high ? ground.above_m : -ground.above_m;
+    variance_m2_ += ground.share * (ground.variance_m2 - plane_variance_m2(plane));
+    Beside& told = high ? piece_.beside_high : piece_.beside_low;
+    told.off_m -= told.borders * ground.above_m;
+  }
+}
+
+/// A step is as high as the ground beside it, where that lies off the planes, and as well known.
+template <Limits limits>
+void StepHeight<limits>::follow_ground_beside() {
+  const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
+  const auto [low, high] = deviations();
+  for (const Deviation& side : {low, high}) {
+    if (side.found()) height_m_ += toward * side.away_m;
+    variance_m2_ += side.height_variance_m2();
+  }
+}
+
+/// How the ground lies off its planes beside the piece. Both sides begin at the near end of a shadow, in the middle of
+/// which the borders lie.
+template <Limits limits>
+auto StepHeight<limits>::deviations() const -> Deviations {
+  const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
+  const float beyond_cells = -0.5f * up * shadow_m_ / piece_.cell_m;
+  const float common_m2 = stages_.dem.common_m2();
+  return {deviation(piece_.beside_low, piece_.planes.low, -up, -beyond_cells, common_m2),
+          deviation(piece_.beside_high, piece_.planes.high, up, beyond_cells, common_m2)};
+}
+
+/// Of a plane's height beside the piece. Its fit takes what cells share for the same wherever they lie: it is no less
+/// than how far and how often they were seen makes it. What scan lines err each errs on its own: if all the cells of
+/// one erred alike a plane of n cells would know as much as its lines, of which a square one holds sqrt(n). Of four
+/// cells and fewer the fit does not show what lines err.
+template <Limits limits>
+float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
+  const float reach_m2 = stages_.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
+  float times = stages_.dem.common_m2(reach_m2) / plane.fit_variance_m2;
+  if (plane.cells > 4.0f) times = std::min(times, square_root(plane.cells));
+  return std::max(1.0f, times) * piece_.variance_m2(plane);
+}
+
+}  // namespace curbline

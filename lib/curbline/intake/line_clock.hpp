@@ -1,0 +1,82 @@
+// The times of scan lines that bear the time of their arrival: on a host, from USB or TCP, that is late by 1 to 10 ms,
+// each line by another time, never early. The mirror turns steadily, so lines are whole turns apart; the lowest line
+// under the newest arrivals tells its turns, as only those that were hardly late lie on it. Before the pipeline, where
+// the scanner's driver does not know better:
+//
+//   scanner --> LineClock::time_of() --> LineQueue --> Pipeline::take()
+//
+//   - A stamp that lies on a turn is kept as it is: of a scanner whose stamps are exact nothing changes.
+//   - Where stamps lie anywhere between turns (delays of half a turn on the mean), or turns take more or less than
+//     1/200 from what the settings say, stamps are kept too. So are the first, until there are enough to tell.
+//   - A stamp that goes back is given out as it is: the pipeline drops and counts the line.
+//   - A line that is late by a turn or more looks like the next one after a loss. One that may be either has no time:
+//     it is better left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
+//
+// What is constant in the delay is none of its business: the tilt latency takes it up. No clock: times come in. 40
+// operations for each of 64 lines a call, 1.1 kB. One context.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "curbline/intake/rising_times.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+class LineClock {
+ public:
+  /// Starts afresh. A turn is what LaserSettings says: as many beam intervals as beams fill a circle. Without a beam
+  /// interval, as of a sensor that does not turn, all stamps are kept.
+  void init(const LaserSettings& laser);
+
+  /// When a line was measured that is stamped with this time: that time or, if it came late, an earlier one. Nothing if
+  /// it is not clear which turn it was. For each line, in the order in which they come.
+  std::optional<std::int64_t> time_of(std::int64_t stamp_ns);
+
+  std::uint32_t set_back() const { return set_back_; }  ///< lines that were given an earlier time
+  std::uint32_t left_out() const { return left_out_; }  ///< lines that were given none
+
+ private:
+  struct Arrival {
+    std::int64_t turn = 0, stamp_ns = 0;
+  };
+  static constexpr int capacity = 64;
+
+  struct Turns {
+    std::int64_t count = 0;
+    bool doubtful = false;  ///< or lines may have been lost, or a line have waited
+  };
+
+  void restart(std::int64_t stamp_ns);
+  Turns turns_to(std::int64_t stamp_ns);
+  bool take_back_lost(std::int64_t stamp_ns, std::int64_t turns);
+  void add(std::int64_t turns, std::int64_t stamp_ns);
+  void keep_newest(int count);
+  void fit();
+  const Arrival& arrival(int k) const { return arrivals_[static_cast<std::size_t>(k)]; }
+  const Arrival& newest() const { return arrival(size_ - 1); }
+  /// How much later a stamp is than the line so many turns after the newest was.
+  float late_ns(std::int64_t stamp_ns, std::int64_t turns) const;
+  float turn() const;
+
+  std::int64_t turn_ns_ = 0;                  ///< by the settings; 0: stamps are kept
+  std::array<Arrival, capacity> arrivals_{};  ///< the oldest first
+  int size_ = 0;
+  int enough_ = 0;                                 ///< arrivals that tell the turns
+  float newest_late_ns_ = 0.0f;                    ///< of the newest, as all of them tell it
+  float slower_ns_ = 0.0f;                         ///< by which a turn takes longer than by the settings
+  float mean_late_ns_ = 0.0f;                      ///< of all of them
+  bool steady_ = true;                             ///< turns take no other time than a motor's may
+  std::int64_t usual_turns_ = 1, last_turns_ = 1;  ///< from line to line
+  std::int64_t lost_turns_ = 0;                    ///< that were taken for lost before the newest
+  int waited_ = 0;                ///< lines for which one may have waited: so many ago one had, by whole turns
+  int late_ = 0, turn_late_ = 0;  ///< arrivals on end that were later than usual, by a turn and more
+  RisingTimes stamps_{};
+  std::int64_t time_ns_ = INT64_MIN;  ///< the newest that was given
+  std::uint32_t set_back_ = 0, left_out_ = 0;
+};
+
+}  // namespace curbline

@@ -1,0 +1,174 @@
+// From a scan line to its points in the map. Owns all that tells where they lie: the tilt and the poses over time, how
+// late the tilt is, what the poses are set back by. The map is not its own: it tells it where a sweep begins and where
+// poses jump, and moves what was mapped too late or too early. A line is placed first, the window follows the robot,
+// then the line is projected. Cost: about 170 operations a beam, 120 of one outside the window (line_projection.hpp),
+// and what tilt_latency.hpp and pose_offset.hpp say.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "curbline/counters.hpp"
+#include "curbline/intake/line_projection.hpp"
+#include "curbline/intake/map_comparison.hpp"
+#include "curbline/intake/pose_offset.hpp"
+#include "curbline/intake/pose_track.hpp"
+#include "curbline/intake/rising_times.hpp"
+#include "curbline/intake/tilt_latency.hpp"
+#include "curbline/intake/tilt_snapshot.hpp"
+#include "curbline/intake/tilt_track.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/pose.hpp"
+#include "curbline/scan_line.hpp"
+#include "curbline/settings.hpp"
+#include "curbline/status.hpp"
+#include "curbline/tilt_reading.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class LineIntake {
+ public:
+  /// Working memory of one line: its tilt and motion as place() finds them, its points as project() does.
+  struct Work {
+    TiltSnapshot<limits> tilt;
+    LineMotion motion;
+    ProjectedLine<limits> projected;
+  };
+
+  /// With the interrupt that calls add_tilt() masked, and not beside that of another thread. Settings are valid.
+  [[gnu::cold]] void init(const Settings& settings);
+
+  /// A reading of the tilt servo; false if dropped. Wait-free: TiltTrack::push().
+  bool add_tilt(const TiltReading& reading) { return tilt_track_.push(reading); }
+  /// A pose of the base in the map frame; false if dropped: PoseTrack::push().
+  bool add_pose(const Pose& pose) { return pose_track_.push(pose); }
+  /// Readings that add_tilt() has dropped.
+  std::uint32_t tilt_dropped() const { return tilt_track_.dropped(); }
+
+  /// Finds everything that can be wrong with a line, before it changes anything. If nothing is: where it lies.
+  Status place(const ScanLine& line, Dem<limits>& dem, Work& work);
+
+  /// The points of a line that has been placed, compared with ground that was mapped before: whose a jump of the poses
+  /// was, and how late the tilt is. What the latency turns out to be moves the map. False if the line was measured as
+  /// poses jumped, or the robot climbed, and the map says that it does not lie where they have it: a ridge as high as
+  /// the jump, of a single line. Where the map says nothing points that may be one are left out.
+  bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
+               Counters& counters);
+
+  const TiltLatency& tilt_latency() const { return tilt_latency_; }
+  const PoseOffset& pose_offset() const { return pose_offset_; }
+
+ private:
+  /// Over a kerb, wheels half a metre apart, at a quarter of a metre a second. Poses that jump for longer say nothing
+  /// of it: lines are taken where they have them, or there would be no map to compare any with.
+  static constexpr std::int64_t longest_climb_ns = 2'000'000'000;
+
+  bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem, TiltSnapshot<limits>& tilt);
+  void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem);
+  /// May its localisation step while the robot climbs, as it does now?
+  bool climbs() const { return pose_track_.climbs() && pose_offset_.localisation_steps(); }
+
+  float tilt_rate_rad_s_ = 0.0f;     ///< of the line in hand
+  bool jumped_ = false;              ///< poses, while the last line was measured
+  std::int64_t jumps_since_ns_ = 0;  ///< and all before it, or the robot climbed, from that one on
+  RisingTimes line_times_{};
+  TiltTrack<limits> tilt_track_{};
+  TiltLatency tilt_latency_{};
+  PoseTrack<limits> pose_track_{};
+  PoseOffset pose_offset_{};
+  LineProjection<limits> line_projection_{};
+};
+
+template <Limits limits>
+void LineIntake<limits>::init(const Settings& settings) {
+  jumped_ = false;
+  jumps_since_ns_ = 0;
+  line_times_ = RisingTimes{};
+  tilt_track_.init(settings.tilt);
+  tilt_latency_.init(settings.tilt, settings.pose);
+  pose_track_.init(settings.pose);
+  pose_offset_.init(settings.pose);
+  line_projection_.init(settings);
+}
+
+template <Limits limits>
+Status LineIntake<limits>::place(const ScanLine& line, Dem<limits>& dem, Work& work) {
+  const LaserSettings& laser = line_projection_.laser();
+  const bool still = line_projection_.pose().still;
+  if (line.ranges_m.size() > static_cast<std::size_t>(laser.beams)) return Status::line_too_long;
+  if (!line_times_.admits(line.time_ns)) return Status::line_out_of_order;
+  const std::int64_t last_beam_ns = line.time_ns + laser.duration_ns(line.ranges_m.size());
+  Pose first, last;
+  if (!still && !(pose_track_.at(line.time_ns, first) && pose_track_.at(last_beam_ns, last))) return Status::no_pose;
+  if (!line_projection_.tilt().fixed && !follow_tilt(line.time_ns, last_beam_ns, dem, work.tilt))
+    return Status::no_tilt;
+  line_times_.take(line.time_ns);
+  if (still) return Status::ok;
+  const PoseJumps jumps = pose_track_.jumps(line.time_ns, last_beam_ns);
+  follow_poses(line.time_ns, first, jumps.any(), dem);
+  work.motion = {make_transform(pose_offset_.corrected(first)), make_transform(pose_offset_.corrected(last)), false,
+                 jumps};
+  return Status::ok;
+}
+
+/// False if there are no angles for the line.
+template <Limits limits>
+bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem,
+                                     TiltSnapshot<limits>& tilt) {
+  tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
+  const TiltAngle first = tilt.at(first_ns);
+  const std::uint32_t reading = tilt.reading_number();
+  const TiltAngle last = tilt.at(last_ns);
+  tilt.rewind();
+  if (first.source == TiltAngle::Source::none && last.source == TiltAngle::Source::none) return false;
+  const TiltAngle& any = first.source == TiltAngle::Source::none ? last : first;
+  tilt_rate_rad_s_ = any.rate_rad_s;
+  const TiltLatency::Turn turn = tilt_latency_.begin_line(any.angle_rad, any.rate_rad_s, reading);
+  if (turn == TiltLatency::Turn::new_sweep) dem.begin_sweep();
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
+  return true;
+}
+
+/// The robot is where a line begins. Lines that are measured while poses jump say nothing of where the ground was
+/// before, nor do those after, and as long as it climbs those between jumps.
+template <Limits limits>
+void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
+  pose_offset_.begin_line(pose.x_m, pose.y_m);
+  const bool climbed = climbs();
+  bool begun = false;
+  while (const auto step = pose_track_.next_step(line_ns)) {
+    pose_offset_.follow(*step);
+    begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
+  }
+  if (!jumped_ && !(climbed && climbs())) {
+    if (jumping || begun) dem.begin_marking();
+    if (jumping) jumps_since_ns_ = line_ns;
+  }
+  jumped_ = jumping;
+}
+
+template <Limits limits>
+bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
+                                 Counters& counters) {
+  const LineMotion& motion = work.motion;
+  // As long as it is not decided who has jumped, heights may be set back, to below the ceiling too.
+  const float ceiling_m = pose_offset_.undecided() ? std::numeric_limits<float>::infinity() : map.ceiling_m();
+  line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
+  if (!motion.jumps.any() && !climbs()) {
+    if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
+  } else if (line.time_ns - jumps_since_ns_ <= longest_climb_ns) {
+    using JumpLine = typename MapComparison<limits>::JumpLine;
+    const JumpLine lies = map.check_jump(work.projected, motion, climbs(), tilt_latency_, pose_offset_);
+    counters.lines_off_map += lies != JumpLine::on_map;
+    if (lies == JumpLine::off_map) return false;
+  }
+  if (line_projection_.tilt().fixed) return true;
+  map.follow_latency(work.projected, motion, pose_offset_, tilt_latency_);
+  const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
+  if (correction.any()) dem.delay(correction.this_sweep_s, correction.earlier_s);
+  return true;
+}
+
+}  // namespace curbline

@@ -1,0 +1,137 @@
+// Scan lines that wait for their tilt. A line is there when its last beam is, its angles only with the next servo
+// frame, up to a frame's period later: taken at once, its end would be extrapolated. Before the pipeline:
+//
+//   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now, offset) after every line and tilt reading
+//
+// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. A line
+// waits for at most the time in which capacity - 1 more come: for the settings' latency and two periods of the servo's
+// frames, one of which may be lost, capacity is that time over a line's period, rounded up, and one. No clock: times
+// come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "curbline/intake/rising_times.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/scan_line.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// Every line pushed ends in one of the others, or still waits. All wrap at 2^32.
+struct LineQueueCounters {
+  std::uint32_t pushed = 0;
+  std::uint32_t covered = 0;   ///< given out with tilt for every beam
+  std::uint32_t overdue = 0;   ///< given out after the longest wait: beams may be extrapolated or dropped
+  std::uint32_t crowded = 0;   ///< given out early, because the queue was full
+  std::uint32_t dropped = 0;   ///< the oldest of a full queue from which nobody took
+  std::uint32_t too_long = 0;  ///< refused: more beams than the limits have
+  std::uint32_t bad_time = 0;  ///< refused: a stamp beyond RisingTimes::furthest_ns
+};
+
+template <Limits limits, int capacity>
+class LineQueue {
+  static_assert(capacity >= 2, "one line waits, one comes");
+
+ public:
+  /// Empties the queue. A line waits for max_wait_s at most, however seldom lines come: TiltSettings::max_gap_s is a
+  /// good choice, as beams in a longer gap have no angle.
+  void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
+
+  /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length
+  /// or its stamp. If the queue is full the oldest line is dropped: pop() until it has nothing to give after each
+  /// push(), and none is.
+  bool push(const ScanLine& line, std::int64_t now_ns);
+
+  /// The oldest line, if a tilt reading covers its last beam, if it has waited long enough, or if the queue is full.
+  /// newest_tilt_ns: stamp of the newest reading, INT64_MIN for none; it is later than its angle by the settings'
+  /// latency and offset_s, the pipeline's tilt_latency().latest_offset_s(). The ranges are valid until the next push().
+  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s);
+
+  int size() const { return size_; }
+  const LineQueueCounters& counters() const { return counters_; }
+
+ private:
+  struct Entry {
+    std::int64_t time_ns, last_beam_ns, arrival_ns;
+    std::size_t beams;
+  };
+
+  ScanLine take_oldest();
+
+  // All of it begins as zeros: in static memory it takes no flash.
+  std::int64_t beam_interval_ns_ = 0;
+  float latency_s_ = 0.0f;
+  std::int64_t max_wait_ns_ = 0;
+  bool fixed_ = false;
+  int oldest_ = 0, size_ = 0;
+  std::array<Entry, capacity> entries_{};
+  std::array<std::array<float, static_cast<std::size_t>(limits.beams)>, capacity> ranges_m_{};
+  LineQueueCounters counters_{};
+};
+
+template <Limits limits, int capacity>
+void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
+  beam_interval_ns_ = laser.beam_interval_ns();
+  latency_s_ = tilt.latency_s;
+  max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
+  fixed_ = tilt.fixed;
+  oldest_ = size_ = 0;
+  counters_ = LineQueueCounters{};
+}
+
+template <Limits limits, int capacity>
+bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns) {
+  ++counters_.pushed;
+  const std::size_t beams = line.ranges_m.size();
+  if (beams > static_cast<std::size_t>(limits.beams)) {
+    ++counters_.too_long;
+    return false;
+  }
+  if (!RisingTimes::is_time(line.time_ns)) {
+    ++counters_.bad_time;
+    return false;
+  }
+  if (size_ == capacity) {
+    take_oldest();
+    ++counters_.dropped;
+  }
+  const auto slot = static_cast<std::size_t>((oldest_ + size_++) % capacity);
+  const std::int64_t last_beam_ns = line.time_ns + LaserSettings::duration_ns(beams, beam_interval_ns_);
+  entries_[slot] = {line.time_ns, last_beam_ns, now_ns, beams};
+  std::copy(line.ranges_m.begin(), line.ranges_m.end(), ranges_m_[slot].begin());
+  return true;
+}
+
+template <Limits limits, int capacity>
+std::optional<ScanLine> LineQueue<limits, capacity>::pop(std::int64_t newest_tilt_ns, std::int64_t now_ns,
+                                                         float offset_s) {
+  if (size_ == 0) return std::nullopt;
+  const Entry& entry = entries_[static_cast<std::size_t>(oldest_)];
+  const auto late_ns = static_cast<std::int64_t>((latency_s_ + offset_s) * 1e9f);
+  if (fixed_ || newest_tilt_ns >= entry.last_beam_ns + late_ns) {
+    ++counters_.covered;
+  } else if (now_ns - entry.arrival_ns > max_wait_ns_) {
+    ++counters_.overdue;
+  } else if (size_ == capacity) {
+    ++counters_.crowded;
+  } else {
+    return std::nullopt;
+  }
+  return take_oldest();
+}
+
+template <Limits limits, int capacity>
+ScanLine LineQueue<limits, capacity>::take_oldest() {
+  const auto slot = static_cast<std::size_t>(oldest_);
+  oldest_ = (oldest_ + 1) % capacity;
+  --size_;
+  return {entries_[slot].time_ns, std::span<const float>(ranges_m_[slot].data(), entries_[slot].beams)};
+}
+
+}  // namespace curbline

@@ -1,0 +1,139 @@
+// What the points of a line say against the ground that the map has had before them: whether a jump of the poses was
+// the robot's or its localisation's (pose_offset.hpp), and how late the tilt is (tilt_latency.hpp). Owns nothing and
+// lives for one line: it looks at what the stages know when that comes. Cost: that of those two, a point each.
+#pragma once
+
+#include "curbline/intake/line_projection.hpp"
+#include "curbline/intake/pose_offset.hpp"
+#include "curbline/intake/tilt_latency.hpp"
+#include "curbline/labels/label_field.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class MapComparison {
+ public:
+  /// Points above the ceiling, z of the map frame, are none of the ground. Cells without a mark are looked for at most
+  /// `reach` away, on a row or column.
+  MapComparison(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
+                float ceiling_m, int reach)
+      : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m), reach_(reach) {}
+
+  float ceiling_m() const { return ceiling_m_; }
+
+  /// While it is not decided who has jumped: tells `offset` how the line lies against cells without a mark, and sets
+  /// the line back by what is known then.
+  void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
+
+  /// Where does a line lie that is measured while poses jump, or between jumps of a robot that climbs? Off the map if
+  /// all of it is off, the same way, by as much as they jump. If too little of it lies where the map knows the ground,
+  /// in part: points are left out that may be off by more than the points of a place share of their noise.
+  enum class JumpLine : unsigned char { on_map, in_part, off_map };
+  JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,
+                      const PoseOffset& offset) const;
+
+  /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
+  void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
+                      TiltLatency& latency) const;
+
+ private:
+  /// Of a step by which no pose tells how large it is: from farther away the ground beyond a kerb would look like one.
+  static constexpr int reach_of_climbs = 2;
+
+  using Place = typename Dem<limits>::Place;
+  void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach, PoseOffset& offset) const;
+  /// What a cell says of the ground at a point.
+  struct Ground {
+    float above_m, variance_m2;  ///< how far the point lies above it; variance of the ground's own height
+    float rise_variance_m2;      ///< and by the slope of the plane, from the cell's centroid to the point
+    float growth_m_s;
+  };
+  bool ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const;
+
+  const Dem<limits>& dem_;
+  const PlaneMixture<limits>& mixture_;
+  const LabelField<limits>& field_;
+  float ceiling_m_;
+  int reach_;
+};
+
+template <Limits limits>
+void MapComparison<limits>::follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency,
+                                        PoseOffset& offset) const {
+  compare(line, latency, offset.climbed() ? reach_of_climbs : reach_, offset);
+  const PoseShift shift = offset.end_line();
+  if (!shift.any()) return;
+  for (Point& p : line.points()) p.z_m += offset.at(shift, p.x_m, p.y_m);
+}
+
+template <Limits limits>
+auto MapComparison<limits>::check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs,
+                                       const TiltLatency& latency, const PoseOffset& offset) const -> JumpLine {
+  PoseOffset suspect = offset.suspecting(motion.jumps, climbs);
+  compare(line, latency, reach_, suspect);
+  suspect.end_line();
+  if (suspect.compared()) return suspect.likelier() ? JumpLine::off_map : JumpLine::on_map;
+  const float common_m2 = dem_.prior().common_m2();
+  const bool any = line.leave_out_if([&](const Point& p) { return motion.blur_m2(p.x_m, p.y_m) > common_m2; });
+  return any ? JumpLine::in_part : JumpLine::on_map;
+}
+
+template <Limits limits>
+void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach,
+                                    PoseOffset& offset) const {
+  Ground ground;
+  for (const Point& p : line.points()) {
+    if (p.z_m > ceiling_m_) continue;
+    const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
+    if (!place.inside()) continue;
+    const Place near = dem_.nearest_unmarked(place, reach);
+    if (!near.inside() || !ground_at(p, place, near, ground)) {
+      offset.pass();
+      continue;
+    }
+    const float latency_m2 = dem_.mapped_before(dem_.slot(near.i, near.j))
+                                 ? latency.earlier_variance_m2(p.growth_m_s, ground.growth_m_s)
+                                 : latency.own_variance_m2(p.growth_m_s, ground.growth_m_s);
+    offset.compare(
+        {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
+  }
+}
+
+template <Limits limits>
+void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion,
+                                           const PoseOffset& offset, TiltLatency& latency) const {
+  Ground ground;
+  for (const Point& p : line.points()) {
+    if (p.z_m > ceiling_m_) continue;
+    const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
+    if (!place.inside() || !dem_.mapped_before(dem_.slot(place.i, place.j)) || !ground_at(p, place, place, ground))
+      continue;
+    const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
+    const float doubt_m2 = offset.doubt_m2(p.x_m, p.y_m);
+    latency.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
+                     ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s});
+  }
+}
+
+/// By the slope of the cell's plane from its centroid; false if it has no plane, or more than one surface.
+template <Limits limits>
+bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const {
+  const int slot = dem_.slot(of.i, of.j);
+  const Label label = field_.label(slot);
+  if (label == no_label) return false;
+  const Cell& cell = dem_.cell(slot);
+  if (dem_.several_surfaces(cell)) return false;
+  const Plane& plane = mixture_.plane(label);
+  const float x = place.u * dem_.cell_x_m() - p.shift_x_m, y = place.v * dem_.cell_y_m() - p.shift_y_m;
+  const float dx = x - dem_.centroid_x_m(of.i, cell), dy = y - dem_.centroid_y_m(of.j, cell);
+  out.above_m = p.z_m - cell.height_m - (plane.slope_x * dx + plane.slope_y * dy);
+  out.variance_m2 = dem_.prior().texture_m2 + dem_.height_variance_m2(cell);
+  out.rise_variance_m2 = plane.rise_variance_m2(dx, dy);
+  out.growth_m_s = dem_.growth_m_s(slot);
+  return true;
+}
+
+}  // namespace curbline

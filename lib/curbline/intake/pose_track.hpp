@@ -1,0 +1,227 @@
+// The robot's pose over time, T_map_base, from odometry or localisation. Fed and read by the same context as scan
+// lines.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "curbline/frames.hpp"
+#include "curbline/intake/extrapolation.hpp"
+#include "curbline/intake/rising_times.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/pose.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// How far poses lie off where those before them led, by three standard deviations or more: a wheel has met a kerb, or
+/// a localisation has thought better of it. Sums of squares.
+struct PoseJumps {
+  float height_m2 = 0.0f;      ///< of z
+  float attitude_rad2 = 0.0f;  ///< of roll and pitch together
+  bool any() const { return height_m2 + attitude_rad2 > 0.0f; }
+};
+
+/// By how much heights of what is seen from a pose change with it: at the robot, and along the map's axes.
+struct PoseShift {
+  float height_m = 0.0f, slope_x = 0.0f, slope_y = 0.0f;
+  bool any() const { return height_m != 0.0f || slope_x != 0.0f || slope_y != 0.0f; }
+  float at(float dx_m, float dy_m) const { return height_m + slope_x * dx_m + slope_y * dy_m; }
+  PoseShift operator+(const PoseShift& b) const {
+    return {height_m + b.height_m, slope_x + b.slope_x, slope_y + b.slope_y};
+  }
+  PoseShift operator-(const PoseShift& b) const {
+    return {height_m - b.height_m, slope_x - b.slope_x, slope_y - b.slope_y};
+  }
+};
+
+/// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by
+/// going on from it as fast as they did, off where they lead it too. No robot does that, a localisation does; if poses
+/// come seldom a robot does, too. Until the next has come a pose that jumps may be either; one that jumps on, or back
+/// to the way before, withdraws the step. Those that jump on are a robot's that climbs; whether its localisation has
+/// stepped meanwhile no pose tells. It has climbed when they have gone on for a whole way without a jump.
+struct PoseStepNews {
+  enum class Kind { begun, confirmed, withdrawn, climbed } kind;
+  PoseShift by{};  ///< of one that has begun
+};
+
+/// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
+Transform make_transform(const Pose& pose);
+
+namespace detail {
+bool acceptable(const Pose& pose);
+/// Of the map: within Pose::furthest_m.
+bool near_origin(const Pose& pose);
+Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
+
+/// How far a pose lies off where others lead.
+struct PoseResidual {
+  float height_m = 0.0f, roll_rad = 0.0f, pitch_rad = 0.0f;
+  bool height_jumps = false, attitude_jumps = false;  ///< by three standard deviations or more
+  bool jumps() const { return height_jumps || attitude_jumps; }
+};
+/// Of `now`, where `before` leads as fast as on the way from `first` to `last`.
+PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
+                         const PoseSettings& settings);
+/// What heights make of it, with the heading of the pose.
+PoseShift shift_of(const PoseResidual& off, const Pose& now);
+}  // namespace detail
+
+/// Ring of the newest poses, 12 ms apart at least but for the very newest; linear in position and normalised-linear in
+/// attitude between two of them.
+template <Limits limits>
+class PoseTrack {
+ public:
+  void init(const PoseSettings& settings) {
+    settings_ = settings;
+    next_ = 0;
+    times_ = RisingTimes{};
+    forget();
+  }
+
+  /// Takes a pose, in place of the newest if that one has come sooner than poses are kept apart: the pose of a line
+  /// hangs on how many have come then. False if it is not finite or beyond 1000 km, its quaternion not of unit length
+  /// within 1 %, or not later than the one before (rising_times.hpp). O(1).
+  bool push(const Pose& pose);
+
+  /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
+  bool at(std::int64_t time_ns, Pose& out) const;
+
+  /// Jumps of the poses later than a line's first beam, up to the first that is not before its last. O(poses).
+  PoseJumps jumps(std::int64_t first_ns, std::int64_t last_ns) const;
+
+  /// What the next of the poses not asked yet says of a step; nothing if none says anything, as far as they are not
+  /// later than a line's first beam. O(1) a pose.
+  std::optional<PoseStepNews> next_step(std::int64_t until_ns);
+
+  /// By the poses that were asked: does the robot climb?
+  bool climbs() const { return climbs_; }
+
+  const Pose& newest() const { return back(0); }
+
+ private:
+  std::size_t place(int age) const { return static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses); }
+  const Pose& back(int age) const { return poses_[place(age)]; }
+
+  /// Does the pose of an age, the second since a jump, lie off where those before the jump lead? If not, the first did
+  /// by its own error, as one in seventy does.
+  bool lies_off_before(int age) const { return residual(age + 2, poses_of_a_way, age + 2, age).jumps(); }
+
+  /// Is the newest pose nearer to the one before than poses are kept apart, so that the next one takes its place?
+  bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
+
+  /// How far the pose of an age lies off where the one of age `before` leads, as fast as on the way that ends with the
+  /// pose of age `last`, over `most` poses before that; nothing if there are too few.
+  detail::PoseResidual residual(int last, int most, int before, int age) const {
+    if (last + 1 >= size_) return {};
+    const int first = last + most < size_ ? last + most : size_ - 1;
+    return detail::residual_of(back(first), back(last), back(before), back(age), settings_);
+  }
+
+  void forget() {
+    size_ = fresh_ = 0;
+    jumps_on_end_ = 0;
+    since_jump_ = limits.poses;
+    climbs_ = false;
+  }
+
+  bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
+  /// Each pose errs on its own (PoseSettings): of more of them more jump by chance, and the way of a few is too short
+  /// to tell where they lead. More than 83 a second are thinned out.
+  static constexpr std::int64_t least_spacing_ns = 12'000'000;
+  /// Where a robot is led is told by the way of as many poses: less than a tenth of a second at 50 Hz.
+  static constexpr int poses_of_a_way = 4;
+
+  PoseSettings settings_{};
+  std::array<Pose, limits.poses> poses_{};
+  int size_ = 0, next_ = 0;
+  int fresh_ = 0;         ///< of the newest poses: as many have not been asked for steps
+  int jumps_on_end_ = 0;  ///< of those that have: as many have jumped up to the last; 0 if that did not
+  int since_jump_ = 0;    ///< as many from the last that jumped on; limits.poses: long ago
+  bool climbs_ = false;   ///< poses have jumped on end, and not gone on for a whole way since
+  RisingTimes times_{};
+};
+
+template <Limits limits>
+bool PoseTrack<limits>::push(const Pose& pose) {
+  if (!detail::acceptable(pose) || !times_.admits(pose.time_ns)) return false;
+  if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // those before are of another time
+  times_.take(pose.time_ns);
+  if (open()) {
+    poses_[place(0)] = pose;
+    return true;
+  }
+  poses_[static_cast<std::size_t>(next_)] = pose;
+  next_ = (next_ + 1) % limits.poses;
+  if (size_ < limits.poses) ++size_;
+  if (fresh_ < limits.poses) ++fresh_;
+  return true;
+}
+
+template <Limits limits>
+bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
+  if (size_ == 0) return false;
+  const auto bound = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
+  int age = 0;
+  while (age < size_ && back(age).time_ns > time_ns) ++age;
+  if (age == 0) return beyond(time_ns, 0, 1, bound, out);
+  if (age == size_) return beyond(time_ns, size_ - 1, -1, bound, out);
+  if (time_ns - back(age).time_ns > bound && back(age - 1).time_ns - time_ns > bound) return false;
+  out = detail::interpolate(back(age), back(age - 1), time_ns);
+  return true;
+}
+
+template <Limits limits>
+PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) const {
+  PoseJumps jumps;
+  for (int age = 0; age < size_ && back(age).time_ns > first_ns; ++age) {
+    if (age + 1 < size_ && back(age + 1).time_ns >= last_ns) continue;
+    const detail::PoseResidual by = residual(age + 1, poses_of_a_way, age + 1, age);
+    if (by.height_jumps) jumps.height_m2 += by.height_m * by.height_m;
+    if (by.attitude_jumps) jumps.attitude_rad2 += by.roll_rad * by.roll_rad + by.pitch_rad * by.pitch_rad;
+  }
+  return jumps;
+}
+
+template <Limits limits>
+std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) {
+  using Kind = PoseStepNews::Kind;
+  while (fresh_ > (open() ? 1 : 0) && back(fresh_ - 1).time_ns <= until_ns) {
+    const int age = --fresh_;
+    // As fast as after the last jump, if there are two poses to tell, else as before it.
+    const int last = since_jump_ == 1 ? age + 2 : age + 1;
+    const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
+    const detail::PoseResidual off = residual(last, most, age + 1, age);
+    const bool may_confirm = jumps_on_end_ == 1;  // the step that the pose before has begun
+    jumps_on_end_ = off.jumps() ? jumps_on_end_ + 1 : 0;
+    since_jump_ = off.jumps() ? 1 : since_jump_ < limits.poses ? since_jump_ + 1 : since_jump_;
+    if (may_confirm) {
+      const bool stays_off = lies_off_before(age);
+      climbs_ = climbs_ || (off.jumps() && stays_off);
+      return PoseStepNews{off.jumps() || !stays_off ? Kind::withdrawn : Kind::confirmed};
+    }
+    if (jumps_on_end_ == 1) return PoseStepNews{Kind::begun, detail::shift_of(off, back(age))};
+    if (climbs_ && (since_jump_ > poses_of_a_way || since_jump_ == limits.poses)) {
+      climbs_ = false;
+      return PoseStepNews{Kind::climbed};
+    }
+  }
+  return {};
+}
+
+/// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it
+/// stands. `inward` is the way to the other end.
+template <Limits limits>
+bool PoseTrack<limits>::beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const {
+  const std::int64_t end_ns = back(end).time_ns;
+  if (time_ns - end_ns > bound || end_ns - time_ns > bound) return false;
+  const int other = sample_for_rate(time_ns, end, inward, size_, [this](int age) { return back(age).time_ns; });
+  out = other < 0 ? back(end)
+                  : detail::interpolate(back(inward > 0 ? other : end), back(inward > 0 ? end : other), time_ns);
+  return detail::near_origin(out);
+}
+
+}  // namespace curbline

@@ -1,0 +1,184 @@
+#include "curbline/intake/tilt_latency.hpp"
+
+#include <algorithm>
+
+#include "curbline/math.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+namespace {
+
+/// Of what is not known of the latency, the part by which the sweeps of a robot that drives may differ.
+constexpr float sweep_share = 0.2f;
+
+/// Of lines on end that disagree with what is known, each by three standard deviations at least.
+constexpr int lines_of_a_step = 10;
+
+/// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have
+/// it known exactly, which is said of what is not estimated.
+constexpr float least_share = 1e-7f;
+
+}  // namespace
+
+void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
+  *this = TiltLatency{};
+  drives_ = !pose.still;
+  prior_variance_s2_ = square(tilt.latency_sd_s);
+  largest_offset_s_ = 5.0f * tilt.latency_sd_s;
+  time_variance_s2_ = square(tilt.time_sd_s);
+  angle_variance_ = square(tilt.angle_sd_rad);
+  // Below it a wrong latency is less than the error of an angle.
+  turns_.init(tilt.latency_sd_s > 0.0f ? tilt.angle_sd_rad / tilt.latency_sd_s : 0.0f);
+  covariance_[now][now] = other_.variance_s2 = prior_variance_s2_;
+  if (!drives_) return;
+  angle_variance_ += square(pose.attitude_sd_rad);
+  height_variance_m2_ = square(pose.height_sd_m);
+  covariance_[constant][constant] = prior_variance_s2_;
+  turn_driving();
+}
+
+TiltLatency::Turn TiltLatency::begin_line(float angle_rad, float rate_rad_s, std::uint32_t reading) {
+  const Turn turn = turns_.follow(angle_rad, rate_rad_s, reading);
+  if (turn != Turn::none && !drives_) take_up_other_direction();
+  if (turn != Turn::new_sweep) return turn;
+  if (drives_) {
+    turn_driving();
+  } else {
+    turn_standing();
+  }
+  turned_ = true;
+  return turn;
+}
+
+void TiltLatency::take_up_other_direction() {
+  const Known before{offset_s_, covariance_[now][now]};
+  offset_s_ = other_.offset_s;
+  covariance_[now][now] = other_.variance_s2;
+  other_ = before;
+}
+
+/// The second sweep is late as the first is; after that the ground is the datum.
+void TiltLatency::turn_standing() {
+  auto& p = covariance_;
+  p[now][now] = turned_ ? p[now][now] + prior_variance_s2_ : prior_variance_s2_;
+  p[earlier][earlier] = p[now][earlier] = p[earlier][now] = turned_ ? 0.0f : prior_variance_s2_;
+}
+
+/// The ground that the last sweep has mapped is that before the new one, which differs from the constant by lot.
+void TiltLatency::turn_driving() {
+  auto& p = covariance_;
+  p[earlier][earlier] = p[now][now];
+  p[constant][earlier] = p[earlier][constant] = p[constant][now];
+  offset_s_ = constant_s_;
+  p[now][now] = p[constant][constant] + square(sweep_share) * prior_variance_s2_;
+  p[constant][now] = p[now][constant] = p[constant][constant];
+  p[now][earlier] = p[earlier][now] = p[constant][earlier];
+}
+
+void TiltLatency::Sums::add(const Sighting& seen) {
+  const float weight = seen.growth_m_s / seen.variance_m2;
+  precision += weight * seen.growth_m_s;
+  mapped += weight * seen.map_growth_m_s;
+  weighted -= weight * seen.above_m;
+  growth += seen.growth_m_s;
+  common_m2 += seen.common_variance_m2;
+  points += 1.0f;
+}
+
+void TiltLatency::Sums::add(const Sums& other) {
+  precision += other.precision;
+  mapped += other.mapped;
+  weighted += other.weighted;
+  growth += other.growth;
+  common_m2 += other.common_m2;
+  points += other.points;
+}
+
+/// What even a step does not explain is another surface: the face of a curb, somebody walking.
+void TiltLatency::compare(const Sighting& seen) {
+  const float g = seen.growth_m_s, m = seen.map_growth_m_s;
+  if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
+  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m);
+  const float above_m2 = square(seen.above_m);
+  if (above_m2 <= gate * variance_m2) {
+    seen_.add(seen);
+    return;
+  }
+  const float by_step_m2 = prior_variance_s2_ * square(known(earlier) ? g : g - m);
+  if (above_m2 <= gate * (variance_m2 + by_step_m2)) stepped_.add(seen);
+}
+
+TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
+  Correction correction;
+  const bool moves = square(tilt_rate_rad_s) > 0.0f;
+  const bool agrees = moves && seen_.precision > 0.0f && update(observation(seen_, tilt_rate_rad_s), correction);
+  if (agrees && seen_.points >= stepped_.points) {
+    lines_suspected_ = 0;
+  } else {
+    seen_.add(stepped_);
+    if (moves && seen_.precision > 0.0f) suspect(observation(seen_, tilt_rate_rad_s));
+  }
+  seen_ = stepped_ = Sums{};
+  return correction;
+}
+
+/// Of a line as a whole, with what all its points share: the time and angle of the readings next to it, the pose, the
+/// ground's slope.
+TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
+  const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
+  const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
+  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision};
+}
+
+/// Kalman's update by one observation, of this sweep's offset less a multiple of that of the ground before; false if
+/// they disagree.
+bool TiltLatency::update(const Observation& seen, Correction& correction) {
+  std::array<float, states> cross{};  // covariance of each state and the observation
+  for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
+  const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
+  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // nor what is no number
+  const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
+  constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
+  offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
+  for (std::size_t a = 0; a < states; ++a) {
+    const bool open = !known(static_cast<State>(a));
+    for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
+    const float least_s2 = least_share * prior_variance_s2_;
+    if (open && covariance_[a][a] < least_s2) covariance_[a][a] = least_s2;
+  }
+  correction = {offset_s_ - before_s, cross[earlier] * weight};
+  mended_s_ += correction.earlier_s;
+  other_.offset_s += correction.earlier_s;
+  return true;
+}
+
+/// A line that disagrees with what is known. A step is common to all that is not known exactly: a ground that is the
+/// datum stays where it is.
+void TiltLatency::suspect(const Observation& seen) {
+  if (known(now)) return;  // it is not estimated
+  const float apart_s2 = square(seen.missing_s - suspected_.missing_s);
+  const bool like_last = lines_suspected_ > 0 && apart_s2 <= gate * (seen.variance_s2 + suspected_.variance_s2);
+  lines_suspected_ = like_last ? lines_suspected_ + 1 : 1;
+  suspected_ = seen;
+  if (lines_suspected_ < lines_of_a_step) return;
+  lines_suspected_ = 0;
+  ++steps_;
+  std::array<bool, states> open{};
+  for (const State state : {constant, now, earlier}) open[state] = !known(state);
+  for (std::size_t a = 0; a < states; ++a) {
+    for (std::size_t b = 0; b < states; ++b) {
+      if (open[a] && open[b]) covariance_[a][b] += prior_variance_s2_;
+    }
+  }
+}
+
+float TiltLatency::sd_s() const {
+  return square_root(covariance_[now][now]);
+}
+
+float TiltLatency::latest_offset_s() const {
+  const float next_s = drives_ ? constant_s_ : other_.offset_s;
+  return std::max(next_s, offset_s_);
+}
+
+}  // namespace curbline

@@ -1,0 +1,163 @@
+// The angle of the tilt servo at each beam of a line, between the readings that a TiltTrack held when the line came,
+// and a little beyond them. Working memory of one line. Cost: a step a beam, and a search for a rate a reading.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "curbline/intake/extrapolation.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/math.hpp"
+#include "curbline/settings.hpp"
+#include "curbline/tilt_reading.hpp"
+
+namespace curbline {
+
+/// The angle at one time.
+struct TiltAngle {
+  enum class Source : std::uint8_t { none, interpolated, extrapolated };
+  Source source = Source::none;
+  float angle_rad = 0.0f;
+  float rate_rad_s = 0.0f;  ///< by which the angle would differ if time did: over 15 ms about it, if there are readings
+};
+
+/// Readings ascending in time; times are those at which the angles were true.
+template <Limits limits>
+class TiltSnapshot {
+ public:
+  /// How TiltTrack makes one: it puts `count` readings in, number 0 the oldest, and begins with the newest `whole` of
+  /// them, as far as their times rise. `written`: how many there have been up to the newest, since init(). How many
+  /// have come beyond the first that is later than `until_ns`, a line's last beam, changes nothing of what is told
+  /// between readings.
+  void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
+  void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
+             std::int64_t until_ns);
+
+  /// The angle at a time; Source::none where readings do not tell. O(1) on average while times rise; an earlier one
+  /// than the last only after rewind().
+  TiltAngle at(std::int64_t time_ns);
+  /// Number of the reading up to which the last answer goes; the same for all times between two readings.
+  std::uint32_t reading_number() const { return written_ - static_cast<std::uint32_t>(size_ - cursor_); }
+  /// Lets the next question be an earlier one.
+  void rewind() {
+    cursor_ = 0;
+    segment_from_ns_ = segment_to_ns_ = 0;
+  }
+
+ private:
+  /// Not inlined, so that at() is, which is asked for each beam: 16,000 instructions a line of a Cortex-M7.
+  [[gnu::noinline]] TiltAngle find(std::int64_t time_ns);
+  TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
+  static float seconds(std::int64_t ns) { return to_float(ns) * 1e-9f; }
+  static float slope_rad_s(const TiltReading& a, const TiltReading& b) {
+    return (b.angle_rad - a.angle_rad) * 1e9f / to_float(b.time_ns - a.time_ns);
+  }
+  static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
+  float rate_about(int before, int after, float own_rad_s) const;
+  const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
+
+  std::array<TiltReading, limits.tilt_samples> readings_{};
+  int size_ = 0;
+  int awaited_ = 0;            ///< readings up to the first later than the line's last beam
+  std::uint32_t written_ = 0;  ///< readings up to the newest of them, since init()
+  int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
+  std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
+  float angle_variance_ = 0.0f, time_variance_s2_ = 0.0f;  ///< of a reading
+  // Between the two readings that a question fell between last; empty before one does.
+  std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
+  float segment_angle_rad_ = 0.0f, segment_slope_rad_s_ = 0.0f, segment_rate_rad_s_ = 0.0f;
+
+  /// Rates are told over as long a time at least. Stamps jitter by a millisecond: two frames at 50 Hz tell a rate to
+  /// 7 %, at 100 Hz to 14 %, and those of a servo that reports at 1 kHz any.
+  static constexpr std::int64_t rate_span_ns = 15'000'000;
+};
+
+template <Limits limits>
+void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written,
+                                 const TiltSettings& settings, std::int64_t until_ns) {
+  std::uint32_t kept = whole > 0 ? 1 : 0;  // what came before the times went back is of another time
+  while (kept < whole && readings_[count - kept - 1].time_ns < readings_[count - kept].time_ns) ++kept;
+  for (std::uint32_t k = 0; k < kept; ++k) readings_[k] = readings_[count - kept + k];
+  size_ = awaited_ = static_cast<int>(kept);
+  while (awaited_ > 1 && reading(awaited_ - 2).time_ns > until_ns) --awaited_;
+  written_ = written;
+  cursor_ = 0;
+  segment_from_ns_ = segment_to_ns_ = 0;
+  max_gap_ns_ = static_cast<std::int64_t>(settings.max_gap_s * 1e9f);
+  max_extrapolation_ns_ = static_cast<std::int64_t>(settings.max_extrapolation_s * 1e9f);
+  angle_variance_ = square(settings.angle_sd_rad);
+  time_variance_s2_ = square(settings.time_sd_s);
+}
+
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
+  if (time_ns < segment_from_ns_ || time_ns >= segment_to_ns_) return find(time_ns);
+  const auto since_s = static_cast<float>(static_cast<std::int32_t>(time_ns - segment_from_ns_)) * 1e-9f;
+  return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_slope_rad_s_, segment_rate_rad_s_};
+}
+
+/// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in
+/// hand.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
+  while (cursor_ < size_ && reading(cursor_).time_ns <= time_ns) ++cursor_;
+  if (size_ == 0) return {};
+  if (cursor_ == 0) return beyond(time_ns, 0, 1);
+  if (cursor_ == size_) return beyond(time_ns, size_ - 1, -1);
+  const TiltReading &a = reading(cursor_ - 1), &b = reading(cursor_);
+  if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, a);
+  const float slope = slope_rad_s(a, b), rate_rad_s = rate_about(cursor_ - 1, cursor_, slope);
+  if (b.time_ns - a.time_ns <= INT32_MAX) {
+    segment_from_ns_ = a.time_ns;
+    segment_to_ns_ = b.time_ns;
+    segment_angle_rad_ = a.angle_rad;
+    segment_slope_rad_s_ = slope;
+    segment_rate_rad_s_ = rate_rad_s;
+  }
+  return {TiltAngle::Source::interpolated, a.angle_rad + seconds(time_ns - a.time_ns) * slope, rate_rad_s};
+}
+
+/// About two readings, of which the rate from one to the other is `own_rad_s`: with those around them, as long as they
+/// are too close to tell it. If they lie off that by three standard deviations, near a turn of the servo or a damaged
+/// reading, their own.
+template <Limits limits>
+float TiltSnapshot<limits>::rate_about(int before, int after, float own_rad_s) const {
+  const auto goes_on = [this](int k) { return reading(k + 1).time_ns - reading(k).time_ns <= max_gap_ns_; };
+  int from = before, to = after;
+  while (reading(to).time_ns - reading(from).time_ns < rate_span_ns) {
+    const bool earlier = from > 0 && goes_on(from - 1), later = to + 1 < awaited_ && goes_on(to);
+    if (!earlier && !later) break;
+    from -= earlier;
+    to += later;
+  }
+  const float rate_rad_s = slope_rad_s(reading(from), reading(to));
+  const float off_rad = (own_rad_s - rate_rad_s) * seconds(reading(after).time_ns - reading(before).time_ns);
+  const float variance = 2.0f * (angle_variance_ + square(rate_rad_s) * time_variance_s2_);
+  return square(off_rad) <= gate * variance ? rate_rad_s : own_rad_s;
+}
+
+/// The angle at an end of the readings or beyond it, at their rate there. `inward` is the way to the other end.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward) const {
+  const std::int64_t end_ns = reading(end).time_ns;
+  const std::int64_t beyond_ns = inward > 0 ? end_ns - time_ns : time_ns - end_ns;
+  if (beyond_ns > max_extrapolation_ns_) return {};
+  const int other = sample_for_rate(time_ns, end, inward, size_, [this](int k) { return reading(k).time_ns; });
+  if (other < 0) return alone(time_ns, reading(end));
+  const int before = inward > 0 ? end : other, after = inward > 0 ? other : end;
+  const TiltReading &a = reading(before), &b = reading(after);
+  if (b.time_ns - a.time_ns > max_gap_ns_) return alone(time_ns, reading(end));
+  const float rate_rad_s = rate_about(before, after, slope_rad_s(a, b));
+  return {beyond_ns > 0 ? TiltAngle::Source::extrapolated : TiltAngle::Source::interpolated,
+          reading(end).angle_rad + seconds(time_ns - end_ns) * rate_rad_s, rate_rad_s};
+}
+
+/// Of one reading, or beside a gap too wide to say anything of the time between: good at its own moment only.
+template <Limits limits>
+TiltAngle TiltSnapshot<limits>::alone(std::int64_t time_ns, const TiltReading& reading) {
+  if (time_ns != reading.time_ns) return {};
+  return {TiltAngle::Source::interpolated, reading.angle_rad, 0.0f};
+}
+
+}  // namespace curbline

@@ -1,0 +1,322 @@
+// Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
+// (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
+// from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
+// values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) out of
+// the planes near by (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of
+// planes_near_by, four messages for each cell that sends, a look at each plane near by for each whose candidates are
+// chosen anew.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "curbline/counters.hpp"
+#include "curbline/labels/label_site.hpp"
+#include "curbline/labels/planes_near_by.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+/// Which cells send messages.
+enum class FieldScope : std::uint8_t {
+  line,     ///< what changed, within max_messages: after each scan line
+  changed,  ///< what changed, all of it
+  window,   ///< every cell
+};
+
+template <Limits limits>
+class LabelField {
+ public:
+  static constexpr int capacity = Dem<limits>::capacity;
+
+  /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
+  struct Visit {
+    Slot<limits> slot;
+    std::array<Slot<limits>, directions> neighbour;
+    std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
+    std::uint8_t same_labels;                       ///< a bit a direction: the neighbour has the same candidates
+    LabelSite::Heard heard;
+  };
+  /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
+  struct Visits {
+    std::array<Visit, capacity> visit;
+    PerCell<Slot<limits>, limits> index;
+    int size;
+  };
+
+  [[gnu::cold]] void init(const LabelSettings& settings);
+
+  /// Forgets a cell that leaves the window.
+  void forget(int slot) { sites_[slot] = LabelSite{}; }
+
+  /// The cells that were touched are to be looked at by the next update().
+  void note_touched(const Dem<limits>& dem);
+
+  /// E-step. Changed are cells that were noted as touched, whose region changed its plane, that bore a label that is no
+  /// more or heard a message that was new, and a band of rows that moves on with each call, since planes move as they
+  /// grow. Returns how many labels changed. Cells that are left over by max_messages are counted and wait for the next
+  /// call.
+  int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
+             Counters& counters);
+
+  Label label(int slot) const { return sites_[slot].best; }
+  /// Posterior of a valid cell. O(label_candidates^2).
+  Belief belief(const Dem<limits>& dem, int i, int j) const;
+
+ private:
+  static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
+
+  /// Bits; renew: its candidates too.
+  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
+
+  // Called, so that send() is inlined where it sends for each visit: 50,000 instructions a line of a Cortex-M7.
+  [[gnu::noinline]] void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                       Visits& visits, Counters& counters);
+  int flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
+  std::uint8_t wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const;
+  bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
+  void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
+  Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
+  void hear_neighbours(Visit& visit) const;
+  void send(const Visit& from, std::size_t direction, Visits& visits);
+  int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
+  int follow_belief(const Visit& visit);
+
+  LabelSettings settings_{};
+  PlanesNearBy<limits> near_by_{};
+  int band_ = 0;                                                    ///< first row to refresh in the next update()
+  int first_row_ = 0;                                               ///< whose cells may send first in it
+  std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
+  PerCell<LabelSite, limits> sites_{};
+  PerCell<std::uint8_t, limits> flag_{};
+};
+
+template <Limits limits>
+void LabelField<limits>::init(const LabelSettings& settings) {
+  settings_ = settings;
+  sites_.fill(LabelSite{});
+  flag_.fill(quiet);
+  near_by_.clear();
+  band_ = first_row_ = 0;
+  for (std::size_t g = 1; g < coupling_.size(); ++g)
+    coupling_[g] = LabelSite::coupling(settings.coupling / static_cast<float>(g));
+}
+
+template <Limits limits>
+int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                               Visits& visits, Counters& counters) {
+  near_by_.follow(dem, mixture);
+  choose_visits(dem, mixture, scope, visits, counters);
+  const std::span<Visit> all(visits.visit.data(), static_cast<std::size_t>(visits.size));
+  for (Visit& visit : all) hear_neighbours(visit);
+  // Each direction's messages follow its own order, so that one pass carries them across the window.
+  for (std::size_t direction = 0; direction < directions; ++direction) {
+    const bool forward = direction % 2 == 0;
+    for (std::size_t n = 0; n < all.size(); ++n) send(all[forward ? n : all.size() - 1 - n], direction, visits);
+  }
+  counters.messages += static_cast<std::uint32_t>(directions * visits.size);
+  return follow_beliefs(dem, visits);
+}
+
+template <Limits limits>
+void LabelField<limits>::note_touched(const Dem<limits>& dem) {
+  dem.for_each_valid([&](int, int, int s) {
+    if (dem.touched(s)) flag_[s] |= renew;
+  });
+}
+
+/// What changed first, then the band of rows.
+template <Limits limits>
+void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                       Visits& visits, Counters& counters) {
+  int left = flag_changed(dem, mixture, scope, counters);
+  const int band = band_ < dem.rows() ? band_ : 0;
+  band_ = band + settings_.refresh_rows;
+  visits.size = 0;
+  dem.for_each_valid([&](int i, int j, int s) {
+    auto& flag = flag_[s];
+    if (flag == quiet && i >= band && i < band_ && left > 0) {
+      flag = visited | renew;
+      --left;
+    }
+    if ((flag & visited) == 0) return;
+    if ((flag & renew) != 0) choose_candidates(dem, mixture, i, j, s);
+    flag = visited;
+    visits.index[s] = static_cast<Slot<limits>>(visits.size);
+    visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
+  });
+}
+
+/// From a row that moves on, so that a budget that is too small starves none as long as it holds a row's cells. Returns
+/// how many visits are left.
+template <Limits limits>
+int LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                     Counters& counters) {
+  const int rows = dem.rows();
+  const int first = first_row_ < rows ? first_row_ : 0;
+  first_row_ = first + 1;
+  const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
+  int left = scope == FieldScope::line ? messages / directions : capacity;
+  for (int a = 0; a < rows; ++a) {
+    dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
+      auto& flag = flag_[s];
+      flag = wanted(mixture, scope, s);
+      if (flag == quiet) return;
+      if (left > 0) {
+        --left;
+      } else {
+        flag ^= visited | deferred;
+        ++counters.cells_deferred;
+      }
+    });
+  }
+  return left;
+}
+
+/// `visited`, with `renew` or without, or `quiet`.
+template <Limits limits>
+std::uint8_t LabelField<limits>::wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const {
+  const std::uint8_t before = flag_[slot];
+  if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, slot)) return visited | renew;
+  if ((before & (heard | deferred)) == 0) return quiet;
+  return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
+}
+
+template <Limits limits>
+bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
+  if (mixture.relabelled(slot)) return true;
+  const LabelSite& site = sites_[slot];
+  if (mixture.any_fresh()) {
+    if (mixture.region_label(slot) != no_label && mixture.fresh(mixture.region_label(slot))) return true;
+    for (const Label label : site.label) {
+      if (label != no_label && mixture.fresh(label)) return true;
+    }
+  }
+  return site.label[0] == no_label;
+}
+
+/// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept. Where the ground
+/// is covered they are alike, and the cells around decide.
+template <Limits limits>
+void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
+                                           int slot) {
+  const Cell& cell = dem.cell(slot);
+  const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
+  const float cell_variance = dem.height_variance_m2(cell);
+  LabelSite::Candidates candidates;
+  const auto consider = [&](int k) {
+    const Plane& plane = mixture.plane(k);
+    if (!plane.alive() || !mixture.ground(k)) return;
+    const float variance = plane.variance_m2 + cell_variance;
+    const float residual = cell.height_m - plane.height_m(x, y);
+    float u = 1.0f + residual * residual / (6.0f * variance);
+    if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
+    const float u3 = u * u * u;
+    candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
+  };
+  near_by_.of_cell(i, j).for_each(consider);
+  if (candidates.label[0] == no_label) {
+    for (int k = 0; k < limits.planes; ++k) consider(k);
+  }
+  sites_[slot].set_candidates(candidates, mixture.covered(slot));
+}
+
+template <Limits limits>
+auto LabelField<limits>::visit_to(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
+  Visit visit;
+  visit.slot = static_cast<Slot<limits>>(slot);
+  for (std::size_t d = 0; d < directions; ++d) {
+    const int g = dem.next_valid(slot, static_cast<int>(d), settings_.link_reach);
+    visit.distance[d] = static_cast<std::uint8_t>(g);
+    visit.neighbour[d] = static_cast<Slot<limits>>(g == 0 ? slot : dem.slot(i + g * step_i[d], j + g * step_j[d]));
+  }
+  return visit;
+}
+
+/// When all candidates are chosen.
+template <Limits limits>
+void LabelField<limits>::hear_neighbours(Visit& visit) const {
+  const LabelSite& site = sites_[visit.slot];
+  visit.same_labels = 0;
+  visit.heard.fill(0);
+  for (std::size_t d = 0; d < directions; ++d) {
+    if (visit.distance[d] == 0) continue;
+    const LabelSite& other = sites_[visit.neighbour[d]];
+    const bool same = site.label == other.label;
+    visit.same_labels |= static_cast<std::uint8_t>(same << d);
+    site.hear(other.label, other.sent[d ^ 1u], same, 1, visit.heard);
+  }
+}
+
+/// To the next cell there, and to what it has heard, if it is news.
+template <Limits limits>
+void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& visits) {
+  const std::size_t distance = from.distance[direction];
+  if (distance == 0) return;
+  LabelSite& site = sites_[from.slot];
+  const LabelSite& other = sites_[from.neighbour[direction]];
+  const bool same = (from.same_labels >> direction & 1) != 0;
+  LabelSite::Message message{coupling_[distance].loudest, 0, 0};
+  if (!site.decided()) {
+    auto by_others = from.heard;
+    site.hear(other.label, other.sent[direction ^ 1u], same, -1, by_others);
+    message = LabelSite::message(site.probabilities(by_others), coupling_[distance]);
+  }
+  auto& sent = site.sent[direction];
+  bool news = false;
+  for (std::size_t c = 0; c < message.size(); ++c) {
+    const int change = message[c] - sent[c];
+    news |= change > no_news || change < -no_news;
+  }
+  if (!news) return;
+  auto& flag = flag_[from.neighbour[direction]];
+  if ((flag & visited) != 0) {
+    auto& sum = visits.visit[visits.index[from.neighbour[direction]]].heard;
+    other.hear(site.label, sent, same, -1, sum);
+    other.hear(site.label, message, same, 1, sum);
+  }
+  flag |= heard;
+  sent = message;
+}
+
+/// The most likely label of each cell that was visited or heard something new. Returns how many changed.
+template <Limits limits>
+int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
+  int changed = 0;
+  for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
+  dem.for_each_valid([&](int i, int j, int s) {
+    if ((flag_[s] & (visited | heard)) != heard) return;
+    Visit heard_only = visit_to(dem, i, j, s);
+    hear_neighbours(heard_only);
+    changed += follow_belief(heard_only);
+  });
+  return changed;
+}
+
+/// 1 if it changed.
+template <Limits limits>
+int LabelField<limits>::follow_belief(const Visit& visit) {
+  LabelSite& site = sites_[visit.slot];
+  const Label best = site.most_likely(visit.heard);
+  if (site.best == best) return 0;
+  site.best = best;
+  return 1;
+}
+
+template <Limits limits>
+auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
+  const int slot = dem.slot(i, j);
+  const LabelSite& site = sites_[slot];
+  if (site.decided()) return {site.label, {site.label[0] == no_label ? 0.0f : 1.0f, 0.0f, 0.0f}};
+  Visit here = visit_to(dem, i, j, slot);
+  hear_neighbours(here);
+  return {site.label, site.probabilities(here.heard)};
+}
+
+}  // namespace curbline

@@ -1,0 +1,75 @@
+// Which planes are near each cell: those of regions in its block or the eight around it. A cell may bear these alone,
+// so that two pavements of one height on either side of a road keep their labels apart. Cost: a pass over the window
+// when regions have changed their planes or the window has moved.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "curbline/grid.hpp"
+#include "curbline/index_set.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class PlanesNearBy {
+ public:
+  using Planes = IndexSet<limits.planes>;
+
+  void clear() { near_.fill({}); }
+
+  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
+
+  /// As the last follow() has found them.
+  const Planes& of_cell(int i, int j) const { return near_[block(i, j)]; }
+
+ private:
+  static constexpr std::size_t blocks_in_row = limits.cols / block_side;
+  using BlockRow = std::array<Planes, blocks_in_row>;
+
+  static std::size_t block(int i, int j) {
+    return static_cast<std::size_t>(i / block_side) * blocks_in_row + static_cast<std::size_t>(j / block_side);
+  }
+  static BlockRow planes_in(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first_row);
+
+  std::array<Planes, limits.rows / block_side * blocks_in_row> near_{};  ///< of each block of the window
+  float origin_x_m_ = 0.0f, origin_y_m_ = 0.0f;                          ///< of the window then
+};
+
+template <Limits limits>
+void PlanesNearBy<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
+  if (!mixture.any_relabelled() && origin_x_m_ == dem.origin_x_m() && origin_y_m_ == dem.origin_y_m()) return;
+  origin_x_m_ = dem.origin_x_m();
+  origin_y_m_ = dem.origin_y_m();
+  near_.fill({});
+  for (int i = 0; i < dem.rows(); i += block_side) {
+    const BlockRow here = planes_in(dem, mixture, i);
+    for (int j = 0; j < dem.cols(); j += block_side) {
+      const Planes& planes = here[static_cast<std::size_t>(j / block_side)];
+      for (int a = i - block_side; a <= i + block_side; a += block_side) {
+        for (int b = j - block_side; b <= j + block_side; b += block_side) {
+          if (dem.contains(a, b)) near_[block(a, b)].insert(planes);
+        }
+      }
+    }
+  }
+}
+
+/// In each of the blocks that begin in a row.
+template <Limits limits>
+auto PlanesNearBy<limits>::planes_in(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first_row)
+    -> BlockRow {
+  BlockRow planes{};
+  for (int i = first_row; i < first_row + block_side; ++i) {
+    dem.for_each_valid_in_row(i, [&](int, int j, int s) {
+      const Label label = mixture.region_label(s);
+      if (label != no_label) planes[static_cast<std::size_t>(j / block_side)].insert(label);
+    });
+  }
+  return planes;
+}
+
+}  // namespace curbline

@@ -1,0 +1,346 @@
+// The elevation map: what is in the cells of the rolling window (window.hpp). The heights of each (cell.hpp), its
+// neighbours, when and from where it was seen last, and how it moves with the tilt's latency. Cells that leave the
+// window are cleared.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/cell.hpp"
+#include "curbline/map/viewpoints.hpp"
+#include "curbline/map/window.hpp"
+#include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+#include "curbline/pose.hpp"
+#include "curbline/settings.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Dem : public Window<limits> {
+ public:
+  static constexpr int capacity = limits.rows * limits.cols;
+  using typename Window<limits>::Place;
+  using Window<limits>::rows;
+  using Window<limits>::cols;
+  using Window<limits>::cell_x_m;
+  using Window<limits>::cell_y_m;
+  using Window<limits>::origin_x_m;
+  using Window<limits>::origin_y_m;
+  using Window<limits>::place_at;
+
+  /// Empties the map and places the window. Settings are valid.
+  [[gnu::cold]] void init(const WindowSettings& settings, const PlanePrior& prior);
+
+  /// Makes the window follow (x, y), unless it is fixed. Cells that leave are cleared; calls left(slot) for each valid
+  /// one first. Cost: O(1), and a pass over the window if it moves.
+  template <typename Left>
+  void follow(float x_m, float y_m, Left&& left);
+
+  /// Takes a point into its cell; false if it lies outside the window, beyond Pose::furthest_m above or below, or has a
+  /// value that is not finite. Its weight is the expected noise over its variance plus the ground's texture; none
+  /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones
+  /// fade. O(1).
+  bool add(const Point& point);
+
+  /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
+  /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
+  void delay(float this_sweep_s, float earlier_s);
+
+  // Its cells.
+
+  const Cell& cell(int slot) const { return cells_[slot]; }
+  /// How far a cell's mean height lies above a plane, at its centroid.
+  float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
+    return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));
+  }
+  float centroid_x_m(int i, const Cell& cell) const { return (static_cast<float>(i) + 0.5f) * cell_x_m() + cell.dx_m; }
+  float centroid_y_m(int j, const Cell& cell) const { return (static_cast<float>(j) + 0.5f) * cell_y_m() + cell.dy_m; }
+  /// Moments of one cell, its points as if at their centroid, in the window's frame (origin at its lowest corner). n
+  /// points that share a part rho of their variance are worth n / (1 + rho (n - 1)) independent ones (Kish's design
+  /// effect).
+  PlaneMoments moments(int i, int j, const Cell& cell) const {
+    PlaneMoments m;
+    const float share = 1.0f / (1.0f + prior_.common_share * (cell.points - 1.0f));
+    m.cells = 1.0f;
+    m.points = cell.points * share;
+    m.weight = cell.weight * share;
+    m.x = centroid_x_m(i, cell);
+    m.y = centroid_y_m(j, cell);
+    m.z = cell.height_m;
+    m.zz = cell.scatter_m2 * share;
+    return m;
+  }
+
+  /// Calls visit(i, j, slot) for each valid cell, row by row.
+  template <typename Visit>
+  void for_each_valid(Visit&& visit) const {
+    for (int i = 0; i < rows(); ++i) for_each_valid_in_row(i, visit);
+  }
+  template <typename Visit>
+  void for_each_valid_in_row(int i, Visit&& visit) const {
+    for_each_valid_along(1, i, [&](int j, int s) { visit(i, j, s); });
+  }
+  /// Calls visit(k, slot) for each valid cell k of a column, along x (axis 0), or of a row, along y (1).
+  template <typename Visit>
+  void for_each_valid_along(int axis, int line, Visit&& visit) const {
+    auto at = this->walk_along(axis, line);
+    for (int k = 0; k < at.count; ++k, at.next()) {
+      if (cell(at.slot).valid()) visit(k, at.slot);
+    }
+  }
+  /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
+  /// at most max_link_reach. O(1).
+  int next_valid(int slot, int direction, int reach) const {
+    const int g = distances_[slot] >> (4 * direction) & 15;
+    return g <= reach ? g : 0;
+  }
+  /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
+  Place nearest_unmarked(const Place& place, int reach) const;
+
+  // What the heights within one say, beside the noise of its points.
+
+  /// What is known before any point; PlanePrior::common_share by what was found last.
+  const PlanePrior& prior() const { return prior_; }
+  /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
+  float common_m2() const { return common_m2_; }
+  /// Of cells that lie at a distance and hold few points, see Viewpoint::reach_m2(): no less.
+  float common_m2(float reach_m2) const { return std::max(common_m2_, line_rad2_ * reach_m2); }
+  /// As evidence it is no less than the ground's texture.
+  void set_common(float found_m2, float found_line_rad2) {
+    common_m2_ = found_m2;
+    line_rad2_ = found_line_rad2;
+    prior_.common_share = std::max(prior_.texture_m2, found_m2) / prior_.noise_m2;
+  }
+
+  /// Variance of a cell's mean height, from the noise of its points.
+  float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
+  /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
+  float spread_m2(const Cell& cell) const { return cell.scatter_m2 - prior_.noise_m2 * cell.points; }
+  /// Do they spread by two standard deviations of that noise? Then it holds more than one surface, or a steep one, or
+  /// one after another.
+  bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
+  /// Do the heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. Of
+  /// several, the sums of their spreads and weights.
+  bool steep(float spread_m2, float weight) const { return spread_m2 > (1.0f / 12) * cell_x_m() * cell_y_m() * weight; }
+  bool steep(const Cell& cell) const { return steep(spread_m2(cell), cell.weight); }
+  /// Variance of the heights of a plane within a cell.
+  float slope_m2(const Plane& plane) const {
+    const float rise_x_m = plane.slope_x * cell_x_m(), rise_y_m = plane.slope_y * cell_y_m();
+    return (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
+  }
+  /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
+  /// its plane make? Then it holds more than the plane.
+  bool mixed(const Cell& cell, float slope_m2) const { return spreads(cell, slope_m2, prior_.noise_m2); }
+  /// The same on rough ground.
+  bool mixed(const Cell& cell, float slope_m2, float rough_m2) const {
+    return spreads(cell, slope_m2, prior_.noise_m2 + rough_m2 * cell.weight / cell.points);
+  }
+
+  // When and from where it was seen last.
+
+  /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
+  bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
+  void clear_touched() {
+    if (any_touched_) clear_all(touched_bit);
+    any_touched_ = false;
+  }
+  bool any_touched() const { return any_touched_; }
+
+  /// The laser sweeps over the ground anew. A pass over the window.
+  void begin_sweep() { clear_all(sweep_bit); }
+  /// Has an earlier sweep seen the cell, and this one not yet?
+  bool mapped_before(int slot) const { return cell(slot).valid() && (seen_[slot] & sweep_bit) == 0; }
+  /// From now on cells that are seen bear a mark. A pass over the window.
+  void begin_marking() { clear_all(marked_bit); }
+  bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
+  /// The laser is there, in the map frame: what is seen from now on is seen from there.
+  void look_from(float x_m, float y_m) {
+    viewpoints_.look_from({x_m, y_m});
+    flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
+  }
+  /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
+  Viewpoint seen_from(int slot, const Viewpoint& now) const {
+    if (!seen_from_several()) return now;
+    const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
+    return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
+  }
+  /// If not, all has been seen from one place.
+  bool seen_from_several() const { return viewpoints_.moved(); }
+
+  /// Mean of its points' growth by the tilt's latency.
+  float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
+
+ private:
+  /// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone
+  /// is forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is
+  /// seen.
+  static constexpr float memory = 0.25f;
+  /// A cell's points count as no more than that, in favour of the newest. More tell nothing, since they share a part of
+  /// their errors: of 512 that share a half all is known but 1 in 500. What has changed is known after as many, however
+  /// long a robot has stood before it.
+  static constexpr float most_points = 512.0f;
+  static constexpr int growth_scale = 1024;
+  /// Of a point. With one beyond these float would lose what it tells beside the others, or what they tell.
+  static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
+  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
+  static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
+  static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
+  /// Beyond slope and noise.
+  static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
+    const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
+    const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / noise_m2 - freedom;
+    return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
+  }
+  void clear_all(std::uint8_t bit) {
+    for (std::uint8_t& seen : seen_) seen &= static_cast<std::uint8_t>(~bit);
+  }
+  void set_distance(int slot, int direction, int distance) {
+    auto& distances = distances_[slot];
+    distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
+  }
+  void add_growth(int s, const Point& point, float weight);
+  void meet_neighbours(int i, int j);
+  void leave(int i, int j);
+
+  PlanePrior prior_{};
+  float common_m2_ = 0.0f;
+  PerCell<Cell, limits> cells_{};
+  Viewpoints viewpoints_{};
+  /// Three bits, and above them the number of the viewpoint that the cell was seen from last.
+  PerCell<std::uint8_t, limits> seen_{};
+  std::uint8_t flags_ = seen_bits;              ///< of a cell that is seen now
+  PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
+  PerCell<std::uint16_t, limits> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
+  float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Behind the cells: before them it costs the worst line of a
+                            ///< Cortex-R5F 9,000 instructions (tools/budget)
+  bool any_touched_ = false;
+};
+
+template <Limits limits>
+void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) {
+  Window<limits>::init(settings);
+  prior_ = prior;
+  common_m2_ = prior.common_m2();
+  line_rad2_ = 0.0f;
+  cells_.fill(Cell{});
+  seen_.fill(0);
+  flags_ = seen_bits;
+  const float along_x_m = static_cast<float>(rows()) * cell_x_m(), along_y_m = static_cast<float>(cols()) * cell_y_m();
+  viewpoints_.init(std::max(along_y_m, along_x_m));
+  growth_.fill(0);
+  distances_.fill(0);
+  any_touched_ = false;
+}
+
+template <Limits limits>
+template <typename Left>
+void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
+  const auto to = this->corner_of(x_m, y_m);
+  if (to == this->corner()) return;
+  for (int i = 0; i < rows(); ++i) {
+    const bool row_stays = this->row_stays(i, to);
+    for (int j = 0; j < cols(); ++j) {
+      if (row_stays && this->col_stays(j, to)) continue;
+      const int s = this->slot(i, j);
+      if (!cell(s).valid()) continue;
+      left(s);
+      leave(i, j);
+    }
+  }
+  this->move(to);
+}
+
+/// A cell that has just become valid: it and the next ones on its row and column learn of each other.
+template <Limits limits>
+void Dem<limits>::meet_neighbours(int i, int j) {
+  const int s = this->slot(i, j);
+  for (int d = 0; d < directions; ++d) {
+    const auto n = static_cast<std::size_t>(d);
+    int a = i, b = j;
+    for (int g = 1; g <= max_link_reach; ++g) {
+      a += step_i[n];
+      b += step_j[n];
+      if (!this->contains(a, b)) break;
+      const int other = this->slot(a, b);
+      if (!cell(other).valid()) continue;
+      set_distance(s, d, g);
+      set_distance(other, d ^ 1, g);
+      break;
+    }
+  }
+}
+
+/// Clears a cell. What lies beyond it leaves too, so its neighbours see nothing there any more.
+template <Limits limits>
+void Dem<limits>::leave(int i, int j) {
+  const int s = this->slot(i, j);
+  for (int d = 0; d < directions; ++d) {
+    const auto n = static_cast<std::size_t>(d);
+    const int g = next_valid(s, d, max_link_reach);
+    if (g > 0) set_distance(this->slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
+  }
+  cells_[s] = Cell{};
+  growth_[s] = 0;
+  distances_[s] = 0;
+  seen_[s] = flags_;
+  any_touched_ = true;
+}
+
+template <Limits limits>
+auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place {
+  const auto unmarked = [this](int s) { return cell(s).valid() && !marked(s); };
+  if (unmarked(this->slot(place.i, place.j))) return place;
+  for (int g = 1; g <= reach; ++g) {
+    for (std::size_t d = 0; d < directions; ++d) {
+      const int i = place.i + g * step_i[d], j = place.j + g * step_j[d];
+      if (this->contains(i, j) && unmarked(this->slot(i, j))) return {i, j};
+    }
+  }
+  return {};
+}
+
+template <Limits limits>
+bool Dem<limits>::add(const Point& point) {
+  const bool near = square(point.z_m) <= square(Pose::furthest_m);  // not of no number
+  if (!near || !(point.variance_m2 >= 0.0f)) return false;
+  const float weight = prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2);
+  if (!(weight >= least_weight && weight <= most_weight)) return false;  // nor has an infinite variance one
+  const Place place = place_at(point.place_x_m(), point.place_y_m());
+  if (!place.inside()) return false;
+  const int i = place.i, j = place.j;
+  const int s = this->slot(i, j);
+  if (!cells_[s].valid()) meet_neighbours(i, j);
+  if (mapped_before(s) && several_surfaces(cells_[s])) cells_[s].fade(memory);
+  cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * cell_x_m() - point.shift_x_m,
+                (place.v - static_cast<float>(j) - 0.5f) * cell_y_m() - point.shift_y_m, point.z_m, weight);
+  add_growth(s, point, weight);
+  if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
+  seen_[s] = flags_;
+  any_touched_ = true;
+  return true;
+}
+
+/// After the point has been added. A mean of many points changes by less than what is stored: it is rounded up as often
+/// as its fraction says, by the lot that the last bits of the point's height draw.
+template <Limits limits>
+void Dem<limits>::add_growth(int s, const Point& point, float weight) {
+  const float before = static_cast<float>(growth_[s]);
+  const float now = before + weight / cells_[s].weight * (point.growth_m_s * growth_scale - before);
+  const float lot = static_cast<float>((std::bit_cast<std::uint32_t>(point.z_m) * 2654435769u) >> 8) * 0x1p-24f;
+  if (now > -most_growth_m_s * growth_scale && now < most_growth_m_s * growth_scale)
+    growth_[s] = static_cast<std::int16_t>(floor_to_int(now + lot));
+}
+
+template <Limits limits>
+void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
+  for_each_valid(
+      [&](int, int, int s) { cells_[s].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s); });
+}
+
+}  // namespace curbline

@@ -1,0 +1,187 @@
+// How much of their noise the points of a cell share, found from the map. Cells count as independent observations of
+// their planes, but what their points share they share with the cells around too: ground is uneven over more than one
+// cell, and errors of the tilt lie in stripes. A field whose neighbours along an axis correlate by r adds up as if each
+// of its cells had (1 + r) / (1 - r) times its variance, along both axes by their product (Bartlett 1935, of a
+// first-order autoregression). Each patch of 10 x 10 cells is asked, about a plane of its own: of a step by which no
+// planes are parted yet only the patches that it crosses show anything. What the points of a cell err each on its own
+// is counted too, the less the more there are. What is not known of the tilt's latency moves a whole sweep: the cells
+// of a single one do not show it, and it is added. Errors of the tilt and of poses are those of whole scan lines, and
+// grow with the distance; so each patch tells, too, how much its cells share for theirs and for how many points they
+// hold: a plane far away, or seen in a few lines, errs by more than the evenest patches, near the robot, show.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "curbline/map/dem.hpp"
+#include "curbline/planes/plane_mixture.hpp"
+
+namespace curbline {
+
+/// How far the cells of a patch lie off their planes: sums over cells at whole numbers (x, y), in cells.
+struct PatchResiduals {
+  static constexpr int side = 10;              ///< cells along x and along y
+  static constexpr float least_cells = 20.0f;  ///< more than one row, so that their scatter is never singular
+
+  float cells = 0.0f, x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+  float off_m = 0.0f, x_off_m = 0.0f, y_off_m = 0.0f, squares_m2 = 0.0f;
+  /// From a cell to its neighbour at the next higher x, or y.
+  struct Rises {
+    float pairs = 0.0f, sum_m = 0.0f, squares_m2 = 0.0f;
+  };
+  std::array<Rises, 2> rises{};
+
+  void add(float x_cells, float y_cells, float above_m);
+  void add_rise(std::size_t axis, float rise_m) {
+    rises[axis].pairs += 1.0f;
+    rises[axis].sum_m += rise_m;
+    rises[axis].squares_m2 += rise_m * rise_m;
+  }
+  /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the plane that fits
+  /// the patch best. Expects least_cells or more.
+  float common_m2() const;
+};
+
+template <Limits limits>
+class CommonNoise {
+ public:
+  void init() { *this = CommonNoise{}; }
+
+  /// Looks at the next row of patches; after the last it begins anew with the first. About 45 operations a cell of
+  /// these ten rows.
+  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view);
+
+  /// What the points of a cell share: of the patches, each weighed by its cells, the one that a quarter of them lie
+  /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least
+  /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
+  /// as there is no plane.
+  float common_m2(const PlanePrior& prior, float latency_sd_s) const;
+  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(). Near the laser that is
+  /// small, and what ground is uneven makes its share large; so each patch is weighed by it, too, as where the sum of
+  /// the one is divided by that of the other. Of these the middle one, for no curb is missed for it; 0 as long as there
+  /// is no plane.
+  float line_rad2() const;
+
+ private:
+  static constexpr int side = PatchResiduals::side;
+  static constexpr std::size_t patches_in_row = (limits.cols + side - 1) / side;
+  static constexpr std::size_t patches = (limits.rows + side - 1) / side * patches_in_row;
+
+  struct Seen {
+    Label label = no_label;
+    int i = -2;
+    float above_m = 0.0f;
+  };
+  struct Patch {
+    float cells = 0.0f;  ///< 0: too few to tell
+    float common_m2 = 0.0f;
+    float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
+    float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
+  };
+  /// Of a patch, while its cells are looked at.
+  struct PatchSums {
+    PatchResiduals residuals{};
+    float growth_m2_s2 = 0.0f, points = 0.0f;
+  };
+  struct PatchRow {
+    std::array<PatchSums, patches_in_row> patch{};
+    std::array<Seen, limits.cols> last{};  ///< of each column
+  };
+  void look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
+               PatchRow& row) const;
+  /// What a patch shows, and what it weighs.
+  struct Shown {
+    float value, weight;
+  };
+  [[gnu::noinline]] static float quantile(std::array<Shown, patches>& left, float share);  ///< takes weights off them
+
+  std::array<Patch, patches> patches_{};
+  int first_row_ = 0;  ///< of those that are next
+};
+
+template <Limits limits>
+void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view) {
+  PatchRow row;
+  for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) {
+    dem.for_each_valid_in_row(i, [&](int, int j, int s) { look_at(dem, mixture, i, j, s, row); });
+  }
+  Patch* patch = &patches_[static_cast<std::size_t>(first_row_ / side) * patches_in_row];
+  const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
+  for (std::size_t k = 0; k < patches_in_row; ++k, ++patch) {
+    *patch = Patch{};
+    const PatchSums& sums = row.patch[k];
+    const float cells = sums.residuals.cells;
+    if (cells < PatchResiduals::least_cells) continue;
+    const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
+    *patch = {cells, sums.residuals.common_m2(), view.reach_m2(x_m, y_m, 0.0f, sums.points / cells), sums.growth_m2_s2};
+  }
+  first_row_ += side;
+  if (first_row_ >= dem.rows()) first_row_ = 0;
+}
+
+/// One that holds nothing but its plane is counted, and what it rises from its neighbours before it.
+template <Limits limits>
+void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
+                                  PatchRow& row) const {
+  const Label label = mixture.region_label(slot);
+  if (label == no_label) return;
+  const Plane& plane = mixture.plane(label);
+  const Cell& cell = dem.cell(slot);
+  if (dem.mixed(cell, dem.slope_m2(plane))) return;
+  const Seen now{label, i, dem.above_m(i, j, cell, plane)};
+  PatchSums& sums = row.patch[static_cast<std::size_t>(j / side)];
+  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
+  sums.growth_m2_s2 += square(dem.growth_m_s(slot));
+  sums.points += cell.points;
+  const auto column = static_cast<std::size_t>(j);
+  const auto rise_from = [&](const Seen& other, int other_i, std::size_t axis) {
+    if (other.label == label && other.i == other_i) sums.residuals.add_rise(axis, now.above_m - other.above_m);
+  };
+  rise_from(row.last[column], i - 1, 0);
+  if (j % side != 0) rise_from(row.last[column - 1], i, 1);
+  row.last[column] = now;
+}
+
+template <Limits limits>
+float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s) const {
+  std::array<Shown, patches> shown;
+  float cells = 0.0f, growth_m2_s2 = 0.0f;
+  for (std::size_t k = 0; k < patches; ++k) {
+    shown[k] = {patches_[k].common_m2, patches_[k].cells};
+    cells += patches_[k].cells;
+    growth_m2_s2 += patches_[k].growth_m2_s2;
+  }
+  if (!(cells > 0.0f)) return prior.common_m2();
+  const float common_m2 = quantile(shown, 0.25f) + latency_sd_s * latency_sd_s * growth_m2_s2 / cells;
+  const float least_m2 = PlanePrior::least_common_share * prior.noise_m2, most_m2 = prior.common_m2();
+  return common_m2 < least_m2 ? least_m2 : common_m2 < most_m2 ? common_m2 : most_m2;
+}
+
+template <Limits limits>
+float CommonNoise<limits>::line_rad2() const {
+  std::array<Shown, patches> shown;
+  for (std::size_t k = 0; k < patches; ++k) {
+    const float reach_m2 = patches_[k].reach_m2;
+    shown[k] = {reach_m2 > 0.0f ? patches_[k].common_m2 / reach_m2 : 0.0f, patches_[k].cells * reach_m2};
+  }
+  return quantile(shown, 0.5f);
+}
+
+/// What a share of the weight lies below; 0 if there is none.
+template <Limits limits>
+float CommonNoise<limits>::quantile(std::array<Shown, patches>& left, float share) {
+  float all = 0.0f, found = 0.0f;
+  for (const Shown& shown : left) all += shown.weight;
+  for (float passed = 0.0f; passed < share * all;) {  // the least first, each once
+    Shown* least = nullptr;
+    for (Shown& shown : left) {
+      if (shown.weight > 0.0f && (least == nullptr || shown.value < least->value)) least = &shown;
+    }
+    found = least->value;
+    passed += least->weight;
+    least->weight = 0.0f;
+  }
+  return found;
+}
+
+}  // namespace curbline

@@ -1,0 +1,113 @@
+// Which planes are ground. A region may fit a plane and be none that a wheel could stand on:
+//   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
+//     cells spread over most of the step, beyond what noise makes in the planes beside it: it is narrower than a cell
+//     and a half, and its plane is what mixing both sides makes.
+//   - an obstacle, or the top of one: obstacles.hpp.
+//   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
+//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than ground, or
+//     falls there at least a quarter as far as the rays, as about an edge that is bent, or is so narrow that its slope
+//     is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a
+//     stair whose cells at both ends hold half of the next one falls by half a step where the rays fall by two.
+//   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
+//     long, that rises above the ground: readings that mix the obstacle and the ground around it. One that falls away
+//     from the laser as its rays do is a veil before the obstacle.
+// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
+// veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
+// tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
+// for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
+// away more steeply than a ramp, against what the ground leans, and is no wider than the shadow of what it falls and
+// the laser's spot on an edge, however the rays pass it, blurs that edge.
+// Cost: three passes over the window.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "curbline/grid.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/planes/obstacles.hpp"
+#include "curbline/planes/strip_tally.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+template <Limits limits>
+class Ground {
+ public:
+  void clear() { kind_.fill(Kind::ground); }
+
+  /// Asks each plane anew, by the cells of its region; changed(label) is called for each that is to be borne otherwise
+  /// than before.
+  template <typename Changed>
+  void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+              const CellLabels<limits>& region_label, Changed&& changed);
+
+  bool is(int label) const { return borne(kind(label)); }
+  /// May it, of planes that are ground, be a veil?
+  bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
+  /// Is it an obstacle or a fringe?
+  bool covers(int label) const { return kind(label) == Kind::cover; }
+
+ private:
+  enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
+  static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
+
+  /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the more of it they hold the
+  /// higher: the strip leans, or all of it is higher than a kerb. A level one below that is a surface.
+  static bool stands_out(const Plane& plane, const Plane& ground) {
+    const float above_m = plane.above_m(ground);
+    const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
+    return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
+  }
+  /// Of a plane that lies `above_m` below the laser, or above it, where the laser stands: within five standard
+  /// deviations, since an edge need not be straight.
+  static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
+    return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
+  }
+  static Kind kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
+                      const Obstacles<limits>& obstacles, const Viewpoint& view);
+  Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
+
+  std::array<Kind, limits.planes> kind_{};
+};
+
+/// Veils are only seen from well above the ground: else the viewpoint is not where the points were seen from, as of a
+/// cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
+template <Limits limits>
+auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
+                             const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
+  if (tally.face()) return Kind::mixture;
+  if (obstacles.is(label)) return Kind::cover;
+  const Plane* ground = obstacles.ground();
+  if (ground == nullptr || !plane.alive()) return Kind::ground;
+  const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
+  const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
+  if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
+  const bool steep = plane.steeper_than_ramp();
+  // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
+  const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
+  const bool as_rays = above_m < 0.5f * laser_m;
+  if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
+  if (tally.veil(plane) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
+  return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
+}
+
+template <Limits limits>
+template <typename Changed>
+void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                            const CellLabels<limits>& region_label, Changed&& changed) {
+  const Obstacles<limits> obstacles(dem, planes, view, region_label);
+  const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
+  for (std::size_t l = 0; l < kind_.size(); ++l) {
+    const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
+    const Kind before = kind_[l];
+    kind_[l] = kind;
+    if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<Label>(l));
+  }
+}
+
+}  // namespace curbline

@@ -1,0 +1,203 @@
+// What stands on the ground: which planes are of obstacles. A region within whose cells the heights spread as on a
+// slope of more than 45 degrees, unless they spread over less than a step and the region is wider than a wall: then it
+// is rough ground, grass or rubble, for anything as steep and as wide would rise higher; and the top of one: level,
+// higher above the ground than a kerb or a stair, smaller than a square metre or narrower than shoulders, and no way
+// that leads on. A way has beside it, as high above the ground, one that is no top, or lies higher or lower by as much
+// as the next step of a stair does. What reaches the window's end may be larger than it looks. So may what begins where
+// nothing is seen before it and, of a robot that drives, what ends where nothing is seen from there on: it may not have
+// looked there yet. Cost: a pass over the window, and two more where there may be tops.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "curbline/grid.hpp"
+#include "curbline/index_set.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
+
+template <Limits limits>
+class Obstacles {
+ public:
+  /// `region_label`: of a valid cell, the plane of its region.
+  Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+            const CellLabels<limits>& region_label);
+
+  bool is(std::size_t label) const { return is_[label]; }
+  /// Is it one that is higher than a step?
+  bool high(std::size_t label) const { return high_[label]; }
+  /// Is it small, level and higher than most steps, but part of a way?
+  bool way(std::size_t label) const { return way_[label]; }
+  /// In how many cells a plane's region lies.
+  float cells(std::size_t label) const { return cells_[label]; }
+  /// The largest plane that is none, null if there is none: what the others are measured against.
+  const Plane* ground() const { return ground_; }
+
+ private:
+  using PlaneFlags = std::array<bool, limits.planes>;
+  using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
+  static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
+  static constexpr float way_m = 1.0f;         ///< a square of ground that lies higher is no smaller: stairs lead on
+  static constexpr float shoulders_m = 0.5f;   ///< nor is it narrower: it would be a wall
+
+  /// Of a plane's region.
+  struct Extent {
+    bool reaches_end = false;           ///< of the window
+    std::array<float, 2> thin_cells{};  ///< of runs shorter than shoulders, along x and along y
+
+    bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
+  };
+  using Extents = std::array<Extent, limits.planes>;
+
+  void add_tops();
+  void take_ways_from(PlaneFlags& top, const Neighbours& beside);
+  Extents extents_of(const PlaneFlags& asked) const;
+  bool thin(int i, int j, std::size_t axis, Label label) const;
+  Neighbours neighbours(const PlaneFlags& asked) const;
+
+  const Dem<limits>& dem_;
+  const std::span<const Plane> planes_;
+  const Viewpoint& view_;
+  const CellLabels<limits>& region_label_;
+  PlaneFlags is_{}, high_{}, way_{};
+  std::array<float, limits.planes> cells_{};
+  const Plane* ground_ = nullptr;
+};
+
+template <Limits limits>
+Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                             const CellLabels<limits>& region_label)
+    : dem_(dem), planes_(planes), view_(view), region_label_(region_label) {
+  std::array<float, limits.planes> spread{}, weight{};
+  dem_.for_each_valid([&](int, int, int s) {
+    const Label label = region_label_[s];
+    if (label == no_label) return;
+    cells_[label] += 1.0f;
+    spread[label] += dem_.spread_m2(dem_.cell(s));
+    weight[label] += dem_.cell(s).weight;
+  });
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
+    const bool steep = dem_.steep(spread[l], weight[l]);
+    high_[l] = steep && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+    is_[l] = steep && (high_[l] || planes_[l].narrower_than(shoulders_m));
+    if (!planes_[l].alive() || is_[l]) continue;
+    if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
+  }
+  if (ground_ != nullptr) add_tops();
+}
+
+template <Limits limits>
+void Obstacles<limits>::add_tops() {
+  PlaneFlags level{}, asked{};  // and above the ground by more than a step; and no larger than a wall may be
+  const float longest_m =
+      static_cast<float>(dem_.rows()) * dem_.cell_x_m() + static_cast<float>(dem_.cols()) * dem_.cell_y_m();
+  const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
+  bool any = false;
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
+    level[l] =
+        planes_[l].alive() && !is_[l] && !planes_[l].steeper_than_ramp() && planes_[l].above_m(*ground_) > usual_step_m;
+    asked[l] = level[l] && cells_[l] * cell_m2 < shoulders_m * longest_m;
+    any = any || asked[l];
+  }
+  if (!any) return;
+  const Extents extents = extents_of(asked);
+  PlaneFlags top{};
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
+    top[l] = asked[l] && (small || extents[l].narrow(cells_[l]));
+  }
+  take_ways_from(top, neighbours(level));
+  for (std::size_t l = 0; l < top.size(); ++l) {
+    if (top[l]) is_[l] = high_[l] = true;
+  }
+}
+
+/// Tops that lead on are ways. One that is found may make one of what lies beside it.
+template <Limits limits>
+void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside) {
+  const auto leads_on = [&](std::size_t l) {
+    bool found = false;
+    beside[l].for_each([&](int m) {
+      const auto other = static_cast<std::size_t>(m);
+      const float apart_m = planes_[other].above_m(*ground_) - planes_[l].above_m(*ground_);
+      found = found || !top[other] || square(apart_m) > square(0.5f * usual_step_m);
+    });
+    return found;
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t l = 0; l < top.size(); ++l) {
+      if (!top[l] || !leads_on(l)) continue;
+      top[l] = false;
+      way_[l] = changed = true;
+    }
+  }
+}
+
+template <Limits limits>
+auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
+  Extents found{};
+  dem_.for_each_valid([&](int i, int j, int s) {
+    const Label label = region_label_[s];
+    if (label == no_label || !asked[label]) return;
+    Extent& extent = found[label];
+    if (i == 0 || j == 0 || i == dem_.rows() - 1 || j == dem_.cols() - 1) extent.reaches_end = true;
+    for (std::size_t axis = 0; axis < 2; ++axis) extent.thin_cells[axis] += thin(i, j, axis, label) ? 1.0f : 0.0f;
+  });
+  return found;
+}
+
+/// Is the run of cells through (i, j) whose regions bear `label`, along x or y, shorter than shoulders? Not one that
+/// goes on beyond the window's end, or perhaps where nothing is seen: toward the laser; or away from that of a robot
+/// that drives, if nothing is seen farther on that would tell that it has looked there yet.
+template <Limits limits>
+bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
+  const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
+  const int count = dem_.cells_along(static_cast<int>(axis)), at = axis == 0 ? i : j;
+  const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
+  int length = 1;
+  for (const int step : {toward, -toward}) {
+    int last = at;
+    for (int k = at + step;; k += step) {
+      if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= count) return false;
+      const int slot = axis == 0 ? dem_.slot(k, j) : dem_.slot(i, k);
+      const bool seen = dem_.cell(slot).valid();
+      if (!seen && step == toward) return false;
+      if (!seen && view_.drives()) continue;
+      if (!seen || region_label_[slot] != label) break;
+      length += step * (k - last);
+      last = k;
+    }
+  }
+  return true;
+}
+
+/// Of the planes that are asked for, which lie beside which, on a row or a column.
+template <Limits limits>
+auto Obstacles<limits>::neighbours(const PlaneFlags& asked) const -> Neighbours {
+  Neighbours found{};
+  dem_.for_each_valid([&](int i, int j, int s) {
+    const Label label = region_label_[s];
+    if (label == no_label || !asked[label]) return;
+    const auto meet = [&](int p, int q) {
+      if (p >= dem_.rows() || q >= dem_.cols()) return;
+      const int slot = dem_.slot(p, q);
+      const Label other = dem_.cell(slot).valid() ? region_label_[slot] : no_label;
+      if (other == no_label || other == label || !asked[other]) return;
+      found[label].insert(other);
+      found[other].insert(label);
+    };
+    for (int away = 1; away <= widest_gap + 1; ++away) meet(i + away, j), meet(i, j + away);
+  });
+  return found;
+}
+
+}  // namespace curbline

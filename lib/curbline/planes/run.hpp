@@ -1,0 +1,153 @@
+// Runs: cells of one plane's region that follow each other on a row or column of the window, and how the laser sees
+// them. What lies in strips between two planes, or beside an obstacle, is told by these: ground.hpp. Cost: a look at
+// each cell of the window, along x and along y.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "curbline/grid.hpp"
+#include "curbline/limits.hpp"
+#include "curbline/map/cell.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+/// How the laser sees a row or column.
+struct Sight {
+  float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
+  float cell_m;          ///< of a cell, along it
+  float end_m;           ///< Viewpoint::end_x_m, or end_y_m
+
+  /// Along x (axis 0) or y (1).
+  template <Limits limits>
+  static Sight along(std::size_t axis, const Dem<limits>& dem, const Viewpoint& view) {
+    return axis == 0 ? Sight{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}
+                     : Sight{view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m};
+  }
+
+  bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
+  /// To the near end of a run; of a robot that drives, as far as it has seen it from. 0 and less: the laser is above.
+  float away_m(int first, int last) const {
+    const bool is_ahead = ahead(first);
+    const float away_m =
+        is_ahead ? static_cast<float>(first) * cell_m - eye_m : eye_m - static_cast<float>(last + 1) * cell_m;
+    const float from_end_m = is_ahead ? end_m - eye_m : eye_m;
+    return end_m > 0.0f && away_m > 0.0f && away_m < from_end_m ? from_end_m : away_m;
+  }
+  /// The same for an edge that lies across the grid, along a strip: as if the laser were where the edge's parallel
+  /// through it crosses the line, which is `aside_m` from the laser.
+  Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
+    const float along = axis == 0 ? strip.pxx : strip.pyy;  // the strip's normal is (pxx, pxy), or (pxy, pyy)
+    return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m, end_m};
+  }
+};
+
+/// How far something falls from its end near the laser to the far one, and how far the rays there do.
+struct Fall {
+  float own_m = 0.0f, of_rays_m = 0.0f;
+};
+
+/// Cells of one plane that follow each other; of no plane, before the first and behind the last of a line.
+struct Run {
+  Label label = no_label;
+  int first = 0, last = 0;
+  float first_height_m = 0.0f, last_height_m = 0.0f, lowest_m = 0.0f, highest_m = 0.0f;
+  float scatter_m2 = 0.0f, weight = 0.0f;
+
+  Run() = default;
+  Run(Label plane, int at, const Cell& cell)
+      : label(plane),
+        first(at),
+        last(at),
+        first_height_m(cell.height_m),
+        last_height_m(cell.height_m),
+        lowest_m(cell.height_m),
+        highest_m(cell.height_m),
+        scatter_m2(cell.scatter_m2),
+        weight(cell.weight) {}
+
+  void add(int at, const Cell& cell) {
+    last = at;
+    last_height_m = cell.height_m;
+    if (cell.height_m < lowest_m) lowest_m = cell.height_m;
+    if (cell.height_m > highest_m) highest_m = cell.height_m;
+    scatter_m2 += cell.scatter_m2;
+    weight += cell.weight;
+  }
+  bool any() const { return label != no_label; }
+  int length() const { return last - first + 1; }
+};
+
+/// A run, and what lies before and after it on its row or column.
+struct Strip {
+  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
+
+  const Run &before, &run, &next;
+
+  /// Does a step from the run before to the next lead over it?
+  bool carries_step() const {
+    const float from = before.last_height_m, to = next.first_height_m;
+    return before.any() && next.any() && run.first - before.last <= widest_gap && next.first - run.last <= widest_gap &&
+           ((from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to));
+  }
+  /// Of one that carries a step: does that lead down as the laser sees it, and is the strip no wider than its shadow
+  /// (shadow.hpp), and a cell for what those at its ends have of the planes? Then how far it falls. Inlined, since
+  /// calls of it would cost the worst line of a Cortex-M7 20,000 instructions more (tools/budget).
+  [[gnu::always_inline]] std::optional<Fall> fall_in_shadow(const Sight& sight) const {
+    const bool ahead = sight.ahead(run.first);
+    const float near_m = ahead ? before.last_height_m : next.first_height_m;
+    const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
+    const float above_m = sight.eye_z_m - near_m, away_m = sight.away_m(run.first, run.last);
+    if (!(above_m > 0.0f) || !(away_m > 0.0f)) return std::nullopt;
+    const float of_rays_m = static_cast<float>(run.length() - 1) * sight.cell_m * above_m / away_m;
+    const float own_m = ahead ? run.first_height_m - run.last_height_m : run.last_height_m - run.first_height_m;
+    if (!(of_rays_m <= drop_m)) return std::nullopt;
+    return Fall{own_m, of_rays_m};
+  }
+  /// How far the run begins below where the one beside it ends that is nearer to the laser; 0 if there is none.
+  float begins_below_m(const Sight& sight) const {
+    if (sight.ahead(run.first)) return before.any() ? before.last_height_m - run.first_height_m : 0.0f;
+    return next.any() ? next.first_height_m - run.last_height_m : 0.0f;
+  }
+  /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of what
+  /// the run falls, and one more. If a step of more than that parts it from the run before it, it is not the fall of
+  /// the edge, and casts no shadow. `aside_m`: how far the line is from the laser.
+  float blurred_cells(const Sight& sight, float aside_m) const {
+    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
+    if (!(above_m > 0.0f)) return 0.0f;
+    const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
+    const float fall_m = run.highest_m - run.lowest_m, step_m = begins_below_m(sight);
+    const float shadow = away_m > 0.0f && step_m <= fall_m && step_m >= -fall_m ? away_m * fall_m : 0.0f;
+    return 1.0f + (spot + shadow) / (above_m * sight.cell_m);
+  }
+};
+
+/// Calls visit(strip, line) for each run of cells along x (axis 0) or along y (1), in the order of lines and cells.
+template <Limits limits, typename Visit>
+void for_each_run(const Dem<limits>& dem, int axis, const CellLabels<limits>& region_label, Visit&& visit) {
+  for (int line = 0; line < dem.cells_along(1 - axis); ++line) {
+    Run before, run;
+    const auto end_run = [&](const Run& next) {
+      if (run.any()) visit(Strip{before, run, next}, line);
+      before = run;
+      run = next;
+    };
+    dem.for_each_valid_along(axis, line, [&](int k, int s) {
+      const Label label = region_label[s];
+      if (label == no_label) return;
+      const Cell& cell = dem.cell(s);
+      if (label == run.label) {
+        run.add(k, cell);
+      } else {
+        end_run(Run(label, k, cell));
+      }
+    });
+    end_run(Run{});
+  }
+}
+
+}  // namespace curbline

@@ -1,0 +1,131 @@
+// What the runs of a plane's cells (run.hpp) tell of what it is: how many of its cells lie in strips that carry a step,
+// in the shadow of one, beside a high obstacle, or where an edge is blurred. ground.hpp judges by it. Cost: that of the
+// runs.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
+#include "curbline/plane.hpp"
+#include "curbline/planes/obstacles.hpp"
+#include "curbline/planes/run.hpp"
+#include "curbline/point.hpp"
+
+namespace curbline {
+
+/// Strips that a step down leaves in its shadow.
+struct Shadowed {
+  float cells = 0.0f, strips = 0.0f;
+  Fall fall{};
+
+  void add(float strip_cells, const Fall& of_strip) {
+    cells += strip_cells;
+    strips += 1.0f;
+    fall.own_m += of_strip.own_m;
+    fall.of_rays_m += of_strip.of_rays_m;
+  }
+  bool falls_with_rays() const { return 4.0f * fall.own_m >= fall.of_rays_m; }
+};
+
+struct StripTally {
+  /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
+  /// beam is on the ground 6 m away, seen from 1.2 m above it.
+  static constexpr int longest_strip = 3;
+  static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
+
+  float cells = 0.0f;  ///< of the plane's region
+  // Of strips that carry a step.
+  float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
+  // By the axis along which the strip was found, x or y.
+  std::array<Shadowed, 2> shadow{};
+  std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
+  std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
+
+  /// A strip between two others, which are no obstacles: a step up to one would be no kerb's. Its cells spread beyond
+  /// what noise makes by as much more than those of the quieter plane beside it.
+  void add(const Strip& strip) {
+    const Run &before = strip.before, &run = strip.run, &next = strip.next;
+    const float step = next.first_height_m - before.last_height_m;
+    const float one_m2 = before.scatter_m2 / before.weight, other_m2 = next.scatter_m2 / next.weight;
+    strips += 1.0f;
+    strip_cells += static_cast<float>(run.length());
+    step_m += magnitude(step);
+    strip_spread_m2 += run.scatter_m2 - run.weight * std::min(other_m2, one_m2);
+    strip_weight += run.weight;
+  }
+
+  bool face() const {
+    const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
+    // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within
+    // each.
+    return most(strip_cells) && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
+  }
+  bool veil(const Plane& plane) const {
+    const bool steep = plane.steeper_than_ground();
+    return veil(shadow[0], steep) || veil(shadow[1], steep);
+  }
+  bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
+  bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
+
+ private:
+  bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
+  bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
+  bool veil(const Shadowed& in_shadow, bool steep) const {
+    return most(in_shadow.cells) &&
+           (steep || in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
+  }
+};
+
+/// By plane.
+template <Limits limits>
+using StripTallies = std::array<StripTally, limits.planes>;
+
+/// Does a plane fall away from the laser, and more steeply than a ramp on ground that leans?
+inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& view) {
+  return plane.steeper_than_ramp(lean) &&
+         plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
+}
+
+/// Of all planes. Shadows fall as the laser saw the strips last.
+template <Limits limits>
+StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                                  const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
+  StripTallies<limits> tallies{};
+  const Plane lean = obstacles.ground() == nullptr ? Plane{} : obstacles.ground()->lean();
+  std::array<bool, limits.planes> drops{};
+  for (std::size_t l = 0; l < tallies.size(); ++l) {
+    tallies[l].cells = obstacles.cells(l);
+    drops[l] = !obstacles.is(l) && drops_off(planes[l], lean, view);
+  }
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {
+      const Run &before = strip.before, &run = strip.run, &next = strip.next;
+      StripTally& tally = tallies[run.label];
+      const auto cells = static_cast<float>(run.length());
+      const bool carries_step = strip.carries_step();
+      if (carries_step || drops[run.label]) {
+        const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
+        const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
+        const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
+        const Sight across = along.across(planes[run.label], axis, aside_m);
+        if (carries_step) {
+          if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
+        }
+        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, aside_m);
+      }
+      if (run.length() > StripTally::longest_strip) return;
+      const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
+      const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
+      if (after_high || before_high) tally.fringe_cells[axis] += cells;
+      if (carries_step && !obstacles.is(before.label) && !obstacles.is(next.label)) tally.add(strip);
+    });
+  }
+  return tallies;
+}
+
+}  // namespace curbline

@@ -1,0 +1,41 @@
+// Neighbours: what is known of one cell tells of the next valid one on its row and on its column, also where scan lines
+// leave rows between them empty. A pass over the window.
+#pragma once
+
+#include "curbline/limits.hpp"
+#include "curbline/map/dem.hpp"
+
+namespace curbline {
+
+/// Two valid cells with no valid cell between them on a row or column.
+struct Link {
+  int from, to;  ///< slots
+  int distance;  ///< in cells
+  int axis;      ///< 0: along +x, 1: along +y
+  int i, j;      ///< row and column of `from`
+};
+
+/// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
+template <Limits limits, typename Visit>
+void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
+  dem.for_each_valid([&](int i, int j, int s) {
+    if (const int g = dem.next_valid(s, 0, reach); g > 0) visit(Link{s, dem.slot(i + g, j), g, 0, i, j});
+    if (const int g = dem.next_valid(s, 2, reach); g > 0) visit(Link{s, dem.slot(i, j + g), g, 1, i, j});
+  });
+}
+
+/// The first cell from link.to on, the way that a link leads, that is not obstructed(slot); -1 if none is at most
+/// `reach` cells from link.from.
+template <Limits limits, typename Obstructed>
+int beyond_obstacle(const Dem<limits>& dem, const Link& link, int reach, Obstructed&& obstructed) {
+  int slot = link.to;
+  for (int distance = link.distance; obstructed(slot);) {
+    const int g = dem.next_valid(slot, direction(link.axis, 1), reach - distance);
+    if (g == 0) return -1;
+    distance += g;
+    slot = link.axis == 0 ? dem.slot(link.i + distance, link.j) : dem.slot(link.i, link.j + distance);
+  }
+  return slot;
+}
+
+}  // namespace curbline
