@@ -55,7 +55,7 @@ void take_poses() {
 /// counter whether it was.
 void tell(bool taken) {
   if (taken) {
-    const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline.curbs(), pose, half_width_m));
+    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline.curbs(), pose, half_width_m));
     if (port.send(ahead)) ++curbs_told;
   }
   port.send(can::curb_status_frame({curbs_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));

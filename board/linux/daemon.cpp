@@ -229,7 +229,7 @@ void Daemon::give_curbs(std::int64_t line_ns) {
 /// frame is the map's: the robot stands.
 void Daemon::send_curbs(bool taken) {
   if (taken) {
-    const auto ahead = can::curb_ahead_frame(can::nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
+    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
     if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   }
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());

@@ -83,6 +83,7 @@
 
 // What may be asked.
 #include "curbline/curbs/ground_label.hpp"      // of which plane the ground under a cell is
+#include "curbline/curbs/curb_ahead.hpp"        // which curb a robot meets first
 #include "curbline/curbs/passability.hpp"       // where a robot may drive
 
 // All of it, in order.

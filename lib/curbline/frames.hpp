@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "curbline/math.hpp"
+#include "curbline/pose.hpp"
 #include "curbline/settings.hpp"
 
 namespace curbline {
@@ -38,6 +39,9 @@ inline Transform make_transform(const MountSettings& mount) {
   T.translation << mount.x_m, mount.y_m, mount.z_m;
   return T;
 }
+
+/// T_map_base. The quaternion is normalised here and must not be zero.
+Transform make_transform(const Pose& pose);
 
 /// Which way the x axis of a frame points, level; along x if it points up or down.
 inline SinCos heading(const Transform& T) {

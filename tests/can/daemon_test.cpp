@@ -99,7 +99,7 @@ TEST_CASE("daemon: beside canplayer it gives the curbs of replay, every one, and
 
   const auto frames = socketcan::testing::receive_all(receiver);
   REQUIRE(frames.size() == 2u * static_cast<unsigned>(scan_lines));
-  std::optional<can::CurbAhead> ahead;
+  std::optional<CurbAhead> ahead;
   can::CurbStatus last;
   REQUIRE(can::read_curb_ahead(frames[frames.size() - 2], ahead));
   REQUIRE(can::read_curb_status(frames.back(), last));
@@ -208,7 +208,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   CHECK(times_said(outcome.err, "the tilt servo is silent") == 1);
   CHECK(times_said(outcome.err, "the tilt servo reports again") == 1);
   std::set<TiltState> sent;
-  std::optional<can::CurbAhead> ahead;
+  std::optional<CurbAhead> ahead;
   std::uint8_t counter = 255;
   int taken = 0, dropped = 0;
   bool renewed = false;

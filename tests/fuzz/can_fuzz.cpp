@@ -65,7 +65,7 @@ void signals(Numbers& numbers) {
           "a reading is an angle of a servo");
     const can::TiltDecoderCounters c = decoder.counters();
     claim(c.frames == c.readings + c.others + c.syncs + c.malformed + c.without_sync, "every frame is counted once");
-    std::optional<can::CurbAhead> curb;
+    std::optional<CurbAhead> curb;
     can::CurbStatus status;
     can::read_curb_ahead(frame, curb);
     can::read_curb_status(frame, status);

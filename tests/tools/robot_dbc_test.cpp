@@ -95,8 +95,7 @@ TEST_CASE("robot dbc: curb_ahead.dbc, which ships, is that of the code (curbline
 TEST_CASE("robot dbc: a receiver that knows curb_ahead.dbc alone reads what is sent") {
   const std::string path = CURBLINE_SOURCE_DIR "/tools/robots/curb_ahead.dbc";
   const Dbc dbc = read_dbc(path);
-  const can::Frame frame =
-      can::curb_ahead_frame(can::CurbAhead{1.25f, -0.3f, 0.12f, 0.004f, CurbKind::step_down, 0.96f});
+  const can::Frame frame = can::curb_ahead_frame(CurbAhead{1.25f, -0.3f, 0.12f, 0.004f, CurbKind::step_down, 0.96f});
   const auto value = [&](const std::string& name) {
     return can::decode(find_signal(dbc, path, "CurbAhead", name).signal, frame).value();
   };

@@ -30,31 +30,18 @@
 
 #include "curbline/can/frame.hpp"
 #include "curbline/can/signal.hpp"
-#include "curbline/curbs/curb.hpp"
+#include "curbline/curbs/curb_ahead.hpp"
 #include "curbline/intake/tilt_watch.hpp"
-#include "curbline/pose.hpp"
 
 namespace curbline::can {
 
 inline constexpr std::uint32_t curb_ahead_id = 0x6A0, curb_status_id = 0x6A1;
-
-struct CurbAhead {
-  float distance_m = 0.0f, lateral_m = 0.0f;
-  float height_m = 0.0f, height_sd_m = 0.0f;
-  CurbKind kind = CurbKind::crease;
-  float probability = 0.0f;
-};
 
 struct CurbStatus {
   std::uint8_t counter = 0;
   TiltState tilt = TiltState::never;
   std::uint32_t curbs = 0;
 };
-
-/// The curb that a robot at a pose meets first when it drives straight on, curbs being in the map frame: in its base
-/// frame, of those that reach into x >= 0 within half_width_m to either side, the one whose nearest point there has the
-/// lowest x. A step before what is none: the gutter before a kerb does not hide it. O(curbs).
-std::optional<CurbAhead> nearest_ahead(std::span<const Curb> curbs, const Pose& pose, float half_width_m);
 
 /// The frame for a curb, or, with nothing, for a way without one.
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);

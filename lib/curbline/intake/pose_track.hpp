@@ -48,9 +48,6 @@ struct PoseStepNews {
   PoseShift by{};  ///< of one that has begun
 };
 
-/// Rotation matrix of a quaternion that is normalised here. Not for a zero quaternion.
-Transform make_transform(const Pose& pose);
-
 namespace detail {
 bool acceptable(const Pose& pose);
 /// Of the map: within Pose::furthest_m.
