@@ -18,10 +18,10 @@ namespace {
 // All the memory there is.
 Port port;
 curbline::Pipeline<limits> pipeline;
-curbline::LineQueue<limits, queued_lines> waiting;  // whose last beams have no tilt yet
+curbline::LineQueue<limits, queued_lines> waiting;  // whose last beams have no tilt or pose yet
 can::TiltDecoder decoder;
 curbline::TiltWatch watch;
-std::int64_t newest_tilt_ns = curbline::TiltWatch::no_reading;
+curbline::NewestTimes newest;
 curbline::Pose pose;            // the newest; of a robot that stands, the map's origin
 std::uint8_t curbs_told = 255;  // the first CurbAhead has 0
 
@@ -31,7 +31,7 @@ void start() {
   if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
   if (!settings.tilt.fixed && can::shares_ids(tilt_signal()))
     port.stop("the tilt servo sends the ids of curb_frames.hpp");
-  waiting.init(settings.laser, settings.tilt, settings.tilt.max_gap_s);
+  waiting.init(settings.laser, settings.tilt, settings.pose, settings.tilt.max_gap_s);
   watch.init(settings.tilt.max_gap_s, settings.tilt.fixed);
   if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
 }
@@ -41,13 +41,15 @@ void take_frames() {
   const int count = port.receive(frames);
   for (const can::Frame& frame : std::span(frames).first(static_cast<std::size_t>(count))) {
     const auto reading = decoder.take(frame);
-    if (reading && pipeline.add_tilt(*reading)) newest_tilt_ns = reading->time_ns;
+    if (reading && pipeline.add_tilt(*reading)) newest.tilt_ns = reading->time_ns;
   }
 }
 
 void take_poses() {
   while (const auto given = port.pose()) {
-    if (pipeline.add_pose(*given)) pose = *given;
+    if (!pipeline.add_pose(*given)) continue;
+    pose = *given;
+    newest.pose_ns = pose.time_ns;
   }
 }
 
@@ -64,8 +66,8 @@ void tell(bool taken) {
 void take_lines() {
   const std::int64_t now_ns = port.now_ns();
   if (const auto line = port.scan_line()) waiting.push(*line, now_ns);
-  while (const auto line = waiting.pop(newest_tilt_ns, now_ns, pipeline.tilt_latency().latest_offset_s())) {
-    watch.update(newest_tilt_ns, now_ns);
+  while (const auto line = waiting.pop(newest, now_ns, pipeline.tilt_latency().latest_offset_s())) {
+    watch.update(newest.tilt_ns, now_ns);
     tell(pipeline.take(*line) == curbline::Status::ok);
   }
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 
 #include "curbline/can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
@@ -22,11 +23,12 @@ constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t status_period_ns = 1000 * ms, look_period_ns = 50 * ms;
 /// A line without tilt is of no use, but costs nothing: as long as a busy machine may hold a frame back.
 constexpr float longest_wait_s = 1.0f;
-/// A servo that a user should know of is silent for longer than a busy machine's hiccup.
+/// A servo or a localisation that a user should know of is silent for longer than a busy machine's hiccup.
 constexpr float least_stale_s = 0.5f;
 /// Of the way ahead, to each side: a robot of pavements and doors.
 constexpr float half_way_m = 0.4f;
 constexpr int most_batches = 16;  ///< of frames, before other things have their turn
+constexpr int most_poses = 64;    ///< likewise
 
 int signal_descriptor() {
   sigset_t stop;
@@ -37,26 +39,26 @@ int signal_descriptor() {
   return ::signalfd(-1, &stop, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-std::unique_ptr<tools::HostPipeline> pipeline_of(const tools::Robot& robot) {
-  if (!robot.pose.still) {
-    throw BadInput(robot.file +
-                   ": the robot drives, and there is no live source of poses yet; expected pose.still = true");
-  }
-  return tools::make_host_pipeline(robot);
+bool is_fifo(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::is_fifo(path, none);
 }
 
 }  // namespace
 
 Daemon::Daemon(const tools::Robot& robot, const Options& options)
-    : tilt_settings_(robot.tilt),
+    : laser_(robot.laser),
+      tilt_settings_(robot.tilt),
       scan_line_s_(1.0 / robot.scan_rate_hz),
       signals_(signal_descriptor()),
-      pipeline_(pipeline_of(robot)) {
-  inbox_.init(robot.laser, robot.tilt, longest_wait_s);
+      pipeline_(tools::make_host_pipeline(robot)) {
+  inbox_.init(robot, longest_wait_s);
   open_scans(robot, options);
   open_bus(robot, options);
+  open_poses(robot, options);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
+  pose_watch_.init(std::max(robot.pose.max_extrapolation_s, least_stale_s), robot.pose.still);
   server_.open(options.curbs);
 }
 
@@ -99,6 +101,22 @@ void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
                  (log_ ? ", with which the log of scan lines begins" : "");
 }
 
+void Daemon::open_poses(const tools::Robot& robot, const Options& options) {
+  if (robot.pose.still) return;
+  if (options.poses.empty()) {
+    throw BadInput(robot.file + ": the robot drives; expected --poses, or pose.still = true");
+  }
+  if (options.poses == "-" || is_fifo(options.poses)) {
+    pose_feed_.open(options.poses);
+  } else if (log_) {
+    pose_log_.emplace(options.poses);
+    newest_.pose_ns = INT64_MAX;  // they are there, whatever line comes
+  } else {
+    throw BadInput(options.poses + ": no FIFO; expected one, or -, beside a live scanner");
+  }
+  wanted_poses_ = options.poses == "-" ? "standard input" : options.poses;
+}
+
 void Daemon::run() {
   const scanner::Now now = scanner::host_now();
   started_ns_ = now.steady_ns;
@@ -113,6 +131,7 @@ void Daemon::run() {
   while (wait()) {
     take_clients();
     if (has_bus_) take_frames();
+    take_poses();
     if (log_) take_log();
     take_lines();
     look_around();
@@ -128,10 +147,11 @@ void Daemon::run() {
 /// Until something is to do. False when a signal says stop.
 bool Daemon::wait() {
   const bool listens = has_bus_ && bus_.link() == socketcan::LinkState::up;  // else its descriptor is ready for ever
-  std::array<pollfd, 4> ready{{{signals_, POLLIN, 0},
+  std::array<pollfd, 5> ready{{{signals_, POLLIN, 0},
                                {server_.descriptor(), POLLIN, 0},
                                {inbox_.descriptor(), POLLIN, 0},
-                               {listens ? bus_.descriptor() : -1, POLLIN, 0}}};
+                               {listens ? bus_.descriptor() : -1, POLLIN, 0},
+                               {pose_feed_.descriptor(), POLLIN, 0}}};
   ::poll(ready.data(), ready.size(), time_to_wait_ms());
   if ((ready[2].revents & POLLIN) != 0) inbox_.quiet();
   if ((ready[0].revents & POLLIN) == 0) return true;
@@ -170,12 +190,28 @@ void Daemon::take_frame(can::Frame frame) {
   clock_.set_log_time(frame, log_ && !log_->ended() ? log_->front_ns() : frame.time_ns);
   const auto reading = tilt_decoder_.take(frame);
   if (!reading || !pipeline_->add_tilt(*reading)) return;
-  newest_tilt_ns_ = reading->time_ns;
+  newest_.tilt_ns = reading->time_ns;
   newest_frame_ns_ = received_ns;
   newest_arrival_ns_ = scanner::steady_now_ns();
   by_frame_ = true;
   take_lines();
   by_frame_ = false;
+}
+
+void Daemon::take_poses() {
+  for (int pose = 0; pose < most_poses; ++pose) {
+    const auto given = pose_feed_.next();
+    if (!given) return;
+    if (take_pose(*given)) newest_.pose_ns = given->time_ns;
+  }
+}
+
+bool Daemon::take_pose(const Pose& pose) {
+  if (!pipeline_->add_pose(pose)) return false;
+  pose_ = pose;
+  ++poses_;
+  newest_pose_arrival_ns_ = scanner::steady_now_ns();
+  return true;
 }
 
 /// Log time less host time; nothing before it is known.
@@ -193,12 +229,12 @@ void Daemon::take_log() {
   }
 }
 
-/// Those whose tilt is there, as the pipeline has its time; those that have waited too long.
+/// Those whose tilt and pose are there, as the pipeline has their times; those that have waited too long.
 void Daemon::take_lines() {
   for (;;) {
     bool covered = false;
     const float offset_s = pipeline_->tilt_latency().latest_offset_s();
-    const auto line = inbox_.pop(newest_tilt_ns_, scanner::steady_now_ns(), offset_s, covered);
+    const auto line = inbox_.pop(newest_, scanner::steady_now_ns(), offset_s, covered);
     if (!line) return;
     take_line(*line);
     if (covered && by_frame_) latency_.add(scanner::host_now().host_ns - newest_frame_ns_);
@@ -206,6 +242,10 @@ void Daemon::take_lines() {
 }
 
 void Daemon::take_line(const ScanLine& line) {
+  if (pose_log_) {
+    const std::int64_t last_beam_ns = line.time_ns + laser_.duration_ns(line.ranges_m.size());
+    while (const auto pose = pose_log_->next(last_beam_ns)) take_pose(*pose);
+  }
   const std::int64_t before_ns = scanner::steady_now_ns();
   const Status status = pipeline_->take(line);
   if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
@@ -225,11 +265,10 @@ void Daemon::give_curbs(std::int64_t line_ns) {
   server_.send(text);
 }
 
-/// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows. The base
-/// frame is the map's: the robot stands.
+/// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows.
 void Daemon::send_curbs(bool taken) {
   if (taken) {
-    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), Pose{}, half_way_m));
+    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), pose_, half_way_m));
     if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   }
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
@@ -242,8 +281,9 @@ void Daemon::look_around() {
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
   const TiltEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
+  const TiltEvent poses = pose_watch_.update(newest_pose_arrival_ns_, now_ns);
   const Report status = make_report();
-  troubles_.tell(status, tilt, now_ns);
+  troubles_.tell(status, tilt, poses, now_ns);
   const std::string_view state = state_of(status);
   if (state == told_state_ && now_ns < next_status_ns_) return;
   if (state != told_state_) {
@@ -278,6 +318,9 @@ Report Daemon::make_report() {
     s.tilt_frames = &tilt_counters_;
     s.tilt_latency = &pipeline_->tilt_latency();
     s.latency = &latency_;
+  }
+  if (!wanted_poses_.empty()) {
+    s.poses = {&pose_watch_, wanted_poses_, poses_, pose_feed_.damaged()};
   }
   if (has_bus_) s.bus = &bus_;
   if (scanner_) {

@@ -13,9 +13,9 @@ LineInbox::~LineInbox() {
   ::close(event_);
 }
 
-void LineInbox::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
+void LineInbox::init(const tools::Robot& robot, float max_wait_s) {
   const std::lock_guard lock(mutex_);
-  queue_.init(laser, tilt, max_wait_s);
+  queue_.init(robot.laser, robot.tilt, robot.pose, max_wait_s);
 }
 
 void LineInbox::push(const ScanLine& line, std::int64_t now_ns) {
@@ -26,11 +26,10 @@ void LineInbox::push(const ScanLine& line, std::int64_t now_ns) {
   ::eventfd_write(event_, 1);
 }
 
-std::optional<ScanLine> LineInbox::pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s,
-                                       bool& covered) {
+std::optional<ScanLine> LineInbox::pop(const NewestTimes& newest, std::int64_t now_ns, float offset_s, bool& covered) {
   const std::lock_guard lock(mutex_);
   const std::uint32_t before = queue_.counters().covered;
-  const auto line = queue_.pop(newest_tilt_ns, now_ns, offset_s);
+  const auto line = queue_.pop(newest, now_ns, offset_s);
   if (!line) return std::nullopt;
   covered = queue_.counters().covered != before;
   std::copy(line->ranges_m.begin(), line->ranges_m.end(), ranges_m_.begin());

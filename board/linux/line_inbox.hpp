@@ -1,6 +1,6 @@
-// Where scan lines wait for their tilt (curbline/intake/line_queue.hpp), between the context that reads the scanner and
-// the one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750 kB, no
-// heap.
+// Where scan lines wait for their tilt and pose (curbline/intake/line_queue.hpp), between the context that reads the
+// scanner and the one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750
+// kB, no heap.
 #pragma once
 
 #include <array>
@@ -25,14 +25,14 @@ class LineInbox {
   LineInbox(const LineInbox&) = delete;
   LineInbox& operator=(const LineInbox&) = delete;
 
-  void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
+  void init(const tools::Robot& robot, float max_wait_s);
 
   /// From the scanner's context. Makes descriptor() readable.
   void push(const ScanLine& line, std::int64_t now_ns);
 
-  /// From the pipeline's: see LineQueue::pop(). `covered`: its tilt is there. The ranges are valid until the next
-  /// pop().
-  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s, bool& covered);
+  /// From the pipeline's: see LineQueue::pop(). `covered`: its tilt and pose are there. The ranges are valid until
+  /// the next pop().
+  std::optional<ScanLine> pop(const NewestTimes& newest, std::int64_t now_ns, float offset_s, bool& covered);
 
   bool empty() const;
   LineQueueCounters counters() const;

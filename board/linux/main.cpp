@@ -17,9 +17,7 @@ int main(int argc, char** argv) {
       "curblined");
   std::string robot;
   daemon::Options options;
-  app.add_option("--robot", robot, "robot description (TOML) of a robot that stands")
-      ->check(tools::file_name())
-      ->required();
+  app.add_option("--robot", robot, "robot description (TOML)")->check(tools::file_name())->required();
   auto* can =
       app.add_option("--can", options.can, "CAN interface of the tilt servo, such as can0; none for a fixed tilt")
           ->check(tools::not_empty("a CAN interface"));
@@ -28,6 +26,10 @@ int main(int argc, char** argv) {
                  "own times")
       ->check(tools::not_empty("a scanner or a log"))
       ->required();
+  app.add_option("--poses", options.poses,
+                 "poses of a robot that drives, lines of time tx ty tz qx qy qz qw (TUM): a FIFO that its localisation "
+                 "writes to, - for standard input, or the trajectory of a log")
+      ->check(tools::not_empty("a FIFO, - or a trajectory"));
   app.add_option("--curbs", options.curbs, "where clients read JSON lines: unix:PATH or tcp:HOST:PORT")
       ->check(tools::not_empty("unix:PATH or tcp:HOST:PORT"))
       ->required();
@@ -35,7 +37,9 @@ int main(int argc, char** argv) {
       ->needs(can);
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
   app.callback([&] {
-    const auto running = std::make_unique<daemon::Daemon>(tools::read_robot(robot), options);
+    tools::Robot description = tools::read_robot(robot);
+    if (!options.poses.empty()) description.pose.still = false;
+    const auto running = std::make_unique<daemon::Daemon>(description, options);
     running->run();
     std::cout << running->status();
   });

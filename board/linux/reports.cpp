@@ -40,6 +40,17 @@ void put_tilt(JsonLine& json, const Report& s) {
   json.close('}');
 }
 
+void put_poses(JsonLine& json, const Report& s) {
+  const TiltWatch& watch = *s.poses.watch;
+  json.key("poses").open('{').key("state").text(word_of(watch.state()));
+  put(json, "times_lost", watch.times_lost());
+  json.key("longest_silence_s").real(1e-9 * static_cast<double>(watch.longest_silence_ns()));
+  put(json, "taken", s.poses.taken);
+  put(json, "damaged", s.poses.damaged);
+  put(json, "dropped", s.pipeline.poses_dropped);
+  json.close('}');
+}
+
 void put_bus(JsonLine& json, const socketcan::SocketCan& bus) {
   const socketcan::Counters& c = bus.counters();
   json.key("can").open('{').key("link").text(word_of(bus.link())).key("bus").text(word_of(bus.bus()));
@@ -129,6 +140,9 @@ std::string_view state_of(const Report& s) {
   if (s.tilt != nullptr && s.tilt->state() != TiltState::ok) {
     return s.tilt->state() == TiltState::stale ? "tilt_stale" : "tilt_missing";
   }
+  if (s.poses.watch != nullptr && s.poses.watch->state() != TiltState::ok) {
+    return s.poses.watch->state() == TiltState::stale ? "poses_stale" : "poses_missing";
+  }
   if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
   return "ok";
 }
@@ -138,6 +152,7 @@ std::string_view status_line(const Report& s, std::span<char> buffer) {
   json.open('{').key("status").open('{').key("state").text(state_of(s)).key("time_s").seconds(s.time_ns);
   json.key("uptime_s").real(s.uptime_s);
   if (s.tilt != nullptr) put_tilt(json, s);
+  if (s.poses.watch != nullptr) put_poses(json, s);
   if (s.bus != nullptr) put_bus(json, *s.bus);
   put_lines(json, s);
   put_pipeline(json, s);

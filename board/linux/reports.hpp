@@ -18,6 +18,13 @@
 
 namespace curbline::daemon {
 
+/// Of a robot that drives.
+struct PoseReport {
+  const TiltWatch* watch = nullptr;  ///< nullptr: it stands
+  std::string_view wanted{};         ///< from where they come, for the user
+  std::uint64_t taken = 0, damaged = 0;
+};
+
 /// What a status line is made of. What is nullptr the robot has not.
 struct Report {
   std::int64_t time_ns = 0;
@@ -26,6 +33,7 @@ struct Report {
   std::string_view wanted_tilt{};  ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;
+  PoseReport poses{};
   const socketcan::SocketCan* bus = nullptr;
   const ScannerState* scanner = nullptr;
   LineQueueCounters lines{};
@@ -40,7 +48,8 @@ struct Report {
   std::uint64_t heap_calls_before = 0, heap_calls_since = 0;
 };
 
-/// The worst that is the matter, in a word: ok, tilt_missing, tilt_stale, can_down, bus_off or scanner_lost.
+/// The worst that is the matter, in a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale
+/// or scanner_lost.
 std::string_view state_of(const Report& status);
 
 std::string_view status_line(const Report& status, std::span<char> buffer);

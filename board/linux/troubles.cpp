@@ -22,11 +22,27 @@ void tell_tilt(TiltEvent event, std::string_view wanted) {
   }
 }
 
+void tell_poses(TiltEvent event, std::string_view wanted) {
+  switch (event) {
+    case TiltEvent::none:
+      return;
+    case TiltEvent::missing:
+      return say("no pose since the start; expected lines of time tx ty tz qx qy qz qw from ", wanted);
+    case TiltEvent::first:
+      return say("the localisation gives poses");
+    case TiltEvent::lost:
+      return say("the localisation is silent");
+    case TiltEvent::recovered:
+      return say("the localisation gives poses again");
+  }
+}
+
 }  // namespace
 
-void Troubles::tell(const Report& status, TiltEvent tilt, std::int64_t now_ns) {
+void Troubles::tell(const Report& status, TiltEvent tilt, TiltEvent poses, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
   tell_tilt(tilt, status.wanted_tilt);
+  tell_poses(poses, status.poses.wanted);
   if (status.scanner != nullptr) tell_scanner(*status.scanner);
   tell_counters(status, now_ns);
 }
@@ -72,6 +88,8 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {frames.malformed, "damaged tilt frames"},
       {frames.without_sync, "tilt frames whose SYNC was not seen"},
       {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
+      {s.poses.damaged, "lines that are no poses, passed over"},
+      {s.pipeline.poses_dropped, "poses that are impossible or not later than the one before, dropped"},
       {s.tilt_latency == nullptr ? 0 : s.tilt_latency->steps(), "the tilt frames are late by another time"},
       {s.not_recorded, "tilt frames that the recording does not have"},
       {std::uint64_t{s.lines.dropped} + s.lines.crowded, "scan lines came faster than they are taken"},

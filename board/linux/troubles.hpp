@@ -12,7 +12,7 @@ namespace curbline::daemon {
 class Troubles {
  public:
   /// Compares with what was told. Call some times a second. `now_ns`: of any clock.
-  void tell(const Report& status, TiltEvent tilt, std::int64_t now_ns);
+  void tell(const Report& status, TiltEvent tilt, TiltEvent poses, std::int64_t now_ns);
 
  private:
   void tell_link(const socketcan::SocketCan& bus);
@@ -21,7 +21,7 @@ class Troubles {
 
   socketcan::LinkState link_ = socketcan::LinkState::up;
   bool scanner_connected_ = false, scanner_told_ = false;
-  std::array<Trouble, 18> counted_{};
+  std::array<Trouble, 20> counted_{};
 };
 
 }  // namespace curbline::daemon

@@ -1,5 +1,6 @@
 // The daemon on the kernel's CAN: the curbs of the same logs, and what a bus may do to it.
 #include <linux/can/error.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -8,6 +9,7 @@
 #include "curbline/can/curb_frames.hpp"
 #include "formats/can_log.hpp"
 #include "formats/csv.hpp"
+#include "formats/trajectory.hpp"
 #include "service.hpp"
 
 namespace curbline::tools::testing {
@@ -33,11 +35,12 @@ const std::vector<nlohmann::json>& undisturbed() {
   return curbs;
 }
 
-nlohmann::json undisturbed_end() {
-  const Outcome outcome = curbline(recording().replay() + Words{"--curbs", recording().path("curbs.csv")});
+/// The last curbs of replay.
+nlohmann::json end_of(const Recording& recording) {
+  const Outcome outcome = curbline(recording.replay() + Words{"--curbs", recording.path("curbs.csv")});
   REQUIRE(outcome.status == 0);
   nlohmann::json curbs = nlohmann::json::array();
-  for (const MapCurb& c : read_curbs(recording().path("curbs.csv"))) {
+  for (const MapCurb& c : read_curbs(recording.path("curbs.csv"))) {
     curbs.push_back({{"x0_m", c.x0_m},
                      {"y0_m", c.y0_m},
                      {"x1_m", c.x1_m},
@@ -152,7 +155,79 @@ TEST_CASE(
   CHECK(times_said(cut.outcome.err, "the CAN interface is down") == 1);
   CHECK(times_said(cut.outcome.err, "the CAN interface is up again") == 1);
   check_same(distinct_curbs(cut.lines), replayed_curbs(recording().replay("can", recording().path("came.log"))));
-  check_alike(last_curbs(cut.lines), undisturbed_end());
+  check_alike(last_curbs(cut.lines), end_of(recording()));
+}
+
+/// Of a robot that drives up to a kerb of 10 cm, from 3 m before it to 1 m.
+const Recording& driven() {
+  static const TemporaryDirectory directory;
+  static const Recording made(
+      directory.write("kerb.toml",
+                      "[ground]\nz = 0.0\n[[region]]\nrectangle = [3.0, -12.0, 14.0, 12.0]\nz = 0.1\n"
+                      "[robot]\npath = [[0.0, 0.0], [2.0, 0.0]]\nspeed = 0.3\n"),
+      "utm30lx");
+  return made;
+}
+
+Words driven_words(const std::string& poses) {
+  return {"--can",   "vcan0", "--scans", driven().path("scans.carmen"), "--robot", driven().path("robot.toml"),
+          "--poses", poses};
+}
+
+TEST_CASE("daemon: a robot that drives through a log has the curbs of replay, every one", "[daemon]") {
+  Service service(driven_words(driven().path("poses.tum")));
+  play(driven().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  const nlohmann::json status = status_of(service.end());
+  check_same(distinct_curbs(service.lines()), replayed_curbs(driven().replay()));
+  CHECK(last_curbs(service.lines()).size() > 0);
+  CHECK(status.at("pipeline").at("lines_dropped") == 0);
+  CHECK(status.at("poses").at("state") == "ok");
+  CHECK(status.at("poses").at("taken") > 100);
+}
+
+TEST_CASE(
+    "daemon: poses that a FIFO gives as the robot goes tell where its curbs are; damage and silence are told once",
+    "[daemon]") {
+  const std::string fifo = driven().path("fifo");
+  REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
+  Service service(driven_words(fifo) + Words{"--can-out"});
+  CHECK(service.says("no pose since the start; expected lines of time tx ty tz qx qy qz qw from " + fifo + "\n"));
+  std::signal(SIGPIPE, SIG_IGN);  // the daemon ends with its log of scan lines, before the poses do
+  std::ofstream localisation(fifo);
+  TrajectoryReader poses(driven().path("poses.tum"));
+  auto pose = poses.next();
+  localisation << "damaged\n";
+  play(driven().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    for (; pose && pose->time_ns <= frame.time_ns; pose = poses.next()) {
+      if (since_s < 3.0 || since_s > 3.8) write_trajectory_pose(localisation, *pose);
+    }
+    localisation.flush();
+    send_well(bus, frame);
+  });
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
+  const nlohmann::json curbs = last_curbs(service.lines());
+  INFO(curbs);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].at("kind") == "step_up");
+  CHECK(curbs[0].at("x0_m").get<double>() == Approx(3.0).margin(0.05));  // in the map
+  CHECK(curbs[0].at("height_m").get<double>() == Approx(0.1).margin(0.01));
+  std::optional<CurbAhead> ahead, last;
+  for (const can::Frame& frame : socketcan::testing::receive_all(receiver)) {
+    if (can::read_curb_ahead(frame, ahead)) last = ahead;
+  }
+  REQUIRE(last);
+  CHECK(double{last->distance_m} == Approx(1.0).margin(0.05));  // before the robot
+  CHECK(status.at("poses").at("times_lost") == 1);
+  CHECK(status.at("poses").at("damaged") == 1);
+  CHECK(times_said(outcome.err, "no pose since the start") == 1);
+  CHECK(times_said(outcome.err, "the localisation gives poses\n") == 1);
+  CHECK(times_said(outcome.err, "lines that are no poses, passed over (1 so far)") == 1);
+  CHECK(times_said(outcome.err, "the localisation is silent") == 1);
+  CHECK(times_said(outcome.err, "the localisation gives poses again") == 1);
 }
 
 TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is well", "[daemon]") {
@@ -228,7 +303,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   CHECK(status.at("pipeline").at("lines") == taken);
   CHECK(status.at("pipeline").at("lines_dropped") == dropped);
   CHECK(sent.count(TiltState::stale) == 1);
-  check_alike(last_curbs(service.lines()), undisturbed_end());
+  check_alike(last_curbs(service.lines()), end_of(recording()));
 }
 
 TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are survived, told once, and forgotten",
@@ -270,7 +345,7 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
   CHECK(status.at("scans").at("lines") == 240);
   CHECK(times_said(disturbed.outcome.err, "damaged tilt frames") == 1);
   CHECK(times_said(disturbed.outcome.err, "tilt frames that the recording does not have") == 1);
-  check_alike(last_curbs(disturbed.lines), undisturbed_end());
+  check_alike(last_curbs(disturbed.lines), end_of(recording()));
 }
 
 TEST_CASE("daemon: without the recording's CAN log beside the scan log the user is told of the guess", "[daemon]") {

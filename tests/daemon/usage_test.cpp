@@ -23,8 +23,13 @@ TEST_CASE("curblined: what it cannot run with is refused with one line") {
   const std::string scans = scan_log(directory), curbs = "unix:" + directory.path("curbs");
   const Words words{"--scans", scans, "--curbs", curbs, "--robot"};
   check_refused(curbline(words + Words{nodding}), nodding + ": ", "the laser nods");
-  check_refused(curbline(words + Words{shipped_robot("fixed_tilt")}), shipped_robot("fixed_tilt") + ": ",
-                "the robot drives");
+  const std::string driving = shipped_robot("fixed_tilt");
+  check_refused(curbline(words + Words{driving}), driving + ": ", "the robot drives; expected --poses");
+  check_refused(curbline(words + Words{driving, "--poses", "none.tum"}), "none.tum: ", "cannot be opened");
+  check_refused(curbline(words + Words{driving, "--poses", scans}), scans + ":1: ", "time is \"RAWLASER1\"");
+  check_refused(
+      curbline({"--robot", driving, "--curbs", curbs, "--scans", "scip2:127.0.0.1:7", "--poses", "poses.tum"}),
+      "poses.tum: ", "no FIFO; expected one, or -, beside a live scanner");
   check_refused(curbline(words + Words{nodding, "--can", "none7"}), "none7: ", "expected a CAN interface");
   check_refused(curbline({"--robot", nodding, "--can", "none7", "--curbs", curbs, "--scans", "none.carmen"}),
                 "none.carmen: ", "");

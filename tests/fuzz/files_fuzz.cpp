@@ -78,6 +78,10 @@ void read_trajectory(const File& file) {
     const float norm2 = p.qx * p.qx + p.qy * p.qy + p.qz * p.qz + p.qw * p.qw;
     claim(std::abs(p.x_m) <= Pose::furthest_m && std::abs(norm2 - 1.0f) < 1e-3f, "the pipeline takes every pose");
   }
+  tools::LineReader live(file.path());
+  while (const auto line = live.next()) {
+    if (const auto pose = tools::parse_pose(*line)) claim(pose->time_ns >= 0, "a time is none before the epoch");
+  }
 }
 
 void read_points(const File& file, const char* ending) {

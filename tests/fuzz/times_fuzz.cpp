@@ -40,26 +40,29 @@ void queue(Numbers& numbers) {
   Settings settings;
   settings.laser.beams = limits.beams;
   settings.tilt.fixed = numbers.flag();
+  settings.pose.still = numbers.flag();
   numbers.change(settings.laser.beam_interval_s, 0.0f, 1.0f);
   numbers.change(settings.tilt.latency_s, -10.0f, 10.0f);
   if (bad_setting(settings, limits) != nullptr) return;
   LineQueue<limits, 3> queue;
-  queue.init(settings.laser, settings.tilt, numbers.number(0.0f, 10.0f));
+  queue.init(settings.laser, settings.tilt, settings.pose, numbers.number(0.0f, 10.0f));
   TiltWatch watch;
   watch.init(numbers.number(0.0f, 10.0f), settings.tilt.fixed);
   constexpr std::array<float, limits.beams + 1> ranges_m{};
-  std::int64_t now_ns = 0, tilt_ns = TiltWatch::no_reading;
+  std::int64_t now_ns = 0, tilt_ns = TiltWatch::no_reading, pose_ns = tilt_ns;
   while (!numbers.used_up()) {
     now_ns += numbers.whole(0, 100'000'000);
     if (numbers.flag()) tilt_ns = now_ns + numbers.whole(-100'000'000, 100'000'000);
+    if (numbers.flag()) pose_ns = now_ns + numbers.whole(-100'000'000, 100'000'000);
     const auto beams = static_cast<std::size_t>(numbers.whole(0, numbers.seldom() ? limits.beams + 1 : limits.beams));
     const bool taken = queue.push({some_time_ns(numbers, now_ns), {ranges_m.data(), beams}}, now_ns);
     claim(!taken || beams <= static_cast<std::size_t>(limits.beams), "a line that is too long is refused");
     watch.update(tilt_ns, now_ns);
     const float offset_s = numbers.number(-1.0f, 1.0f);
     while (numbers.flag()) {
-      const std::optional<ScanLine> line = queue.pop(tilt_ns, now_ns, offset_s);
-      claim(line || !settings.tilt.fixed || queue.size() == 0, "without a servo no line waits");
+      const std::optional<ScanLine> line = queue.pop({tilt_ns, pose_ns}, now_ns, offset_s);
+      claim(line || !settings.tilt.fixed || !settings.pose.still || queue.size() == 0,
+            "without a servo no line of a robot that stands waits");
       if (!line) break;
     }
     const LineQueueCounters c = queue.counters();

@@ -23,9 +23,9 @@ constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
 /// Lines of 11 beams, 1 ms apart.
 const LaserSettings laser{.beams = 11, .beam_interval_s = 1e-3f};
 
-Queue queue(const TiltSettings& tilt = {}) {
+Queue queue(const TiltSettings& tilt = {}, const PoseSettings& pose = {}) {
   Queue out;
-  out.init(laser, tilt, 0.05f);
+  out.init(laser, tilt, pose, 0.05f);
   return out;
 }
 
@@ -46,17 +46,17 @@ bool adds_up(const Queue& q) {
 
 TEST_CASE("line queue: a line is given out when a reading is at or after its last beam") {
   Queue q = queue();
-  CHECK_FALSE(q.pop(t0, t0, 0.0f));
+  CHECK_FALSE(q.pop({t0}, t0, 0.0f));
   const Line line(0);
   REQUIRE(q.push(line.line(), line.end_ns()));
-  CHECK_FALSE(q.pop(none, line.end_ns(), 0.0f));
-  CHECK_FALSE(q.pop(line.end_ns() - 1000, line.end_ns(), 0.0f));
-  const auto out = q.pop(line.end_ns() + 1000, line.end_ns(), 0.0f);
+  CHECK_FALSE(q.pop({}, line.end_ns(), 0.0f));
+  CHECK_FALSE(q.pop({line.end_ns() - 1000}, line.end_ns(), 0.0f));
+  const auto out = q.pop({line.end_ns() + 1000}, line.end_ns(), 0.0f);
   REQUIRE(out);
   CHECK(out->time_ns == t0);
   CHECK(out->ranges_m.size() == 11);
   CHECK(q.counters().covered == 1);
-  CHECK_FALSE(q.pop(line.end_ns() + 1000, line.end_ns(), 0.0f));
+  CHECK_FALSE(q.pop({line.end_ns() + 1000}, line.end_ns(), 0.0f));
 }
 
 TEST_CASE("line queue: the reading that a line needs is later by the servo's latency") {
@@ -65,35 +65,59 @@ TEST_CASE("line queue: the reading that a line needs is later by the servo's lat
   Queue q = queue(late);
   const Line line(0);
   q.push(line.line(), line.end_ns());
-  CHECK_FALSE(q.pop(line.end_ns() + 19 * ms, line.end_ns(), 0.0f));
-  CHECK(q.pop(line.end_ns() + 21 * ms, line.end_ns(), 0.0f));
+  CHECK_FALSE(q.pop({line.end_ns() + 19 * ms}, line.end_ns(), 0.0f));
+  CHECK(q.pop({line.end_ns() + 21 * ms}, line.end_ns(), 0.0f));
 }
 
 TEST_CASE("line queue: it is later by what the pipeline has found of that latency, too") {
   const Line line(1);
   Queue q = queue();
   REQUIRE(q.push(line.line(), t0));
-  CHECK_FALSE(q.pop(line.end_ns() + 11 * ms, line.end_ns(), 0.012f));
-  CHECK(q.pop(line.end_ns() + 13 * ms, line.end_ns(), 0.012f));
+  CHECK_FALSE(q.pop({line.end_ns() + 11 * ms}, line.end_ns(), 0.012f));
+  CHECK(q.pop({line.end_ns() + 13 * ms}, line.end_ns(), 0.012f));
   REQUIRE(q.push(line.line(), t0));
-  CHECK(q.pop(line.end_ns() - 11 * ms, line.end_ns(), -0.012f));  // or earlier
+  CHECK(q.pop({line.end_ns() - 11 * ms}, line.end_ns(), -0.012f));  // or earlier
 }
 
-TEST_CASE("line queue: a laser at a fixed tilt never waits") {
+TEST_CASE("line queue: a laser at a fixed tilt on a robot that stands never waits") {
   TiltSettings fixed;
   fixed.fixed = true;
   Queue q = queue(fixed);
   q.push(Line(0).line(), t0);
-  CHECK(q.pop(none, t0, 0.0f));
+  CHECK(q.pop({}, t0, 0.0f));
   CHECK(q.counters().covered == 1);
+}
+
+TEST_CASE("line queue: a robot that drives takes a line when a pose is at or after its last beam too") {
+  PoseSettings driving;
+  driving.still = false;
+  const Line line(0);
+  const std::int64_t before = line.end_ns() - 1000, after = line.end_ns() + 1000;
+  Queue q = queue({}, driving);
+  q.push(line.line(), t0);
+  CHECK_FALSE(q.pop({.tilt_ns = after}, t0, 0.0f));
+  CHECK_FALSE(q.pop({.tilt_ns = after, .pose_ns = before}, t0, 0.0f));
+  CHECK_FALSE(q.pop({.tilt_ns = before, .pose_ns = after}, t0, 0.0f));
+  CHECK(q.pop({.tilt_ns = after, .pose_ns = after}, t0, 0.0f));
+  CHECK(q.counters().covered == 1);
+  q.push(line.line(), t0);
+  CHECK(q.pop({.tilt_ns = after}, t0 + 51 * ms, 0.0f));  // a robot whose odometry is silent goes on without
+  CHECK(q.counters().overdue == 1);
+
+  TiltSettings fixed;
+  fixed.fixed = true;
+  q = queue(fixed, driving);
+  q.push(line.line(), t0);
+  CHECK_FALSE(q.pop({.pose_ns = before}, t0, 0.0f));
+  CHECK(q.pop({.pose_ns = after}, t0, 0.0f));
 }
 
 TEST_CASE("line queue: what has waited too long is given out without its tilt, and counted") {
   Queue q = queue();
   const Line line(0);
   q.push(line.line(), 7 * ms);  // arrival is of another clock than the line
-  CHECK_FALSE(q.pop(none, 56 * ms, 0.0f));
-  CHECK(q.pop(none, 58 * ms, 0.0f));
+  CHECK_FALSE(q.pop({}, 56 * ms, 0.0f));
+  CHECK(q.pop({}, 58 * ms, 0.0f));
   CHECK(q.counters().overdue == 1);
   CHECK(q.counters().covered == 0);
 }
@@ -106,16 +130,16 @@ TEST_CASE("line queue: the copy is the queue's own, and lines of any length keep
     gone.ranges_m.assign(3, -1.0f);
   }
   q.push(Line(2, 0).line(), t0);
-  const auto first = q.pop(t0 + 1000 * ms, t0, 0.0f);
+  const auto first = q.pop({t0 + 1000 * ms}, t0, 0.0f);
   REQUIRE(first);
   CHECK(std::vector<float>(first->ranges_m.begin(), first->ranges_m.end()) == std::vector<float>(3, 1.0f));
-  CHECK(q.pop(t0 + 1000 * ms, t0, 0.0f)->ranges_m.empty());
+  CHECK(q.pop({t0 + 1000 * ms}, t0, 0.0f)->ranges_m.empty());
 }
 
 TEST_CASE("line queue: a short line ends with its own last beam") {
   Queue q = queue();
   q.push(Line(0, 3).line(), t0);
-  CHECK(q.pop(t0 + 2 * ms + 1000, t0, 0.0f));
+  CHECK(q.pop({t0 + 2 * ms + 1000}, t0, 0.0f));
 }
 
 TEST_CASE("line queue: who takes after each line loses none, even without tilt") {
@@ -123,7 +147,7 @@ TEST_CASE("line queue: who takes after each line loses none, even without tilt")
   int next = 0;
   for (int k = 0; k < 10; ++k) {
     REQUIRE(q.push(Line(k).line(), t0));
-    while (const auto out = q.pop(none, t0, 0.0f)) CHECK(out->time_ns == Line(next++).line().time_ns);
+    while (const auto out = q.pop({}, t0, 0.0f)) CHECK(out->time_ns == Line(next++).line().time_ns);
   }
   CHECK(next == 7);
   CHECK(q.size() == 3);
@@ -135,7 +159,7 @@ TEST_CASE("line queue: a full queue drops its oldest line for a new one, and cou
   Queue q = queue();
   for (int k = 0; k < 6; ++k) CHECK(q.push(Line(k).line(), t0));
   CHECK(q.counters().dropped == 2);
-  for (int k = 2; k < 6; ++k) CHECK(q.pop(t0 + 1000 * ms, t0, 0.0f)->ranges_m[0] == static_cast<float>(k));
+  for (int k = 2; k < 6; ++k) CHECK(q.pop({t0 + 1000 * ms}, t0, 0.0f)->ranges_m[0] == static_cast<float>(k));
   CHECK(q.size() == 0);
 }
 
@@ -165,9 +189,9 @@ TEST_CASE("line queue: after init it is empty and has counted nothing") {
   const Line line(0);
   q.push(line.line(), line.end_ns());
   q.push(Line(1, 12).line(), t0);
-  q.init(laser, {}, 0.05f);
+  q.init(laser, {}, {}, 0.05f);
   CHECK(q.size() == 0);
-  CHECK_FALSE(q.pop(line.end_ns() + ms, line.end_ns(), 0.0f));
+  CHECK_FALSE(q.pop({line.end_ns() + ms}, line.end_ns(), 0.0f));
   CHECK(q.counters().pushed + q.counters().too_long + q.counters().covered == 0);
 }
 
@@ -181,7 +205,7 @@ TEST_CASE("line queue: under any traffic lines stay in order, whole, and every o
     q.push(line.line(), now);
     if (k % 1000 < 500 && random() % 3 != 0) tilt = t0 + 25 * ms * k + static_cast<std::int64_t>(random() % 60) * ms;
     for (auto n = random() % 3; n > 0; --n) {
-      const auto out = q.pop(tilt, now, 0.0f);
+      const auto out = q.pop({tilt}, now, 0.0f);
       if (!out) break;
       REQUIRE(out->time_ns > last);
       last = out->time_ns;

@@ -1,9 +1,13 @@
 #include "formats/trajectory.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "candump/candump.hpp"
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -15,7 +19,7 @@ double read_position(Fields& fields, std::string_view name) {
   return metres;
 }
 
-TrajectoryPose parse_pose(Fields& fields) {
+TrajectoryPose read_pose(Fields& fields) {
   TrajectoryPose pose;
   pose.time_ns = fields.time_ns("time");
   pose.x_m = read_position(fields, "tx");
@@ -43,7 +47,7 @@ std::optional<TrajectoryPose> TrajectoryReader::next() {
   while (const auto text = source_.next()) {
     Fields fields(source_, *text);
     if (fields.at_end() || text->starts_with('#')) continue;
-    const TrajectoryPose pose = parse_pose(fields);
+    const TrajectoryPose pose = read_pose(fields);
     if (last_time_ns_ && pose.time_ns < *last_time_ns_)
       source_.fail("the time goes back; expected no less than that of the pose before");
     last_time_ns_ = pose.time_ns;
@@ -51,6 +55,28 @@ std::optional<TrajectoryPose> TrajectoryReader::next() {
   }
   if (!last_time_ns_) throw BadInput(path() + ": no pose; expected at least one line of time tx ty tz qx qy qz qw");
   return std::nullopt;
+}
+
+std::optional<Pose> parse_pose(std::string_view line) {
+  constexpr std::string_view blanks = " \t\r";
+  std::array<float, 7> numbers{};
+  std::optional<std::int64_t> time_ns;
+  std::size_t words = 0;
+  for (std::size_t at = 0; (at = line.find_first_not_of(blanks, at)) != line.npos; ++words) {
+    const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+    const std::string_view word = line.substr(at, end - at);
+    at = end;
+    if (words == 0) {
+      time_ns = candump::parse_time(word);
+      continue;
+    }
+    const auto number = parse_number<float>(word);
+    if (!number || words > numbers.size()) return std::nullopt;
+    numbers[words - 1] = *number;
+  }
+  if (!time_ns || words != 1 + numbers.size()) return std::nullopt;
+  const auto& [x, y, z, qx, qy, qz, qw] = numbers;
+  return Pose{*time_ns, x, y, z, qx, qy, qz, qw};
 }
 
 void write_trajectory_pose(std::ostream& out, const TrajectoryPose& pose) {

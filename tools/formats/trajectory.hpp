@@ -6,6 +6,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include "curbline/pose.hpp"
 #include "formats/line_reader.hpp"
@@ -37,6 +38,10 @@ class TrajectoryReader {
   LineReader source_;
   std::optional<std::int64_t> last_time_ns_;
 };
+
+/// A pose of a line of text, for what comes live: nothing if it is none, without a reason and without the heap. Whether
+/// the numbers are a pose the pipeline asks.
+std::optional<Pose> parse_pose(std::string_view line);
 
 /// Writes one line: times to the nanosecond, metres to 1e-6, quaternions to 1e-9.
 void write_trajectory_pose(std::ostream& out, const TrajectoryPose& pose);

@@ -1,18 +1,21 @@
-// Scan lines that wait for their tilt. A line is there when its last beam is, its angles only with the next servo
-// frame, up to a frame's period later: taken at once, its end would be extrapolated. Before the pipeline:
+// Scan lines that wait for their tilt and pose. A line is there when its last beam is, its angles only with the next
+// servo frame, where the robot was only with its next pose, up to a period later: taken at once, its end would be
+// extrapolated. Before the pipeline:
 //
-//   scanner --> LineQueue --> Pipeline::take()       pop(newest reading, now, offset) after every line and tilt reading
+//   scanner --> LineQueue --> Pipeline::take()       pop(newest, now, offset) after every line, tilt reading and pose
 //
 // First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. A line
 // waits for at most the time in which capacity - 1 more come: for the settings' latency and two periods of the servo's
-// frames, one of which may be lost, capacity is that time over a line's period, rounded up, and one. No clock: times
-// come in. push() costs a copy of the ranges, pop() constant time. One context, or several that exclude each other.
+// frames, one of which may be lost, capacity is that time over a line's period, rounded up, and one; for two periods of
+// poses likewise. No clock: times come in. push() costs a copy of the ranges, pop() constant time. One context, or
+// several that exclude each other.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -26,12 +29,19 @@ namespace curbline {
 /// Every line pushed ends in one of the others, or still waits. All wrap at 2^32.
 struct LineQueueCounters {
   std::uint32_t pushed = 0;
-  std::uint32_t covered = 0;   ///< given out with tilt for every beam
+  std::uint32_t covered = 0;   ///< given out with tilt and pose for every beam
   std::uint32_t overdue = 0;   ///< given out after the longest wait: beams may be extrapolated or dropped
   std::uint32_t crowded = 0;   ///< given out early, because the queue was full
   std::uint32_t dropped = 0;   ///< the oldest of a full queue from which nobody took
   std::uint32_t too_long = 0;  ///< refused: more beams than the limits have
   std::uint32_t bad_time = 0;  ///< refused: a stamp beyond RisingTimes::furthest_ns
+};
+
+/// Stamps of the newest tilt reading and the newest pose that the pipeline took; `none` before the first, and of what
+/// never comes: where the tilt is fixed, where the robot stands.
+struct NewestTimes {
+  static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+  std::int64_t tilt_ns = none, pose_ns = none;
 };
 
 template <Limits limits, int capacity>
@@ -41,17 +51,17 @@ class LineQueue {
  public:
   /// Empties the queue. A line waits for max_wait_s at most, however seldom lines come: TiltSettings::max_gap_s is a
   /// good choice, as beams in a longer gap have no angle.
-  void init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s);
+  void init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose, float max_wait_s);
 
   /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length
   /// or its stamp. If the queue is full the oldest line is dropped: pop() until it has nothing to give after each
   /// push(), and none is.
   bool push(const ScanLine& line, std::int64_t now_ns);
 
-  /// The oldest line, if a tilt reading covers its last beam, if it has waited long enough, or if the queue is full.
-  /// newest_tilt_ns: stamp of the newest reading, INT64_MIN for none; it is later than its angle by the settings'
-  /// latency and offset_s, the pipeline's tilt_latency().latest_offset_s(). The ranges are valid until the next push().
-  std::optional<ScanLine> pop(std::int64_t newest_tilt_ns, std::int64_t now_ns, float offset_s);
+  /// The oldest line, if tilt and poses reach to its last beam, if it has waited long enough, or if the queue is full.
+  /// A reading's stamp is later than its angle by the settings' latency and offset_s, the pipeline's
+  /// tilt_latency().latest_offset_s(). The ranges are valid until the next push().
+  std::optional<ScanLine> pop(const NewestTimes& newest, std::int64_t now_ns, float offset_s);
 
   int size() const { return size_; }
   const LineQueueCounters& counters() const { return counters_; }
@@ -68,7 +78,7 @@ class LineQueue {
   std::int64_t beam_interval_ns_ = 0;
   float latency_s_ = 0.0f;
   std::int64_t max_wait_ns_ = 0;
-  bool fixed_ = false;
+  bool fixed_ = false, still_ = false;
   int oldest_ = 0, size_ = 0;
   std::array<Entry, capacity> entries_{};
   std::array<std::array<float, static_cast<std::size_t>(limits.beams)>, capacity> ranges_m_{};
@@ -76,11 +86,13 @@ class LineQueue {
 };
 
 template <Limits limits, int capacity>
-void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, float max_wait_s) {
+void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose,
+                                       float max_wait_s) {
   beam_interval_ns_ = laser.beam_interval_ns();
   latency_s_ = tilt.latency_s;
   max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
   fixed_ = tilt.fixed;
+  still_ = pose.still;
   oldest_ = size_ = 0;
   counters_ = LineQueueCounters{};
 }
@@ -109,12 +121,14 @@ bool LineQueue<limits, capacity>::push(const ScanLine& line, std::int64_t now_ns
 }
 
 template <Limits limits, int capacity>
-std::optional<ScanLine> LineQueue<limits, capacity>::pop(std::int64_t newest_tilt_ns, std::int64_t now_ns,
+std::optional<ScanLine> LineQueue<limits, capacity>::pop(const NewestTimes& newest, std::int64_t now_ns,
                                                          float offset_s) {
   if (size_ == 0) return std::nullopt;
   const Entry& entry = entries_[static_cast<std::size_t>(oldest_)];
   const auto late_ns = static_cast<std::int64_t>((latency_s_ + offset_s) * 1e9f);
-  if (fixed_ || newest_tilt_ns >= entry.last_beam_ns + late_ns) {
+  const bool tilt_is_there = fixed_ || newest.tilt_ns >= entry.last_beam_ns + late_ns;
+  const bool pose_is_there = still_ || newest.pose_ns >= entry.last_beam_ns;
+  if (tilt_is_there && pose_is_there) {
     ++counters_.covered;
   } else if (now_ns - entry.arrival_ns > max_wait_ns_) {
     ++counters_.overdue;

@@ -1,0 +1,76 @@
+#include "pose_feed.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "formats/bad_input.hpp"
+#include "formats/trajectory.hpp"
+
+namespace curbline::daemon {
+
+using tools::BadInput;
+
+PoseFeed::~PoseFeed() {
+  if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
+}
+
+void PoseFeed::open(const std::string& source) {
+  if (source == "-") {
+    descriptor_ = STDIN_FILENO;
+    return;
+  }
+  // Its own writer too: a FIFO whose last writer has gone is at its end for ever.
+  descriptor_ = ::open(source.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0) throw BadInput(source + ": " + std::strerror(errno) + "; expected a FIFO to read and write");
+}
+
+std::optional<Pose> PoseFeed::next() {
+  for (;;) {
+    while (const auto line = next_line()) {
+      if (line->find_first_not_of(" \t\r") == line->npos || line->starts_with('#')) continue;
+      if (const auto pose = tools::parse_pose(*line)) return pose;
+      ++damaged_;
+    }
+    if (!fill()) return std::nullopt;
+  }
+}
+
+/// Of what has been read. A line longer than the buffer is one that is damaged.
+std::optional<std::string_view> PoseFeed::next_line() {
+  const std::string_view read(buffer_.data() + begin_, end_ - begin_);
+  const std::size_t length = read.find('\n');
+  if (length == read.npos) {
+    const bool full = read.size() == buffer_.size();
+    if (full && !skipping_) ++damaged_;
+    skipping_ = skipping_ || full;
+    if (skipping_) begin_ = end_;
+    return std::nullopt;
+  }
+  begin_ += length + 1;
+  if (!skipping_) return read.substr(0, length);
+  skipping_ = false;
+  return std::string_view{};
+}
+
+/// Reads what is there. False if nothing is.
+bool PoseFeed::fill() {
+  pollfd ready{descriptor_, POLLIN, 0};  // standard input may block, and it is others' as well
+  if (descriptor_ < 0 || ::poll(&ready, 1, 0) <= 0) return false;
+  std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
+            buffer_.begin());
+  end_ -= begin_;
+  begin_ = 0;
+  const ssize_t got = ::read(descriptor_, buffer_.data() + end_, buffer_.size() - end_);
+  if (got < 0) return false;
+  if (got == 0) descriptor_ = -1;  // standard input has ended
+  end_ += static_cast<std::size_t>(got);
+  return got > 0;
+}
+
+}  // namespace curbline::daemon

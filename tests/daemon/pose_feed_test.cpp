@@ -1,0 +1,100 @@
+// Poses as a localisation writes them: whole, in pieces, damaged, from one writer after another.
+#include "pose_feed.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <string_view>
+
+#include "program.hpp"
+
+namespace curbline::daemon {
+namespace {
+
+/// A FIFO with a feed at its end.
+class Fifo {
+ public:
+  Fifo() {
+    REQUIRE(::mkfifo(path_.c_str(), 0600) == 0);
+    feed.open(path_);
+    connect();
+  }
+  ~Fifo() { ::close(writer_); }
+  Fifo(const Fifo&) = delete;
+  Fifo& operator=(const Fifo&) = delete;
+
+  void write(std::string_view text) const {
+    REQUIRE(::write(writer_, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+  }
+  /// The writer goes, another comes.
+  void change_writer() {
+    ::close(writer_);
+    connect();
+  }
+
+  PoseFeed feed;
+
+ private:
+  void connect() { writer_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC); }
+
+  tools::testing::TemporaryDirectory directory_;
+  std::string path_ = directory_.path("poses");
+  int writer_ = -1;
+};
+
+TEST_CASE("pose feed: what a line says is the pose, to the nanosecond, and nothing comes before its end") {
+  Fifo fifo;
+  CHECK_FALSE(fifo.feed.next());
+  fifo.write("1700000000.123456789 1.5 -2 0.25  0 0 0.6 0.8");
+  CHECK_FALSE(fifo.feed.next());
+  fifo.write("\r\n# from here on it turns\n\n1700000001 2 0 0 0 0 0 1\n17");
+  const auto pose = fifo.feed.next();
+  REQUIRE(pose);
+  CHECK(pose->time_ns == 1'700'000'000'123'456'789);
+  CHECK(pose->x_m == 1.5f);
+  CHECK(pose->y_m == -2.0f);
+  CHECK(pose->z_m == 0.25f);
+  CHECK(pose->qz == 0.6f);
+  CHECK(pose->qw == 0.8f);
+  const auto next = fifo.feed.next();
+  REQUIRE(next);
+  CHECK(next->time_ns == 1'700'000'001'000'000'000);
+  CHECK_FALSE(fifo.feed.next());
+  CHECK(fifo.feed.damaged() == 0);
+}
+
+TEST_CASE("pose feed: lines that are no poses are counted and passed over, however long") {
+  Fifo fifo;
+  const std::string good = "1700000000 0 0 0 0 0 0 1\n";
+  const std::string_view bad[] = {"hello\n", "1700000000 0 0 0 0 0 0\n", "1700000000 0 0 0 0 0 0 1 2\n",
+                                  "yesterday 0 0 0 0 0 0 1\n", "1700000000 0 0 0,5 0 0 0 1\n"};
+  std::uint64_t damaged = 0;
+  for (const std::string_view line : bad) {
+    INFO(line);
+    fifo.write(line);
+    fifo.write(good);
+    CHECK(fifo.feed.next());
+    CHECK_FALSE(fifo.feed.next());
+    CHECK(fifo.feed.damaged() == ++damaged);
+  }
+  fifo.write(std::string(10'000, '1') + "\n" + good);
+  CHECK(fifo.feed.next());
+  CHECK(fifo.feed.damaged() == ++damaged);
+}
+
+TEST_CASE("pose feed: a writer may go and another come") {
+  Fifo fifo;
+  for (int writer = 0; writer < 3; ++writer) {
+    fifo.write("1700000000 0 0 0 0 0 0 1\n");
+    CHECK(fifo.feed.next());
+    fifo.change_writer();
+    CHECK_FALSE(fifo.feed.next());
+    CHECK(fifo.feed.descriptor() >= 0);
+  }
+}
+
+}  // namespace
+}  // namespace curbline::daemon
