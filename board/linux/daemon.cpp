@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <filesystem>
 
 #include "curbline/can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
@@ -28,7 +27,6 @@ constexpr float least_stale_s = 0.5f;
 /// Of the way ahead, to each side: a robot of pavements and doors.
 constexpr float half_way_m = 0.4f;
 constexpr int most_batches = 16;  ///< of frames, before other things have their turn
-constexpr int most_poses = 64;    ///< likewise
 
 int signal_descriptor() {
   sigset_t stop;
@@ -37,11 +35,6 @@ int signal_descriptor() {
   sigaddset(&stop, SIGINT);
   ::pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   return ::signalfd(-1, &stop, SFD_CLOEXEC | SFD_NONBLOCK);
-}
-
-bool is_fifo(const std::string& path) {
-  std::error_code none;
-  return std::filesystem::is_fifo(path, none);
 }
 
 }  // namespace
@@ -55,10 +48,9 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   inbox_.init(robot, longest_wait_s);
   open_scans(robot, options);
   open_bus(robot, options);
-  open_poses(robot, options);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
-  pose_watch_.init(std::max(robot.pose.max_extrapolation_s, least_stale_s), robot.pose.still);
+  poses_.open(robot, options.poses, log_.has_value(), std::max(robot.pose.max_extrapolation_s, least_stale_s));
   server_.open(options.curbs);
 }
 
@@ -101,22 +93,6 @@ void Daemon::open_bus(const tools::Robot& robot, const Options& options) {
                  (log_ ? ", with which the log of scan lines begins" : "");
 }
 
-void Daemon::open_poses(const tools::Robot& robot, const Options& options) {
-  if (robot.pose.still) return;
-  if (options.poses.empty()) {
-    throw BadInput(robot.file + ": the robot drives; expected --poses, or pose.still = true");
-  }
-  if (options.poses == "-" || is_fifo(options.poses)) {
-    pose_feed_.open(options.poses);
-  } else if (log_) {
-    pose_log_.emplace(options.poses);
-    newest_.pose_ns = INT64_MAX;  // they are there, whatever line comes
-  } else {
-    throw BadInput(options.poses + ": no FIFO; expected one, or -, beside a live scanner");
-  }
-  wanted_poses_ = options.poses == "-" ? "standard input" : options.poses;
-}
-
 void Daemon::run() {
   const scanner::Now now = scanner::host_now();
   started_ns_ = now.steady_ns;
@@ -131,7 +107,7 @@ void Daemon::run() {
   while (wait()) {
     take_clients();
     if (has_bus_) take_frames();
-    take_poses();
+    poses_.take(*pipeline_);
     if (log_) take_log();
     take_lines();
     look_around();
@@ -151,7 +127,7 @@ bool Daemon::wait() {
                                {server_.descriptor(), POLLIN, 0},
                                {inbox_.descriptor(), POLLIN, 0},
                                {listens ? bus_.descriptor() : -1, POLLIN, 0},
-                               {pose_feed_.descriptor(), POLLIN, 0}}};
+                               {poses_.descriptor(), POLLIN, 0}}};
   ::poll(ready.data(), ready.size(), time_to_wait_ms());
   if ((ready[2].revents & POLLIN) != 0) inbox_.quiet();
   if ((ready[0].revents & POLLIN) == 0) return true;
@@ -190,28 +166,12 @@ void Daemon::take_frame(can::Frame frame) {
   clock_.set_log_time(frame, log_ && !log_->ended() ? log_->front_ns() : frame.time_ns);
   const auto reading = tilt_decoder_.take(frame);
   if (!reading || !pipeline_->add_tilt(*reading)) return;
-  newest_.tilt_ns = reading->time_ns;
+  newest_tilt_ns_ = reading->time_ns;
   newest_frame_ns_ = received_ns;
   newest_arrival_ns_ = scanner::steady_now_ns();
   by_frame_ = true;
   take_lines();
   by_frame_ = false;
-}
-
-void Daemon::take_poses() {
-  for (int pose = 0; pose < most_poses; ++pose) {
-    const auto given = pose_feed_.next();
-    if (!given) return;
-    if (take_pose(*given)) newest_.pose_ns = given->time_ns;
-  }
-}
-
-bool Daemon::take_pose(const Pose& pose) {
-  if (!pipeline_->add_pose(pose)) return false;
-  pose_ = pose;
-  ++poses_;
-  newest_pose_arrival_ns_ = scanner::steady_now_ns();
-  return true;
 }
 
 /// Log time less host time; nothing before it is known.
@@ -234,7 +194,7 @@ void Daemon::take_lines() {
   for (;;) {
     bool covered = false;
     const float offset_s = pipeline_->tilt_latency().latest_offset_s();
-    const auto line = inbox_.pop(newest_, scanner::steady_now_ns(), offset_s, covered);
+    const auto line = inbox_.pop({newest_tilt_ns_, poses_.newest_ns()}, scanner::steady_now_ns(), offset_s, covered);
     if (!line) return;
     take_line(*line);
     if (covered && by_frame_) latency_.add(scanner::host_now().host_ns - newest_frame_ns_);
@@ -242,10 +202,7 @@ void Daemon::take_lines() {
 }
 
 void Daemon::take_line(const ScanLine& line) {
-  if (pose_log_) {
-    const std::int64_t last_beam_ns = line.time_ns + laser_.duration_ns(line.ranges_m.size());
-    while (const auto pose = pose_log_->next(last_beam_ns)) take_pose(*pose);
-  }
+  poses_.take_until(line.time_ns + laser_.duration_ns(line.ranges_m.size()), *pipeline_);
   const std::int64_t before_ns = scanner::steady_now_ns();
   const Status status = pipeline_->take(line);
   if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
@@ -268,7 +225,7 @@ void Daemon::give_curbs(std::int64_t line_ns) {
 /// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows.
 void Daemon::send_curbs(bool taken) {
   if (taken) {
-    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), pose_, half_way_m));
+    const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), poses_.newest(), half_way_m));
     if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   }
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
@@ -281,7 +238,7 @@ void Daemon::look_around() {
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
   const TiltEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
-  const TiltEvent poses = pose_watch_.update(newest_pose_arrival_ns_, now_ns);
+  const TiltEvent poses = poses_.update(now_ns);
   const Report status = make_report();
   troubles_.tell(status, tilt, poses, now_ns);
   const std::string_view state = state_of(status);
@@ -319,9 +276,7 @@ Report Daemon::make_report() {
     s.tilt_latency = &pipeline_->tilt_latency();
     s.latency = &latency_;
   }
-  if (!wanted_poses_.empty()) {
-    s.poses = {&pose_watch_, wanted_poses_, poses_, pose_feed_.damaged()};
-  }
+  s.poses = poses_.report();
   if (has_bus_) s.bus = &bus_;
   if (scanner_) {
     scanner_state_ = scanner_->state();

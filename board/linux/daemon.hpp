@@ -2,7 +2,7 @@
 //
 //   CAN --> SocketCan --> TiltDecoder --+--> Pipeline --> CurbServer (JSON lines), SocketCan (frames of the curb ahead)
 //   scanner's thread --> LineInbox -----+
-//   localisation --> PoseFeed ----------+
+//   localisation --> PoseSource --------+
 //
 // One thread does all but read the scanner. It waits in poll(2); nothing in it waits for a client, a scanner or a bus.
 // Everything is taken from the heap while it is made; heap_trap.hpp counts that nothing is later. A scan line is in the
@@ -20,8 +20,7 @@
 #include "curbline/intake/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
-#include "pose_feed.hpp"
-#include "pose_log.hpp"
+#include "pose_source.hpp"
 #include "program/host_pipeline.hpp"
 #include "program/recorded_times.hpp"
 #include "reports.hpp"
@@ -37,7 +36,7 @@ namespace curbline::daemon {
 struct Options {
   std::string can;    ///< interface; empty for a robot with a fixed tilt
   std::string scans;  ///< a log, or a scanner: program/scanner_link.hpp
-  std::string poses;  ///< pose_feed.hpp, or a trajectory beside a log; empty for a robot that stands
+  std::string poses;  ///< pose_source.hpp; empty for a robot that stands
   std::string curbs;  ///< where clients connect: curb_server.hpp
   bool can_out = false;
 };
@@ -59,15 +58,12 @@ class Daemon {
  private:
   void open_bus(const tools::Robot& robot, const Options& options);
   void open_scans(const tools::Robot& robot, const Options& options);
-  void open_poses(const tools::Robot& robot, const Options& options);
 
   bool wait();
   int time_to_wait_ms() const;
   void take_clients();
   void take_frames();
   void take_frame(can::Frame frame);
-  void take_poses();
-  bool take_pose(const Pose& pose);
   void take_log();
   void take_lines();
   void take_line(const ScanLine& line);
@@ -95,19 +91,12 @@ class Daemon {
   std::string wanted_tilt_;  ///< the first frame, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
-  NewestTimes newest_;                                      ///< as the pipeline has them
+  std::int64_t newest_tilt_ns_ = NewestTimes::none;         ///< as the pipeline has it
   std::int64_t newest_frame_ns_ = 0;                        ///< when the kernel received it
   std::int64_t newest_arrival_ns_ = TiltWatch::no_reading;  ///< when it came here, steady
   bool by_frame_ = false;                                   ///< lines are taken because a frame came
 
-  PoseFeed pose_feed_;
-  std::optional<PoseLog> pose_log_;
-  TiltWatch pose_watch_;  ///< a servo or a localisation: one silence is as another
-  std::string wanted_poses_;
-  Pose pose_{};  ///< the newest; of a robot that stands, the map's origin
-  std::uint64_t poses_ = 0;
-  std::int64_t newest_pose_arrival_ns_ = TiltWatch::no_reading;  ///< steady
-
+  PoseSource poses_;
   std::optional<ScanLog> log_;
   std::optional<std::int64_t> fixed_offset_ns_;  ///< log time less host time, where no frame tells it
 
