@@ -25,10 +25,15 @@ void put(JsonLine& json, std::string_view key, std::uint64_t count) {
   json.key(key).whole(static_cast<std::int64_t>(count));
 }
 
+void put_watch(JsonLine& json, const TiltWatch& watch) {
+  json.key("state").text(word_of(watch.state()));
+  put(json, "times_lost", watch.times_lost());
+  json.key("longest_silence_s").real(1e-9 * static_cast<double>(watch.longest_silence_ns()));
+}
+
 void put_tilt(JsonLine& json, const Report& s) {
-  json.key("tilt").open('{').key("state").text(word_of(s.tilt->state()));
-  put(json, "times_lost", s.tilt->times_lost());
-  json.key("longest_silence_s").real(1e-9 * static_cast<double>(s.tilt->longest_silence_ns()));
+  json.key("tilt").open('{');
+  put_watch(json, *s.tilt);
   put(json, "frames", s.tilt_frames->frames);
   put(json, "readings", s.tilt_frames->readings);
   put(json, "others", s.tilt_frames->others);
@@ -41,10 +46,8 @@ void put_tilt(JsonLine& json, const Report& s) {
 }
 
 void put_poses(JsonLine& json, const Report& s) {
-  const TiltWatch& watch = *s.poses.watch;
-  json.key("poses").open('{').key("state").text(word_of(watch.state()));
-  put(json, "times_lost", watch.times_lost());
-  json.key("longest_silence_s").real(1e-9 * static_cast<double>(watch.longest_silence_ns()));
+  json.key("poses").open('{');
+  put_watch(json, *s.poses.watch);
   put(json, "taken", s.poses.taken);
   put(json, "damaged", s.poses.damaged);
   put(json, "dropped", s.pipeline.poses_dropped);

@@ -7,33 +7,28 @@
 namespace curbline::daemon {
 namespace {
 
-void tell_tilt(TiltEvent event, std::string_view wanted) {
-  switch (event) {
-    case TiltEvent::none:
-      return;
-    case TiltEvent::missing:
-      return say("no tilt frame since the start; expected ", wanted);
-    case TiltEvent::first:
-      return say("the tilt servo reports");
-    case TiltEvent::lost:
-      return say("the tilt servo is silent");
-    case TiltEvent::recovered:
-      return say("the tilt servo reports again");
-  }
-}
+/// What is said of a servo, or of a localisation, that reports or does not.
+struct Told {
+  std::string_view missing, first, lost, recovered;
+};
+constexpr Told servo{"no tilt frame since the start; expected ", "the tilt servo reports", "the tilt servo is silent",
+                     "the tilt servo reports again"};
+constexpr Told localisation{"no pose since the start; expected lines of time tx ty tz qx qy qz qw from ",
+                            "the localisation gives poses", "the localisation is silent",
+                            "the localisation gives poses again"};
 
-void tell_poses(TiltEvent event, std::string_view wanted) {
+void tell_event(TiltEvent event, const Told& told, std::string_view wanted) {
   switch (event) {
     case TiltEvent::none:
       return;
     case TiltEvent::missing:
-      return say("no pose since the start; expected lines of time tx ty tz qx qy qz qw from ", wanted);
+      return say(told.missing, wanted);
     case TiltEvent::first:
-      return say("the localisation gives poses");
+      return say(told.first);
     case TiltEvent::lost:
-      return say("the localisation is silent");
+      return say(told.lost);
     case TiltEvent::recovered:
-      return say("the localisation gives poses again");
+      return say(told.recovered);
   }
 }
 
@@ -41,8 +36,8 @@ void tell_poses(TiltEvent event, std::string_view wanted) {
 
 void Troubles::tell(const Report& status, TiltEvent tilt, TiltEvent poses, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
-  tell_tilt(tilt, status.wanted_tilt);
-  tell_poses(poses, status.poses.wanted);
+  tell_event(tilt, servo, status.wanted_tilt);
+  tell_event(poses, localisation, status.poses.wanted);
   if (status.scanner != nullptr) tell_scanner(*status.scanner);
   tell_counters(status, now_ns);
 }
