@@ -40,7 +40,8 @@ void put_tilt(JsonLine& json, const Report& s) {
   put(json, "malformed", s.tilt_frames->malformed);
   put(json, "without_sync", s.tilt_frames->without_sync);
   put(json, "dropped", s.pipeline.tilt_dropped);
-  json.key("latency_offset_s").real(s.tilt_latency->offset_s()).key("latency_sd_s").real(s.tilt_latency->sd_s());
+  const TiltLatency::Usual late = s.tilt_latency->usual();
+  json.key("latency_offset_s").real(late.offset_s).key("latency_sd_s").real(late.sd_s);
   put(json, "latency_steps", s.tilt_latency->steps());
   json.close('}');
 }

@@ -209,7 +209,7 @@ TEST_CASE("program: a servo that lags leaves one street, where it is") {
   REQUIRE(outcome.status == 0);
   const nlohmann::json figures = nlohmann::json::parse(outcome.out);
   CHECK(figures.at("tilt_latency_offset_s").get<double>() == Approx(0.015).margin(0.001));
-  CHECK(figures.at("tilt_latency_sd_s").get<double>() < 0.001);
+  CHECK(figures.at("tilt_latency_sd_s").get<double>() < 0.002);  // a fifth of latency_sd_s, by which sweeps may differ
 }
 
 TEST_CASE("program: a laser at a fixed tilt maps as the robot drives, without a CAN log") {

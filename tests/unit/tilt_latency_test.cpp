@@ -97,12 +97,15 @@ struct Sweeps {
   void sweep(float lag_s) {
     const bool downward = sweeps++ % 2 == 1;
     const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
+    bool turned = drives && sweeps > 1;  // standing, no line before that is told tells of the first sweep's
     for (int line = 0; line < 40; ++line) {
       const float advance = 0.025f * static_cast<float>(line);
-      latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+      const Turn turn = latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+      turned = turned || turn == Turn::new_sweep;
       const float map_growth = -growth * (drives ? 1.0f + advance : 1.0f);
-      const float above_m = -growth * (lag_s - latency.offset_s()) + map_growth * (map_lag_s - map_offset_s);
-      for (int point = 0; point < 20 && sweeps > 1; ++point) {
+      const float above_m = -growth * (lag_s - latency.offset_s()) + map_growth * (map_lag_s - map_offset_s) +
+                            (drives ? mount_rad * range_m * advance : 0.0f);
+      for (int point = 0; point < 20 && turned; ++point) {
         const float by_chance_m = point_sd_m * static_cast<float>(noise.normal());
         latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, growth, map_growth});
       }
@@ -114,6 +117,7 @@ struct Sweeps {
   }
 
   bool drives;
+  float mount_rad = 0.0f;  ///< by which the mount leans more than is known: ground farther away seems higher, or lower
   TiltLatency latency;
   test::Noise noise{3};
   int sweeps = 0;
@@ -159,6 +163,47 @@ TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
   }
   CHECK(std::sqrt(missing_s2) < 0.002f);
   CHECK(std::sqrt(apart_s2) < 0.001f);  // by which the ground seen by both is torn
+}
+
+TEST_CASE("tilt latency: a mount that leans by a milliradian is none of the servo's latency") {
+  Sweeps drive(true);
+  drive.mount_rad = GENERATE(-0.001f, 0.001f);
+  for (int k = 0; k < 20; ++k) {
+    drive.sweep(0.006f);
+    if (k > 4) CHECK(drive.latency.usual().offset_s == Approx(0.006f).margin(0.001));
+  }
+}
+
+TEST_CASE("tilt latency: how late a servo is in all is told as well as its deviation says") {
+  const bool drives = GENERATE(false, true);
+  const int sweeps = GENERATE(2, 3, 4, 9);
+  test::Noise lot(11);
+  float missing_sd2 = 0.0f;
+  constexpr int robots = 60;
+  for (int robot = 0; robot < robots; ++robot) {
+    Sweeps run(drives);
+    const float lag_s = 0.005f * static_cast<float>(lot.normal());
+    for (int k = 0; k < sweeps; ++k) run.sweep(lag_s + 0.002f * static_cast<float>(lot.normal()));
+    const TiltLatency::Usual told = run.latency.usual();
+    missing_sd2 += (told.offset_s - lag_s) * (told.offset_s - lag_s) / (told.sd_s * told.sd_s) / robots;
+  }
+  INFO((drives ? "drives, " : "stands, ") << sweeps << " sweeps: (error / sd)^2 " << missing_sd2);
+  CHECK(missing_sd2 > 0.4f);
+  CHECK(missing_sd2 < 2.5f);
+}
+
+TEST_CASE(
+    "tilt latency: how late a servo is in all is not known before the first turn, and exactly if it was said so") {
+  Sweeps robot(GENERATE(false, true));
+  robot.sweep(0.006f);
+  CHECK(robot.latency.usual().offset_s == 0.0f);
+  CHECK(robot.latency.usual().sd_s >= 0.01f);
+  TiltSettings exact = tilt_settings();
+  exact.latency_sd_s = 0.0f;
+  robot.latency.init(exact, {});
+  for (int k = 0; k < 3; ++k) robot.sweep(0.0f);
+  CHECK(robot.latency.usual().offset_s == 0.0f);
+  CHECK(robot.latency.usual().sd_s == 0.0f);
 }
 
 TEST_CASE("tilt latency: a step, however well the latency before was known, is followed") {

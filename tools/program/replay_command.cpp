@@ -75,6 +75,7 @@ nlohmann::json summary_of(const Replay& replay) {
   const Counters& c = replay.pipeline().counters();
   const can::TiltDecoderCounters can = replay.can_counters();
   const TiltLatency& latency = replay.pipeline().tilt_latency();
+  const TiltLatency::Usual late = latency.usual();
   return {{"lines", c.lines},
           {"lines_dropped", c.lines_dropped},
           {"points", c.points},
@@ -86,8 +87,8 @@ nlohmann::json summary_of(const Replay& replay) {
           {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
-          {"tilt_latency_offset_s", latency.offset_s()},
-          {"tilt_latency_sd_s", latency.sd_s()},
+          {"tilt_latency_offset_s", late.offset_s},
+          {"tilt_latency_sd_s", late.sd_s},
           {"latency_steps", latency.steps()},
           {"beams_without_tilt", c.beams_without_tilt},
           {"beams_extrapolated", c.beams_extrapolated},

@@ -176,6 +176,19 @@ float TiltLatency::sd_s() const {
   return square_root(covariance_[now][now]);
 }
 
+/// The constant of a drive; of a robot that stands the mean of both directions, each by its variance. Where sweeps are
+/// as different as those of a drive may be, each differs from it by lot; of two that were taken to be alike so do both.
+TiltLatency::Usual TiltLatency::usual() const {
+  const auto& p = covariance_;
+  if (!turned_ || known(now)) return {offset_s_, sd_s()};
+  if (drives_) return {constant_s_, square_root(p[constant][constant])};
+  const float by_lot_s2 = square(sweep_share) * prior_variance_s2_;
+  const float of_this_s2 = p[now][now] + by_lot_s2;
+  const float of_other_s2 = (known(earlier) ? other_.variance_s2 : p[now][now]) + by_lot_s2;
+  const float share = of_other_s2 / (of_this_s2 + of_other_s2);
+  return {share * offset_s_ + (1.0f - share) * other_.offset_s, square_root(share * of_this_s2)};
+}
+
 float TiltLatency::latest_offset_s() const {
   const float next_s = drives_ ? constant_s_ : other_.offset_s;
   return std::max(next_s, offset_s_);

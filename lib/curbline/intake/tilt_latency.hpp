@@ -65,9 +65,17 @@ class TiltLatency {
     return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
   }
 
-  /// To be added to TiltSettings::latency_s, and its standard deviation.
+  /// Of this sweep: to be added to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return offset_s_; }
   float sd_s() const;
+  /// Of the servo: how much later than TiltSettings::latency_s it is in all. A sweep's own offset also takes up what
+  /// else has it lie off the ground before, a mount that leans by a milliradian, ranges that are short, a first sweep
+  /// that was late by another time: one sweep of that is too late and the next, of the other direction, as much too
+  /// early.
+  struct Usual {
+    float offset_s, sd_s;
+  };
+  Usual usual() const;
   /// The larger of this sweep's offset and the one that the next begins with: how far ahead of a line its readings may
   /// be wanted.
   float latest_offset_s() const;
