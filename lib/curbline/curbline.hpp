@@ -78,6 +78,8 @@
 #include "curbline/curbs/curb.hpp"              // out: a curb
 #include "curbline/curbs/step_height.hpp"       // how high it is, if it is a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, its place, how well that is known
+#include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next
+#include "curbline/curbs/surfaces.hpp"          // which planes are one bent surface, without creases
 #include "curbline/curbs/curb_tracer.hpp"       // from borders to curbs
 #include "curbline/curbs/crossed_cells.hpp"     // where steps go, for the planes of the next line
 

@@ -115,6 +115,9 @@ class Pipeline {
   /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes: not
   /// no_label.
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
+  /// Name of the surface that a plane is a part of: planes that follow one bent surface, as a cambered road, share the
+  /// lowest of their labels, and no crease is told between them. Of others their own. surfaces.hpp
+  Label surface(Label label) const { return ready_ ? curb_tracer_.surfaces().name(label) : label; }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
   /// What the map has been set back by against the poses, about where the robot is: pose_offset.hpp

@@ -81,6 +81,13 @@ TEST_CASE("prediction: the other map's heights are compared with the planes of t
   CHECK(prediction_rmse(trained, other) == Approx(std::sqrt((0.03 * 0.03 + 0.04 * 0.04) / 2)));
 }
 
+TEST_CASE("prediction: a cell of a surface of several planes is compared with its own plane") {
+  Map trained = row_of({cell(0.5, 0, 0), cell(1.5, 1.75, 0)});
+  trained.cells[1].plane = 1;
+  const Map other = row_of({cell(0.5, 0.03, 0), cell(1.6, 1.84, 0)});
+  CHECK(prediction_rmse(trained, other) == Approx(std::sqrt((0.03 * 0.03 + 0.04 * 0.04) / 2)));
+}
+
 TEST_CASE("prediction: cells that are invalid in either map, or whose label has no plane, do not count") {
   const Map trained = row_of({cell(0.5, 0, 0), MapCell{}, cell(2.5, 0, 0), cell(3.5, 0, 9), cell(4.5, 0, -1)});
   const Map other = row_of({cell(0.5, 0.02, 0), cell(1.5, 5, 0), MapCell{}, cell(3.5, 5, 0), cell(4.5, 5, 0)});

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,27 @@ TEST_CASE("pipeline: a narrow top is a wall's for a robot that stands, for one t
   };
   CHECK_FALSE(is_ground(true));
   CHECK(is_ground(false));
+}
+
+//      __.--.__       two planes or more, one surface
+TEST_CASE(
+    "pipeline: cells of a cambered road are of one surface, by the label of one of its planes; before init() of none") {
+  const auto pipeline = started(NoddingLaser::settings());
+  test::Noise noise;
+  pipeline->observe(test::sample({0, 4, -2, 2}, 0.05, 0.003, noise, [](double, double y) { return -0.0125 * y * y; }));
+  pipeline->settle();
+  std::set<Label> planes, surfaces;
+  for (int i = 0; i < pipeline->dem().rows(); ++i) {
+    for (int j = 0; j < pipeline->dem().cols(); ++j) {
+      planes.insert(pipeline->label(i, j));
+      surfaces.insert(pipeline->surface(pipeline->label(i, j)));
+    }
+  }
+  CHECK(planes.size() >= 2);
+  CHECK(surfaces == std::set<Label>{*planes.begin()});
+  CHECK(pipeline->curbs().empty());
+  CHECK(pipeline->surface(no_label) == no_label);
+  CHECK(std::make_unique<FullPipeline>()->surface(1) == 1);
 }
 
 TEST_CASE("pipeline: rain in one beam of fifty moves no curb, makes none, and takes little of the ground to drive on") {

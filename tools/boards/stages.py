@@ -9,21 +9,9 @@ from boards import ROOT
 # Stage 0 is what is not the pipeline: the board, its port, the drive's records.
 STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
 HELPER = -1
-# Files of lib/ whose code is written for one stage; that of others belongs to the stage that calls it.
-FILES = {name: stage for stage, names in {
-    "tilt": "frame.hpp signal.cpp tilt_decoder.cpp tilt_decoder.hpp",
-    "pipeline": "pipeline.hpp",
-    "points": "line_intake.hpp line_projection.hpp map_comparison.hpp pose_offset.cpp pose_offset.hpp pose_track.cpp "
-              "pose_track.hpp sweep_turns.hpp tilt_latency.cpp tilt_latency.hpp tilt_snapshot.hpp tilt_track.hpp",
-    "cells": "viewpoints.hpp",
-    "regions": "gain_heap.hpp region_graph.hpp segmentation.cpp segmentation.hpp",
-    "planes": "clean_fit.hpp common_noise.cpp common_noise.hpp ground.hpp index_set.hpp obstacles.hpp plane_mixture.hpp "
-              "region_ranking.hpp run.hpp strip_tally.hpp",
-    "labels": "label_field.hpp label_site.hpp planes_near_by.hpp",
-    "curbs": "border_finder.hpp borders.hpp cell_line.hpp curb.cpp curb.hpp curb_maker.hpp curb_piece.hpp "
-             "curb_stages.hpp curb_tracer.hpp ground_end.hpp line_fit.cpp line_fit.hpp plane_gap.cpp plane_gap.hpp shadow.cpp shadow.hpp "
-             "step_height.hpp",
-}.items() for name in names.split()}
+# Whose code is written for one stage, by its folder in lib/curbline. That of others, what all share and the map, belongs to the stage that
+# calls it.
+FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "planes", "labels": "labels", "curbs": "curbs"}
 
 
 def run(line, text=None):
@@ -33,14 +21,16 @@ def run(line, text=None):
 
 def stage_of_frame(function, path):
     """Stage of one frame of an inline stack, None for what any stage uses."""
-    name = Path(path).name
-    if name in ("dem.hpp", "cell.hpp"):  # stages read cells too; adding to them is a stage
-        return "cells" if re.search(r"\b(add|follow|clear_touched)\b", function) else None
-    if name == "tilt_track.hpp" and re.search(r"\bpush\b", function):
+    path = Path(path)
+    if path.parent.name == "map":  # stages read cells too; adding to them is a stage
+        return "cells" if path.name == "viewpoints.hpp" or re.search(r"\b(add|follow|clear_touched)\b", function) else None
+    if path.name == "pipeline.hpp":
+        return "pipeline"
+    if path.name == "tilt_track.hpp" and re.search(r"\bpush\b", function):
         return "tilt"
-    if name in FILES:
-        return FILES[name]
-    return "outside" if ROOT / "board" in Path(path).parents or ROOT / "port" in Path(path).parents else None
+    if path.parent.name in FOLDERS:
+        return FOLDERS[path.parent.name]
+    return "outside" if ROOT / "board" in path.parents or ROOT / "port" in path.parents else None
 
 
 def stage_of_stack(frames):

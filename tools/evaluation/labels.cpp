@@ -63,7 +63,7 @@ double prediction_rmse(const Map& trained, const Map& other) {
     for (int j = 0; j < grid.cols; ++j) {
       const MapCell& cell = trained.cells[grid.at(i, j)];
       const MapCell& seen = other.cells[grid.at(i, j)];
-      const MapPlane* plane = cell.points > 0 && seen.points > 0 ? plane_of(trained, cell.label) : nullptr;
+      const MapPlane* plane = cell.points > 0 && seen.points > 0 ? plane_of(trained, plane_label_of(cell)) : nullptr;
       if (plane == nullptr) continue;
       const double error = seen.height_m - plane->height_m(seen.x_m, seen.y_m);
       squares += error * error;

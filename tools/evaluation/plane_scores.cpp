@@ -223,7 +223,7 @@ PlaneScores score_planes(const Found& found, const Truth& truth) {
     for (const LabelledCell& cell : window) {
       if (!on_ground(cell, truth)) continue;
       of_cells.add(cell.cell.height_m - truth.terrain_height(cell.x_m, cell.y_m));
-      if (cell.cell.label >= 0) of_label[cell.cell.label].push_back(&cell);
+      if (cell.cell.label >= 0) of_label[plane_label_of(cell.cell)].push_back(&cell);
     }
     for (const auto& [label, cells] : of_label) {
       if (cells.size() < least_cells) continue;

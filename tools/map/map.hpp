@@ -33,13 +33,18 @@ struct MapCell {
   double height_m = 0;      ///< mean height
   double variance_m2 = 0;   ///< of the cell's posterior
   int points = 0;           ///< 0: the cell is invalid and every other field means nothing
-  int label = -1;           ///< of the plane of its readings; -1: none
+  int label = -1;           ///< of the surface of its readings, a plane or several along a bend; -1: none
   double probability = 0;   ///< of that label
   int ground = -1;  ///< label of the ground under its middle, where that is told apart from the readings'; -1: not
+  int plane = -1;   ///< label of the plane of its readings, where that is told apart from the surface; -1: not
 };
 
 inline int ground_of(const MapCell& cell) {
   return cell.ground >= 0 ? cell.ground : cell.label;
+}
+
+inline int plane_label_of(const MapCell& cell) {
+  return cell.plane >= 0 ? cell.plane : cell.label;
 }
 
 /// z = z0 + sx x + sy y, in the grid's frame.

@@ -76,15 +76,17 @@ class PipelineOf final : public HostPipeline {
     const Cell& from = dem.cell(dem.slot(i, j));
     if (!from.valid()) return {};
     const auto number = [](Label label) { return label == no_label ? -1 : int{label}; };
+    const auto surface = [&](Label label) { return number(pipeline_.surface(label)); };
     MapCell to;
     to.x_m = dem.origin_x_m() + dem.centroid_x_m(i, from);
     to.y_m = dem.origin_y_m() + dem.centroid_y_m(j, from);
     to.height_m = from.height_m;
     to.variance_m2 = from.variance_m2(pipeline_.settings().segmentation.cell);
     to.points = static_cast<int>(from.points);
-    to.label = number(pipeline_.label(i, j));
+    to.label = surface(pipeline_.label(i, j));
+    to.plane = number(pipeline_.label(i, j));
     to.probability = pipeline_.label_probability(i, j);
-    to.ground = number(pipeline_.ground_label(i, j));
+    to.ground = surface(pipeline_.ground_label(i, j));
     return to;
   }
 

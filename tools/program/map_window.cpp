@@ -91,6 +91,7 @@ Map crop(const Map& map, const Grid& asked) {
       const MapCell& cell = map.cells[map.grid.at(static_cast<int>(first_i) + i, static_cast<int>(first_j) + j)];
       out.cells[asked.at(i, j)] = cell;
       borne.insert(cell.label);
+      borne.insert(plane_label_of(cell));
     }
   }
   std::copy_if(map.planes.begin(), map.planes.end(), std::back_inserter(out.planes),

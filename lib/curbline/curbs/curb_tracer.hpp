@@ -1,9 +1,9 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height, of
-// which curb_maker.hpp makes curbs. Each keeps its number from call to call. Cost: a pass over the window, another
-// where there is a deep drop, 50 look-ups a border point, as many again for one with an empty cell in its gap, 60
-// operations for each border of what is left of a chain and each of its pieces, and 20 for each pair of curbs, and of
-// one and one of the call before.
+// which curb_maker.hpp makes curbs, but for creases where the ground is bent (surfaces.hpp). Each keeps its number from
+// call to call. Cost: a pass over the window, another where there is a deep drop, 50 look-ups a border point, as many
+// again for one with an empty cell in its gap, 60 operations for each border of what is left of a chain and each of its
+// pieces, and 20 for each pair of curbs, and of one and one of the call before.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "curbline/curbs/curb_maker.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/surfaces.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/line_fit.hpp"
 #include "curbline/map/dem.hpp"
@@ -36,6 +37,7 @@ class CurbTracer {
     settings_ = settings;
     curbs_ = 0;
     last_id_ = 0;
+    surfaces_.init();
   }
 
   /// Working memory of one trace().
@@ -45,6 +47,7 @@ class CurbTracer {
     std::array<Curb, limits.curbs> curb;
     std::array<bool, limits.curbs> told;  ///< told_by_longer()
     int curbs;
+    typename Surfaces<limits>::Work surfaces;
   };
 
   /// Finds all curbs of the window, in working memory that is the caller's.
@@ -53,6 +56,8 @@ class CurbTracer {
 
   /// What the last trace() found. Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
+  /// By which planes the last trace() told no crease.
+  const Surfaces<limits>& surfaces() const { return surfaces_; }
 
  private:
   using Border = typename Borders<limits>::Border;
@@ -70,6 +75,7 @@ class CurbTracer {
   std::array<Curb, limits.curbs> curb_{};
   int curbs_ = 0;
   std::uint16_t last_id_ = 0;
+  Surfaces<limits> surfaces_{};
 };
 
 template <Limits limits>
@@ -83,6 +89,8 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
+  const std::span<Curb> found(work.curb.data(), static_cast<std::size_t>(work.curbs));
+  work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, found));
   const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
   tell_once(work, cell_m);
   keep_ids(work, 2.0f * cell_m);
