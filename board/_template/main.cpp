@@ -1,5 +1,6 @@
 // The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; what is
 // your board's is in port.hpp, what is your robot's in robot.hpp.
+#include <algorithm>
 #include <array>
 
 #include "curbline/can/curb_frames.hpp"
@@ -31,7 +32,10 @@ void start() {
   if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
   if (!settings.tilt.fixed && can::shares_ids(tilt_signal()))
     port.stop("the tilt servo sends the ids of curb_frames.hpp");
-  waiting.init(settings.laser, settings.tilt, settings.pose, settings.tilt.max_gap_s);
+  const float longest_wait_s = settings.pose.still
+                                   ? settings.tilt.max_gap_s
+                                   : std::max(settings.tilt.max_gap_s, settings.pose.max_extrapolation_s);
+  waiting.init(settings.laser, settings.tilt, settings.pose, longest_wait_s);
   watch.init(settings.tilt.max_gap_s, settings.tilt.fixed);
   if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
 }

@@ -21,8 +21,9 @@ inline curbline::Settings robot_settings() {
   return settings;
 }
 
-/// Lines that wait for their tilt and pose, and one more: those of (latency + two periods of the servo's frames), one of
-/// which may be lost, or of two periods of poses. Here of 40 lines a second, a servo of 50 Hz or more, and little latency. 4.3 KB each.
+/// Lines that wait for their tilt and pose, and one more: those of (latency + two periods of the servo's frames), one
+/// of which may be lost, or of two periods of poses. Here of 40 lines a second, a servo of 50 Hz or more, and little
+/// latency. 4.3 KB each.
 inline constexpr int queued_lines = 3;
 
 /// What it needs of the way to either side: half its width, and what it strays.

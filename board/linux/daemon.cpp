@@ -44,7 +44,7 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
       tilt_settings_(robot.tilt),
       scan_line_s_(1.0 / robot.scan_rate_hz),
       signals_(signal_descriptor()),
-      pipeline_(tools::make_host_pipeline(robot)) {
+      pipeline_(tools::make_live_pipeline(robot)) {
   inbox_.init(robot, longest_wait_s);
   open_scans(robot, options);
   open_bus(robot, options);

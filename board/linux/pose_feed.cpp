@@ -17,11 +17,20 @@ namespace curbline::daemon {
 using tools::BadInput;
 
 PoseFeed::~PoseFeed() {
+  close();
+}
+
+/// Standard input stays open, for it is not its own.
+void PoseFeed::close() {
   if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
+  descriptor_ = -1;
 }
 
 void PoseFeed::open(const std::string& source) {
   if (source == "-") {
+    struct stat input {};
+    if (::fstat(STDIN_FILENO, &input) == 0 && S_ISREG(input.st_mode))
+      throw BadInput("standard input: a file; expected a pipe, or the file's name");
     descriptor_ = STDIN_FILENO;
     return;
   }
@@ -67,10 +76,15 @@ bool PoseFeed::fill() {
   end_ -= begin_;
   begin_ = 0;
   const ssize_t got = ::read(descriptor_, buffer_.data() + end_, buffer_.size() - end_);
-  if (got < 0) return false;
-  if (got == 0) descriptor_ = -1;  // standard input has ended
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+  if (got <= 0) {  // standard input has ended, or cannot be read
+    close();
+    if (end_ == 0) return false;
+    buffer_[end_++] = '\n';  // of its last line
+    return true;
+  }
   end_ += static_cast<std::size_t>(got);
-  return got > 0;
+  return true;
 }
 
 }  // namespace curbline::daemon

@@ -33,6 +33,7 @@ class PoseFeed {
 
  private:
   bool fill();
+  void close();
   std::optional<std::string_view> next_line();
 
   int descriptor_ = -1;

@@ -11,7 +11,7 @@ namespace {
 
 using tools::BadInput;
 
-constexpr int most_poses = 64;  ///< before other things have their turn
+constexpr int most_poses = 256;  ///< more than the feed keeps; before other things have their turn
 
 bool is_fifo(const std::string& path) {
   std::error_code none;
@@ -38,6 +38,7 @@ void PoseSource::open(const tools::Robot& robot, const std::string& source, bool
   if (!of_log) throw BadInput(source + ": no FIFO; expected one, or -, beside a live scanner");
   log_ = read_log(source);
   is_log_ = true;
+  watch_.init(stale_after_s, true);  // it is there, whatever line comes
 }
 
 void PoseSource::take(tools::HostPipeline& pipeline) {

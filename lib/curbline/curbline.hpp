@@ -17,7 +17,7 @@
 #include "curbline/scan_line.hpp"               // in: ranges
 #include "curbline/intake/rising_times.hpp"     // what comes late; a clock that is set back
 #include "curbline/intake/line_clock.hpp"       // times of lines that bear that of their arrival
-#include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt
+#include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt and pose
 #include "curbline/intake/tilt_watch.hpp"       // whether the servo is alive
 
 // A line to its points.

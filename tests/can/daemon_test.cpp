@@ -158,16 +158,46 @@ TEST_CASE(
   check_alike(last_curbs(cut.lines), end_of(recording()));
 }
 
-/// Of a robot that drives up to a kerb of 10 cm, from 3 m before it to 1 m.
-const Recording& driven() {
+/// A scene through which a robot drives up to a kerb of 10 cm, from 3 m before it to 1 m.
+std::string kerb_ahead() {
   static const TemporaryDirectory directory;
-  static const Recording made(
-      directory.write("kerb.toml",
-                      "[ground]\nz = 0.0\n[[region]]\nrectangle = [3.0, -12.0, 14.0, 12.0]\nz = 0.1\n"
-                      "[robot]\npath = [[0.0, 0.0], [2.0, 0.0]]\nspeed = 0.3\n"),
-      "utm30lx");
+  return directory.write("kerb.toml",
+                         "[ground]\nz = 0.0\n[[region]]\nrectangle = [3.0, -12.0, 14.0, 12.0]\nz = 0.1\n"
+                         "[robot]\npath = [[0.0, 0.0], [2.0, 0.0]]\nspeed = 0.3\n");
+}
+
+const Recording& driven() {
+  static const Recording made(kerb_ahead(), "utm30lx");
   return made;
 }
+
+std::string make_fifo(const Recording& recording) {
+  const std::string path = recording.path("fifo");
+  REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+  return path;
+}
+
+/// Writes a recording's poses into a FIFO, as they come.
+class Localisation {
+ public:
+  Localisation(const std::string& fifo, const Recording& recording)
+      : fifo_(fifo), poses_(recording.path("poses.tum")), next_(poses_.next()) {
+    std::signal(SIGPIPE, SIG_IGN);  // the daemon ends with its log of scan lines, before the poses do
+  }
+  void say_nothing_until(std::int64_t time_ns) {
+    while (next_ && next_->time_ns <= time_ns) next_ = poses_.next();
+  }
+  void write_until(std::int64_t time_ns) {
+    for (; next_ && next_->time_ns <= time_ns; next_ = poses_.next()) write_trajectory_pose(fifo_, *next_);
+    fifo_.flush();
+  }
+  void write(const std::string& text) { fifo_ << text << std::flush; }
+
+ private:
+  std::ofstream fifo_;
+  TrajectoryReader poses_;
+  std::optional<TrajectoryPose> next_;
+};
 
 Words driven_words(const std::string& poses) {
   return {"--can",   "vcan0", "--scans", driven().path("scans.carmen"), "--robot", driven().path("robot.toml"),
@@ -176,35 +206,59 @@ Words driven_words(const std::string& poses) {
 
 TEST_CASE("daemon: a robot that drives through a log has the curbs of replay, every one", "[daemon]") {
   Service service(driven_words(driven().path("poses.tum")));
+  std::this_thread::sleep_for(800ms);  // the log begins with the first frame
   play(driven().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
-  const nlohmann::json status = status_of(service.end());
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
   check_same(distinct_curbs(service.lines()), replayed_curbs(driven().replay()));
   CHECK(last_curbs(service.lines()).size() > 0);
   CHECK(status.at("pipeline").at("lines_dropped") == 0);
   CHECK(status.at("poses").at("state") == "ok");
   CHECK(status.at("poses").at("taken") > 100);
+  CHECK(times_said(outcome.err, "pose") == 0);
+}
+
+TEST_CASE("daemon: lines that wait for poses have their tilt still, whatever the servo's rate", "[daemon]") {
+  const TemporaryDirectory directory;
+  std::string robot = read_file(shipped_robot("utm30lx"));
+  for (const auto& [key, value] : {std::pair{"tilt_rate_hz = 100.0", "tilt_rate_hz = 500.0"},
+                                   std::pair{"pose_rate_hz = 50.0", "pose_rate_hz = 5.0"}}) {
+    const std::size_t at = robot.find(key);
+    REQUIRE(at != std::string::npos);
+    robot.replace(at, std::string(key).size(), value);
+  }
+  const Recording fast(kerb_ahead(), directory.write("fast.toml", robot), {"--duration", "3"});
+  const std::string fifo = make_fifo(fast);
+  Service service(
+      {"--can", "vcan0", "--scans", fast.path("scans.carmen"), "--robot", fast.path("robot.toml"), "--poses", fifo});
+  Localisation localisation(fifo, fast);
+  play(fast.path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double) {
+    localisation.write_until(frame.time_ns);
+    send_well(bus, frame);
+  });
+  const nlohmann::json pipeline = status_of(service.end()).at("pipeline");
+  CHECK(pipeline.at("lines") > 60);
+  CHECK(pipeline.at("beams_without_tilt") == 0);
+  CHECK(pipeline.at("beams_extrapolated") == 0);
 }
 
 TEST_CASE(
     "daemon: poses that a FIFO gives as the robot goes tell where its curbs are; damage and silence are told once",
     "[daemon]") {
-  const std::string fifo = driven().path("fifo");
-  REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+  const std::string fifo = make_fifo(driven());
   SocketCan receiver;
   const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
   REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
   Service service(driven_words(fifo) + Words{"--can-out"});
   CHECK(service.says("no pose since the start; expected lines of time tx ty tz qx qy qz qw from " + fifo + "\n"));
-  std::signal(SIGPIPE, SIG_IGN);  // the daemon ends with its log of scan lines, before the poses do
-  std::ofstream localisation(fifo);
-  TrajectoryReader poses(driven().path("poses.tum"));
-  auto pose = poses.next();
-  localisation << "damaged\n";
+  Localisation localisation(fifo, driven());
+  localisation.write("damaged\n");
   play(driven().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
-    for (; pose && pose->time_ns <= frame.time_ns; pose = poses.next()) {
-      if (since_s < 3.0 || since_s > 3.8) write_trajectory_pose(localisation, *pose);
+    if (since_s > 3.0 && since_s < 3.8) {
+      localisation.say_nothing_until(frame.time_ns);
+    } else {
+      localisation.write_until(frame.time_ns);
     }
-    localisation.flush();
     send_well(bus, frame);
   });
   const Outcome outcome = service.end();

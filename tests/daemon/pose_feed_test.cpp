@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <string>
 #include <string_view>
 
+#include "formats/bad_input.hpp"
 #include "program.hpp"
 
 namespace curbline::daemon {
@@ -45,6 +47,25 @@ class Fifo {
   int writer_ = -1;
 };
 
+/// A descriptor that is standard input for a while.
+class StandardInput {
+ public:
+  explicit StandardInput(int descriptor) : before_(::dup(STDIN_FILENO)) {
+    REQUIRE(descriptor >= 0);
+    REQUIRE(::dup2(descriptor, STDIN_FILENO) == STDIN_FILENO);
+    ::close(descriptor);
+  }
+  ~StandardInput() {
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+  }
+  StandardInput(const StandardInput&) = delete;
+  StandardInput& operator=(const StandardInput&) = delete;
+
+ private:
+  int before_;
+};
+
 TEST_CASE("pose feed: what a line says is the pose, to the nanosecond, and nothing comes before its end") {
   Fifo fifo;
   CHECK_FALSE(fifo.feed.next());
@@ -64,6 +85,45 @@ TEST_CASE("pose feed: what a line says is the pose, to the nanosecond, and nothi
   CHECK(next->time_ns == 1'700'000'001'000'000'000);
   CHECK_FALSE(fifo.feed.next());
   CHECK(fifo.feed.damaged() == 0);
+}
+
+TEST_CASE("pose feed: numbers are read as those of a trajectory's file are") {
+  Fifo fifo;
+  fifo.write("1.70000000025e+09 1e-50 0 0 0 0 0 1\n");
+  const auto pose = fifo.feed.next();
+  REQUIRE(pose);
+  CHECK(pose->time_ns == 1'700'000'000'250'000'000);
+  CHECK(pose->x_m == 0.0f);
+}
+
+TEST_CASE("pose feed: standard input ends with its last line, whether that has an end or not, and is not asked again") {
+  std::array<int, 2> pipe{};
+  REQUIRE(::pipe(pipe.data()) == 0);
+  const StandardInput input(pipe[0]);
+  PoseFeed feed;
+  feed.open("-");
+  const std::string_view text = "1700000000 0 0 0 0 0 0 1\n1700000001 0 0 0 0 0 0 1";
+  REQUIRE(::write(pipe[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+  CHECK(feed.next());
+  CHECK_FALSE(feed.next());
+  ::close(pipe[1]);
+  CHECK(feed.next());
+  CHECK_FALSE(feed.next());
+  CHECK(feed.descriptor() == -1);
+}
+
+TEST_CASE("pose feed: standard input that cannot be read is not asked again, a file is refused") {
+  const tools::testing::TemporaryDirectory directory;
+  {
+    const StandardInput input(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+    PoseFeed feed;
+    feed.open("-");
+    CHECK_FALSE(feed.next());
+    CHECK(feed.descriptor() == -1);
+  }
+  const StandardInput input(::open(directory.write("poses.tum", "").c_str(), O_RDONLY | O_CLOEXEC));
+  PoseFeed feed;
+  CHECK_THROWS_AS(feed.open("-"), tools::BadInput);
 }
 
 TEST_CASE("pose feed: lines that are no poses are counted and passed over, however long") {

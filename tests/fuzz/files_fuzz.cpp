@@ -17,6 +17,7 @@
 #include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
 #include "fuzz/claim.hpp"
+#include "pose_feed.hpp"
 #include "robot/robot.hpp"
 #include "simulator/scene.hpp"
 
@@ -78,10 +79,12 @@ void read_trajectory(const File& file) {
     const float norm2 = p.qx * p.qx + p.qy * p.qy + p.qz * p.qz + p.qw * p.qw;
     claim(std::abs(p.x_m) <= Pose::furthest_m && std::abs(norm2 - 1.0f) < 1e-3f, "the pipeline takes every pose");
   }
-  tools::LineReader live(file.path());
-  while (const auto line = live.next()) {
-    if (const auto pose = tools::parse_pose(*line)) claim(pose->time_ns >= 0, "a time is none before the epoch");
-  }
+}
+void read_live_poses(const File& file) {
+  daemon::PoseFeed feed;
+  feed.open(file.path());
+  while (const auto pose = feed.next()) claim(pose->time_ns >= 0, "a time is none before the epoch");
+  claim(feed.descriptor() < 0, "what has ended is not asked again");
 }
 
 void read_points(const File& file, const char* ending) {
@@ -133,15 +136,16 @@ struct Format {
   const char* name;
   void (*read)(const File&);
 };
-constexpr std::array<Format, 9> formats{{{"carmen", read_carmen},
-                                         {"can_log", read_can_log},
-                                         {"trajectory", read_trajectory},
-                                         {"cloud_text", read_cloud_text},
-                                         {"cloud_pcd", read_cloud_pcd},
-                                         {"regions", read_regions},
-                                         {"dbc", read_dbc},
-                                         {"robot", read_robot},
-                                         {"scene", read_scene}}};
+constexpr std::array<Format, 10> formats{{{"carmen", read_carmen},
+                                          {"can_log", read_can_log},
+                                          {"trajectory", read_trajectory},
+                                          {"live_poses", read_live_poses},
+                                          {"cloud_text", read_cloud_text},
+                                          {"cloud_pcd", read_cloud_pcd},
+                                          {"regions", read_regions},
+                                          {"dbc", read_dbc},
+                                          {"robot", read_robot},
+                                          {"scene", read_scene}}};
 
 const Format& format() {
   const char* name = std::getenv("FORMAT");

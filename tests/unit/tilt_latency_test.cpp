@@ -206,6 +206,18 @@ TEST_CASE(
   CHECK(robot.latency.usual().sd_s == 0.0f);
 }
 
+TEST_CASE("tilt latency: while a drive learns how late a servo has become its deviation says so") {
+  Sweeps robot(true);
+  for (int k = 0; k < 8; ++k) robot.sweep(0.004f);
+  CHECK(robot.latency.usual().sd_s < 0.002f);
+  robot.sweep(0.016f);
+  for (int k = 0; k < 12; ++k) {
+    robot.sweep(0.016f);
+    const TiltLatency::Usual told = robot.latency.usual();
+    CHECK(std::abs(told.offset_s - 0.016f) < 3.0f * told.sd_s);
+  }
+}
+
 TEST_CASE("tilt latency: a step, however well the latency before was known, is followed") {
   const bool drives = GENERATE(false, true);
   const float step_s = GENERATE(-0.020f, 0.015f, 0.030f, 0.045f);

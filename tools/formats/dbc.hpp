@@ -58,7 +58,7 @@ using Dbc = std::vector<DbcMessage>;
 /// signal that comes twice.
 Dbc read_dbc(const std::string& path);
 
-/// A signal as lib/can decodes it, and the unit of its values.
+/// A signal as lib/curbline/can decodes it, and the unit of its values.
 struct DbcTiltSignal {
   can::Signal signal;
   std::string unit;

@@ -20,7 +20,7 @@ const Named* find(const std::vector<Named>& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// One signal of one message, on its way to lib/can.
+/// One signal of one message, on its way to lib/curbline/can.
 struct Search {
   const std::string& path;
   const DbcMessage& message;

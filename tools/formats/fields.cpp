@@ -26,6 +26,15 @@ std::string shown(std::string_view text) {
 
 }  // namespace
 
+std::optional<std::int64_t> parse_time_ns(std::string_view text) {
+  if (const auto exact = candump::parse_time(text)) return exact;
+  // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
+  const auto seconds = parse_number<double>(text);
+  if (!seconds || !is_time_s(*seconds)) return std::nullopt;
+  const double whole = std::floor(*seconds);
+  return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((*seconds - whole) * 1e9);
+}
+
 Fields::Fields(const LineReader& source, std::string_view line, Apart apart)
     : source_(source), rest_(trim(line)), apart_(apart), more_(!rest_.empty()) {}
 
@@ -71,12 +80,9 @@ std::int64_t Fields::whole(std::string_view name, std::int64_t lowest, std::int6
 
 std::int64_t Fields::time_ns(std::string_view name) {
   const std::string_view field = word(name);
-  if (const auto exact = candump::parse_time(field)) return *exact;
-  // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
-  const auto seconds = parse_number<double>(field);
-  if (!seconds || !is_time_s(*seconds)) fail(name, field, "a time in seconds");
-  const double whole = std::floor(*seconds);
-  return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((*seconds - whole) * 1e9);
+  const auto time_ns = parse_time_ns(field);
+  if (!time_ns) fail(name, field, "a time in seconds");
+  return *time_ns;
 }
 
 void Fields::expect_end() const {

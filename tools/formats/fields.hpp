@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,9 @@ namespace curbline::tools {
 inline bool is_time_s(double seconds) {
   return seconds >= 0.0 && seconds < 9.2e9;
 }
+
+/// A time in seconds, as nanoseconds: exact if it is written in decimals. Nothing if the text is none. No heap.
+std::optional<std::int64_t> parse_time_ns(std::string_view text);
 
 class Fields {
  public:

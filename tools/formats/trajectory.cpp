@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "candump/candump.hpp"
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
 #include "formats/parse_number.hpp"
@@ -67,12 +66,12 @@ std::optional<Pose> parse_pose(std::string_view line) {
     const std::string_view word = line.substr(at, end - at);
     at = end;
     if (words == 0) {
-      time_ns = candump::parse_time(word);
+      time_ns = parse_time_ns(word);
       continue;
     }
-    const auto number = parse_number<float>(word);
+    const auto number = parse_number<double>(word);
     if (!number || words > numbers.size()) return std::nullopt;
-    numbers[words - 1] = *number;
+    numbers[words - 1] = static_cast<float>(*number);
   }
   if (!time_ns || words != 1 + numbers.size()) return std::nullopt;
   const auto& [x, y, z, qx, qy, qz, qw] = numbers;

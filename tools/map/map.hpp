@@ -34,7 +34,7 @@ struct MapCell {
   double variance_m2 = 0;   ///< of the cell's posterior
   int points = 0;           ///< 0: the cell is invalid and every other field means nothing
   int label = -1;           ///< of the surface of its readings, a plane or several along a bend; -1: none
-  double probability = 0;   ///< of that label
+  double probability = 0;   ///< of the plane of its readings
   int ground = -1;  ///< label of the ground under its middle, where that is told apart from the readings'; -1: not
   int plane = -1;   ///< label of the plane of its readings, where that is told apart from the surface; -1: not
 };

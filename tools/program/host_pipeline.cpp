@@ -130,6 +130,12 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot) {
   }
 }
 
+std::unique_ptr<HostPipeline> make_live_pipeline(const Robot& robot) {
+  const Settings settings = pipeline_settings(robot);
+  if (fits<live_limits>(settings)) return std::make_unique<PipelineOf<live_limits>>(settings);
+  return make_host_pipeline(robot);
+}
+
 MapCurb to_map_curb(const Curb& curb) {
   return {curb.x0_m,          curb.y0_m,         curb.x1_m,        curb.y1_m,
           curb.height_m,      curb.height_sd_m,  curb.probability, to_string(curb.kind),

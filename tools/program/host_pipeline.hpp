@@ -16,6 +16,8 @@ namespace curbline::tools {
 
 /// Limits of the firmware boards: 40 x 40 cells, 16 planes, 1081 beams.
 inline constexpr Limits board_limits{};
+/// The same for live streams: tilt readings of a servo of 1 kHz, and poses, for as long as a line may wait for either.
+inline constexpr Limits live_limits{.tilt_samples = 1024, .poses = 256};
 /// For larger windows on the host. A leaf a cell is the worst case; one in three is more than streets need.
 inline constexpr Limits wide_limits{.rows = 128,
                                     .cols = 128,
@@ -64,6 +66,8 @@ class HostPipeline {
 std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings);
 /// The same, by the file's name.
 std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot);
+/// The same curbs, of lines that wait for up to a second.
+std::unique_ptr<HostPipeline> make_live_pipeline(const Robot& robot);
 
 MapCurb to_map_curb(const Curb& curb);
 

@@ -1,6 +1,6 @@
 // Which planes follow one bent surface (bend.hpp). Planes stay what they are, so that heights at kerbs are those of the
 // ground beside them; a surface is a name that they share, and no crease is told between its planes. Cost: a pass over
-// a quarter of the window where planes meet at a crease, and 120 operations a crease.
+// a quarter of the window where planes meet at a crease, and 120 operations a crease and one for each curb.
 #pragma once
 
 #include <algorithm>

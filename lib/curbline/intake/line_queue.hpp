@@ -50,7 +50,8 @@ class LineQueue {
 
  public:
   /// Empties the queue. A line waits for max_wait_s at most, however seldom lines come: TiltSettings::max_gap_s is a
-  /// good choice, as beams in a longer gap have no angle.
+  /// good choice, as beams in a longer gap have no angle, PoseSettings::max_extrapolation_s of a robot that drives, if
+  /// that is longer. For as long the pipeline must keep readings and poses: Limits::tilt_samples, Limits::poses.
   void init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose, float max_wait_s);
 
   /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length

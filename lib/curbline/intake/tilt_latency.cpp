@@ -69,6 +69,7 @@ void TiltLatency::turn_driving() {
   auto& p = covariance_;
   p[earlier][earlier] = p[now][now];
   p[constant][earlier] = p[earlier][constant] = p[constant][now];
+  other_.offset_s = offset_s_;
   offset_s_ = constant_s_;
   p[now][now] = p[constant][constant] + square(sweep_share) * prior_variance_s2_;
   p[constant][now] = p[now][constant] = p[constant][constant];
@@ -178,11 +179,16 @@ float TiltLatency::sd_s() const {
 
 /// The constant of a drive; of a robot that stands the mean of both directions, each by its variance. Where sweeps are
 /// as different as those of a drive may be, each differs from it by lot; of two that were taken to be alike so do both.
+/// Where the mean of a drive's last two, one of each direction, lies farther from the constant than that the servo's
+/// latency may have changed, and the constant lags behind.
 TiltLatency::Usual TiltLatency::usual() const {
   const auto& p = covariance_;
   if (!turned_ || known(now)) return {offset_s_, sd_s()};
-  if (drives_) return {constant_s_, square_root(p[constant][constant])};
   const float by_lot_s2 = square(sweep_share) * prior_variance_s2_;
+  if (drives_) {
+    const float off_s2 = square(0.5f * (offset_s_ + other_.offset_s) - constant_s_);
+    return {constant_s_, square_root(p[constant][constant] + std::max(0.0f, off_s2 - 0.5f * by_lot_s2))};
+  }
   const float of_this_s2 = p[now][now] + by_lot_s2;
   const float of_other_s2 = (known(earlier) ? other_.variance_s2 : p[now][now]) + by_lot_s2;
   const float share = of_other_s2 / (of_this_s2 + of_other_s2);

@@ -71,7 +71,7 @@ class TiltLatency {
   /// Of the servo: how much later than TiltSettings::latency_s it is in all. A sweep's own offset also takes up what
   /// else has it lie off the ground before, a mount that leans by a milliradian, ranges that are short, a first sweep
   /// that was late by another time: one sweep of that is too late and the next, of the other direction, as much too
-  /// early.
+  /// early. For a sweep after the servo's latency has changed it is that of before and after.
   struct Usual {
     float offset_s, sd_s;
   };
@@ -116,7 +116,7 @@ class TiltLatency {
 
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
   std::array<std::array<float, states>, states> covariance_{};
-  Known other_{};  ///< standing: of the last sweep of the other direction
+  Known other_{};  ///< of the last sweep of the other direction; driving, its offset alone
 
   Sums seen_{};              ///< of the line in hand: what agrees with what is known ...
   Sums stepped_{};           ///< ... and what would after a step alone

@@ -1,6 +1,6 @@
 // Whether the tilt servo is alive: says once that it went silent and once that it came back, so that a daemon or a
-// board can tell its user. Beside the way of the data: the pipeline drops what lies beyond its bound on extrapolation
-// by itself.
+// board can tell its user. A localisation likewise, with poses for readings. Beside the way of the data: the pipeline
+// drops what lies beyond its bound on extrapolation by itself.
 //
 // No clock: times come in, of one time base. update() takes constant time and belongs to one context; what it asks for,
 // the newest reading's time, may come from an interrupt as long as it is read whole.
