@@ -12,7 +12,7 @@ using lms200::turn_ns;
 
 constexpr std::int64_t ms = 1'000'000, s = 1000 * ms;
 constexpr std::int64_t host_ahead_ns = 1'700'000'000 * s;  // of the steady clock
-constexpr std::uint16_t millimetres = 1 << 14, partial = 1 << 13, other_unit = 2 << 14;
+constexpr unsigned millimetres = 1u << 14, partial = 1u << 13, other_unit = 2u << 14;
 constexpr int reflectivity = 0x3F;  // of the measuring modes
 
 scanner::Now at(std::int64_t steady_ns) {
@@ -163,7 +163,7 @@ TEST_CASE("lms200: the measuring mode says which bits of a value are its range, 
 }
 
 TEST_CASE("lms200: scans of a kind that is not read are told as such, those of a wrong length are counted") {
-  for (const unsigned flags : {millimetres | partial, +other_unit}) {
+  for (const unsigned flags : {millimetres | partial, other_unit}) {
     Sick sick;
     sick.talk();
     CHECK_FALSE(sick.hear(scan_of(181, 0x10, flags)));

@@ -71,7 +71,7 @@ TEST_CASE("candump: the direction that newer versions append is passed over") {
 
 TEST_CASE("candump: blanks at the end are passed over, however many") {
   for (const std::string frame : {"123#11", "123#11 R", "123#R", "123#", "123##3"}) {
-    for (const std::size_t blanks : {1, 2, 7}) {
+    for (const std::size_t blanks : {1u, 2u, 7u}) {
       const std::string text = "(0.0) can0 " + frame, with_blanks = text + std::string(blanks, ' ');
       const auto line = candump::parse_line(with_blanks);
       INFO(text << " and " << blanks);

@@ -82,11 +82,10 @@ std::vector<std::array<double, 3>> marginals_by_enumeration(const Tiny& tiny) {
   };
   std::vector<Pair> pairs;
   for_each_link(tiny.dem, tiny.settings.labels.link_reach, [&](const Link& link) {
-    const auto index = [&](std::size_t slot) {
-      return static_cast<std::size_t>(
-          std::find_if(tiny.sites.begin(), tiny.sites.end(),
-                       [&](const Site& s) { return static_cast<std::size_t>(tiny.dem.slot(s.i, s.j)) == slot; }) -
-          tiny.sites.begin());
+    const auto index = [&](int slot) {
+      return static_cast<std::size_t>(std::find_if(tiny.sites.begin(), tiny.sites.end(),
+                                                   [&](const Site& s) { return tiny.dem.slot(s.i, s.j) == slot; }) -
+                                      tiny.sites.begin());
     };
     pairs.push_back(
         {index(link.from), index(link.to), static_cast<double>(tiny.settings.labels.coupling) / link.distance});
