@@ -28,17 +28,16 @@ std::vector<Pose> read_log(const std::string& path) {
 }  // namespace
 
 void PoseSource::open(const tools::Robot& robot, const std::string& source, bool of_log, float stale_after_s) {
-  watch_.init(stale_after_s, robot.pose.still);
+  const bool live = source == "-" || is_fifo(source);
+  watch_.init(stale_after_s, robot.pose.still || !live);  // a log is there, whatever line comes
   if (robot.pose.still) return;
   if (source.empty()) {
     throw BadInput(robot.file + ": the robot drives; expected --poses, or pose.still = true");
   }
   name_ = source == "-" ? "standard input" : source;
-  if (source == "-" || is_fifo(source)) return feed_.open(source);
+  if (live) return feed_.open(source);
   if (!of_log) throw BadInput(source + ": no FIFO; expected one, or -, beside a live scanner");
   log_ = read_log(source);
-  is_log_ = true;
-  watch_.init(stale_after_s, true);  // it is there, whatever line comes
 }
 
 void PoseSource::take(tools::HostPipeline& pipeline) {

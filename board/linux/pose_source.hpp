@@ -32,7 +32,9 @@ class PoseSource {
   void take_until(std::int64_t last_beam_ns, tools::HostPipeline& pipeline);
 
   /// NewestTimes::pose_ns. Of a log all are there, whatever line comes.
-  std::int64_t newest_ns() const { return is_log_ ? INT64_MAX : taken_ == 0 ? NewestTimes::none : newest_.time_ns; }
+  std::int64_t newest_ns() const {
+    return !log_.empty() ? INT64_MAX : taken_ == 0 ? NewestTimes::none : newest_.time_ns;
+  }
   /// The newest; of a robot that stands, the map's origin.
   const Pose& newest() const { return newest_; }
 
@@ -43,8 +45,7 @@ class PoseSource {
   void give(const Pose& pose, tools::HostPipeline& pipeline);
 
   PoseFeed feed_;
-  bool is_log_ = false;
-  std::vector<Pose> log_;
+  std::vector<Pose> log_;  ///< empty if they come live
   std::size_t next_in_log_ = 0;
   std::string name_;
   TiltWatch watch_;  ///< a servo or a localisation: one silence is as another

@@ -107,6 +107,16 @@ bool fits(const Settings& settings) {
          settings.laser.beams <= limits.beams;
 }
 
+/// What is wrong with the settings is wrong with the robot's file.
+template <typename Make>
+std::unique_ptr<HostPipeline> of_robot(const Robot& robot, Make&& make) {
+  try {
+    return make(pipeline_settings(robot));
+  } catch (const BadInput& error) {
+    throw BadInput(robot.file + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
@@ -123,17 +133,14 @@ std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings) {
 }
 
 std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot) {
-  try {
-    return make_host_pipeline(pipeline_settings(robot));
-  } catch (const BadInput& error) {
-    throw BadInput(robot.file + ": " + error.what());
-  }
+  return of_robot(robot, [](const Settings& settings) { return make_host_pipeline(settings); });
 }
 
 std::unique_ptr<HostPipeline> make_live_pipeline(const Robot& robot) {
-  const Settings settings = pipeline_settings(robot);
-  if (fits<live_limits>(settings)) return std::make_unique<PipelineOf<live_limits>>(settings);
-  return make_host_pipeline(robot);
+  return of_robot(robot, [](const Settings& settings) -> std::unique_ptr<HostPipeline> {
+    if (fits<live_limits>(settings)) return std::make_unique<PipelineOf<live_limits>>(settings);
+    return make_host_pipeline(settings);
+  });
 }
 
 MapCurb to_map_curb(const Curb& curb) {
