@@ -6,7 +6,7 @@
 #include "curbline/can/curb_frames.hpp"
 #include "curbline/can/tilt_decoder.hpp"
 #include "curbline/intake/line_queue.hpp"
-#include "curbline/intake/tilt_watch.hpp"
+#include "curbline/intake/source_watch.hpp"
 #include "curbline/pipeline.hpp"
 #include "port.hpp"
 #include "robot.hpp"
@@ -21,7 +21,7 @@ Port port;
 curbline::Pipeline<limits> pipeline;
 curbline::LineQueue<limits, queued_lines> waiting;  // whose last beams have no tilt or pose yet
 can::TiltDecoder decoder;
-curbline::TiltWatch watch;
+curbline::SourceWatch watch;
 curbline::NewestTimes newest;
 curbline::Pose pose;            // the newest; of a robot that stands, the map's origin
 std::uint8_t curbs_told = 255;  // the first CurbAhead has 0

@@ -123,7 +123,7 @@ void CurbServer::send_to(int client, std::string_view line) {
   if (socket < 0) return;
   const ssize_t sent = ::send(socket, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent == static_cast<ssize_t>(line.size())) return;
-  ++(sent >= 0 || errno == EAGAIN ? counters_.too_slow : counters_.gone);
+  if (sent >= 0 || errno == EAGAIN) ++counters_.too_slow;  // else it has gone by itself
   drop(client);
 }
 

@@ -14,7 +14,7 @@ namespace curbline::daemon {
 
 /// Only grow.
 struct ServerCounters {
-  std::uint32_t accepted = 0, gone = 0;
+  std::uint32_t accepted = 0;
   std::uint32_t too_slow = 0;  ///< dropped
   std::uint32_t refused = 0;   ///< more than max_clients
 };

@@ -237,8 +237,8 @@ void Daemon::look_around() {
   const std::int64_t now_ns = scanner::steady_now_ns();
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + look_period_ns;
-  const TiltEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
-  const TiltEvent poses = poses_.update(now_ns);
+  const SourceEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
+  const SourceEvent poses = poses_.update(now_ns);
   const Report status = make_report();
   troubles_.tell(status, tilt, poses, now_ns);
   const std::string_view state = state_of(status);

@@ -17,7 +17,7 @@
 
 #include "curb_server.hpp"
 #include "curbline/can/tilt_decoder.hpp"
-#include "curbline/intake/tilt_watch.hpp"
+#include "curbline/intake/source_watch.hpp"
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
 #include "pose_source.hpp"
@@ -87,14 +87,14 @@ class Daemon {
   socketcan::SocketCan bus_;
   can::TiltDecoder tilt_decoder_;
   can::TiltDecoderCounters tilt_counters_{};
-  TiltWatch tilt_watch_;
+  SourceWatch tilt_watch_;
   std::string wanted_tilt_;  ///< the first frame, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
-  std::int64_t newest_tilt_ns_ = NewestTimes::none;         ///< as the pipeline has it
-  std::int64_t newest_frame_ns_ = 0;                        ///< when the kernel received it
-  std::int64_t newest_arrival_ns_ = TiltWatch::no_reading;  ///< when it came here, steady
-  bool by_frame_ = false;                                   ///< lines are taken because a frame came
+  std::int64_t newest_tilt_ns_ = NewestTimes::none;           ///< as the pipeline has it
+  std::int64_t newest_frame_ns_ = 0;                          ///< when the kernel received it
+  std::int64_t newest_arrival_ns_ = SourceWatch::no_reading;  ///< when it came here, steady
+  bool by_frame_ = false;                                     ///< lines are taken because a frame came
 
   PoseSource poses_;
   std::optional<ScanLog> log_;

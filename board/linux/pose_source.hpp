@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "curbline/intake/line_queue.hpp"
-#include "curbline/intake/tilt_watch.hpp"
+#include "curbline/intake/source_watch.hpp"
 #include "curbline/pose.hpp"
 #include "pose_feed.hpp"
 #include "program/host_pipeline.hpp"
@@ -21,7 +21,7 @@ namespace curbline::daemon {
 class PoseSource {
  public:
   /// `source`: a FIFO or "-"; where scan lines are those of a log a trajectory, too. Nothing of a robot that stands.
-  /// stale_after_s as of TiltWatch. Throws BadInput.
+  /// stale_after_s as of SourceWatch. Throws BadInput.
   void open(const tools::Robot& robot, const std::string& source, bool of_log, float stale_after_s);
 
   int descriptor() const { return feed_.descriptor(); }  ///< for poll(2), POLLIN; -1 if there is nothing to wait for
@@ -38,7 +38,7 @@ class PoseSource {
   /// The newest; of a robot that stands, the map's origin.
   const Pose& newest() const { return newest_; }
 
-  TiltEvent update(std::int64_t now_ns) { return watch_.update(newest_arrival_ns_, now_ns); }
+  SourceEvent update(std::int64_t now_ns) { return watch_.update(newest_arrival_ns_, now_ns); }
   PoseReport report() const;
 
  private:
@@ -48,10 +48,10 @@ class PoseSource {
   std::vector<Pose> log_;  ///< empty if they come live
   std::size_t next_in_log_ = 0;
   std::string name_;
-  TiltWatch watch_;  ///< a servo or a localisation: one silence is as another
+  SourceWatch watch_;  ///< a servo or a localisation: one silence is as another
   Pose newest_{};
   std::uint64_t taken_ = 0;
-  std::int64_t newest_arrival_ns_ = TiltWatch::no_reading;  ///< steady
+  std::int64_t newest_arrival_ns_ = SourceWatch::no_reading;  ///< steady
 };
 
 }  // namespace curbline::daemon

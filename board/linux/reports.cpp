@@ -5,8 +5,8 @@
 namespace curbline::daemon {
 namespace {
 
-std::string_view word_of(TiltState state) {
-  return state == TiltState::ok ? "ok" : state == TiltState::stale ? "stale" : "never";
+std::string_view word_of(SourceState state) {
+  return state == SourceState::ok ? "ok" : state == SourceState::stale ? "stale" : "never";
 }
 
 std::string_view word_of(socketcan::LinkState state) {
@@ -25,7 +25,7 @@ void put(JsonLine& json, std::string_view key, std::uint64_t count) {
   json.key(key).whole(static_cast<std::int64_t>(count));
 }
 
-void put_watch(JsonLine& json, const TiltWatch& watch) {
+void put_watch(JsonLine& json, const SourceWatch& watch) {
   json.key("state").text(word_of(watch.state()));
   put(json, "times_lost", watch.times_lost());
   json.key("longest_silence_s").real(1e-9 * static_cast<double>(watch.longest_silence_ns()));
@@ -141,11 +141,11 @@ void put_curb(JsonLine& json, const Curb& c) {
 std::string_view state_of(const Report& s) {
   if (s.bus != nullptr && s.bus->link() != socketcan::LinkState::up) return "can_down";
   if (s.bus != nullptr && s.bus->bus() == socketcan::BusState::off) return "bus_off";
-  if (s.tilt != nullptr && s.tilt->state() != TiltState::ok) {
-    return s.tilt->state() == TiltState::stale ? "tilt_stale" : "tilt_missing";
+  if (s.tilt != nullptr && s.tilt->state() != SourceState::ok) {
+    return s.tilt->state() == SourceState::stale ? "tilt_stale" : "tilt_missing";
   }
-  if (s.poses.watch != nullptr && s.poses.watch->state() != TiltState::ok) {
-    return s.poses.watch->state() == TiltState::stale ? "poses_stale" : "poses_missing";
+  if (s.poses.watch != nullptr && s.poses.watch->state() != SourceState::ok) {
+    return s.poses.watch->state() == SourceState::stale ? "poses_stale" : "poses_missing";
   }
   if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
   return "ok";

@@ -10,8 +10,8 @@
 #include "curbline/counters.hpp"
 #include "curbline/curbs/curb.hpp"
 #include "curbline/intake/line_queue.hpp"
+#include "curbline/intake/source_watch.hpp"
 #include "curbline/intake/tilt_latency.hpp"
-#include "curbline/intake/tilt_watch.hpp"
 #include "latency_histogram.hpp"
 #include "scanner_thread.hpp"
 #include "socketcan/socketcan.hpp"
@@ -20,8 +20,8 @@ namespace curbline::daemon {
 
 /// Of a robot that drives.
 struct PoseReport {
-  const TiltWatch* watch = nullptr;  ///< nullptr: it stands
-  std::string_view wanted{};         ///< from where they come, for the user
+  const SourceWatch* watch = nullptr;  ///< nullptr: it stands
+  std::string_view wanted{};           ///< from where they come, for the user
   std::uint64_t taken = 0, damaged = 0;
 };
 
@@ -29,7 +29,7 @@ struct PoseReport {
 struct Report {
   std::int64_t time_ns = 0;
   double uptime_s = 0, scan_line_s = 0;
-  const TiltWatch* tilt = nullptr;
+  const SourceWatch* tilt = nullptr;
   std::string_view wanted_tilt{};  ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;

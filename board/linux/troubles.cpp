@@ -17,24 +17,24 @@ constexpr Told localisation{"no pose since the start; expected lines of time tx 
                             "the localisation gives poses", "the localisation is silent",
                             "the localisation gives poses again"};
 
-void tell_event(TiltEvent event, const Told& told, std::string_view wanted) {
+void tell_event(SourceEvent event, const Told& told, std::string_view wanted) {
   switch (event) {
-    case TiltEvent::none:
+    case SourceEvent::none:
       return;
-    case TiltEvent::missing:
+    case SourceEvent::missing:
       return say(told.missing, wanted);
-    case TiltEvent::first:
+    case SourceEvent::first:
       return say(told.first);
-    case TiltEvent::lost:
+    case SourceEvent::lost:
       return say(told.lost);
-    case TiltEvent::recovered:
+    case SourceEvent::recovered:
       return say(told.recovered);
   }
 }
 
 }  // namespace
 
-void Troubles::tell(const Report& status, TiltEvent tilt, TiltEvent poses, std::int64_t now_ns) {
+void Troubles::tell(const Report& status, SourceEvent tilt, SourceEvent poses, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
   tell_event(tilt, servo, status.wanted_tilt);
   tell_event(poses, localisation, status.poses.wanted);

@@ -12,7 +12,7 @@ namespace curbline::daemon {
 class Troubles {
  public:
   /// Compares with what was told. Call some times a second. `now_ns`: of any clock.
-  void tell(const Report& status, TiltEvent tilt, TiltEvent poses, std::int64_t now_ns);
+  void tell(const Report& status, SourceEvent tilt, SourceEvent poses, std::int64_t now_ns);
 
  private:
   void tell_link(const socketcan::SocketCan& bus);

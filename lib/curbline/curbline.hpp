@@ -18,7 +18,7 @@
 #include "curbline/intake/rising_times.hpp"     // what comes late; a clock that is set back
 #include "curbline/intake/line_clock.hpp"       // times of lines that bear that of their arrival
 #include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt and pose
-#include "curbline/intake/tilt_watch.hpp"       // whether the servo is alive
+#include "curbline/intake/source_watch.hpp"     // whether the servo and the localisation are alive
 
 // A line to its points.
 #include "curbline/intake/extrapolation.hpp"    // how angles and poses go on beyond the newest

@@ -296,7 +296,7 @@ TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is we
   CHECK(frames.size() > 200);
   for (const can::Frame& frame : frames) {
     can::CurbStatus told;
-    if (can::read_curb_status(frame, told)) CHECK(told.tilt == TiltState::ok);
+    if (can::read_curb_status(frame, told)) CHECK(told.tilt == SourceState::ok);
   }
 }
 
@@ -336,7 +336,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   CHECK(times_said(outcome.err, "no tilt frame since the start") == 1);
   CHECK(times_said(outcome.err, "the tilt servo is silent") == 1);
   CHECK(times_said(outcome.err, "the tilt servo reports again") == 1);
-  std::set<TiltState> sent;
+  std::set<SourceState> sent;
   std::optional<CurbAhead> ahead;
   std::uint8_t counter = 255;
   int taken = 0, dropped = 0;
@@ -356,7 +356,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   }
   CHECK(status.at("pipeline").at("lines") == taken);
   CHECK(status.at("pipeline").at("lines_dropped") == dropped);
-  CHECK(sent.count(TiltState::stale) == 1);
+  CHECK(sent.count(SourceState::stale) == 1);
   check_alike(last_curbs(service.lines()), end_of(recording()));
 }
 

@@ -72,7 +72,7 @@ TEST_CASE("reports: the fullest status fits") {
     for (int k = 0; k < 100; ++k) full.add(static_cast<std::int64_t>(LatencyHistogram::end_us(i) - 1) * 1000);
   }
   Report status;
-  const TiltWatch watch;
+  const SourceWatch watch;
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
   const auto bus = std::make_unique<socketcan::SocketCan>();
@@ -100,7 +100,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   s.curbs = 16, s.curbs_left_out = 17;
   s.clients = 21, s.server.accepted = 22, s.server.too_slow = 23, s.server.refused = 24;
   s.heap_calls_before = 31, s.heap_calls_since = 32;
-  const TiltWatch watch;
+  const SourceWatch watch;
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{
       .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
@@ -158,7 +158,7 @@ TEST_CASE("reports: the state is the worst that is the matter") {
   ScannerState scanner;
   s.scanner = &scanner;
   CHECK(state_of(s) == "scanner_lost");
-  TiltWatch watch;
+  SourceWatch watch;
   watch.init(0.5f, false);
   s.tilt = &watch;
   CHECK(state_of(s) == "tilt_missing");

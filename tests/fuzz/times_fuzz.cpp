@@ -46,10 +46,10 @@ void queue(Numbers& numbers) {
   if (bad_setting(settings, limits) != nullptr) return;
   LineQueue<limits, 3> queue;
   queue.init(settings.laser, settings.tilt, settings.pose, numbers.number(0.0f, 10.0f));
-  TiltWatch watch;
+  SourceWatch watch;
   watch.init(numbers.number(0.0f, 10.0f), settings.tilt.fixed);
   constexpr std::array<float, limits.beams + 1> ranges_m{};
-  std::int64_t now_ns = 0, tilt_ns = TiltWatch::no_reading, pose_ns = tilt_ns;
+  std::int64_t now_ns = 0, tilt_ns = SourceWatch::no_reading, pose_ns = tilt_ns;
   while (!numbers.used_up()) {
     now_ns += numbers.whole(0, 100'000'000);
     if (numbers.flag()) tilt_ns = now_ns + numbers.whole(-100'000'000, 100'000'000);

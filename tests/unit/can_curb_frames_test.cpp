@@ -90,7 +90,7 @@ TEST_CASE("curb frames: a curb without a place is none, an unknown sd the larges
 }
 
 TEST_CASE("curb frames: the status comes back, its counter of 8 bits and at most 255 curbs") {
-  for (const TiltState state : {TiltState::never, TiltState::ok, TiltState::stale}) {
+  for (const SourceState state : {SourceState::never, SourceState::ok, SourceState::stale}) {
     const Frame f = curb_status_frame({200, state, 300});
     CHECK(f.id == 0x6A1);
     CHECK(f.length == 3);

@@ -111,8 +111,8 @@ bool read_curb_ahead(const Frame& frame, std::optional<CurbAhead>& curb) {
 
 bool read_curb_status(const Frame& frame, CurbStatus& status) {
   const auto state = static_cast<int>(get(tilt, frame));
-  if (!has(curbs, frame) || state > static_cast<int>(TiltState::stale)) return false;
-  status = {static_cast<std::uint8_t>(get(counter, frame)), static_cast<TiltState>(state),
+  if (!has(curbs, frame) || state > static_cast<int>(SourceState::stale)) return false;
+  status = {static_cast<std::uint8_t>(get(counter, frame)), static_cast<SourceState>(state),
             static_cast<std::uint32_t>(get(curbs, frame))};
   return true;
 }

@@ -17,7 +17,7 @@
 // CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
 //   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver that sees it
 //                              stand, or sees no CurbStatus, does not trust CurbAhead
-//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/tilt_watch.hpp
+//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/source_watch.hpp
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //
 // Values out of range are clamped; NaN of a distance, place or height gives "nothing ahead". Pure, no state: may be
@@ -31,7 +31,7 @@
 #include "curbline/can/frame.hpp"
 #include "curbline/can/signal.hpp"
 #include "curbline/curbs/curb_ahead.hpp"
-#include "curbline/intake/tilt_watch.hpp"
+#include "curbline/intake/source_watch.hpp"
 
 namespace curbline::can {
 
@@ -39,7 +39,7 @@ inline constexpr std::uint32_t curb_ahead_id = 0x6A0, curb_status_id = 0x6A1;
 
 struct CurbStatus {
   std::uint8_t counter = 0;
-  TiltState tilt = TiltState::never;
+  SourceState tilt = SourceState::never;
   std::uint32_t curbs = 0;
 };
 
