@@ -19,7 +19,7 @@ void add_simulate(CLI::App& app) {
   auto o = std::make_shared<Options>();
   command
       ->add_option("--scene", o->scene,
-                   "a scene that ships, by its name below, a scene file (TOML), or streets drawn by lot: random:SEED, "
+                   "a scene that ships, by its name below, a scene file (TOML), or a random street: random:SEED, "
                    "random-drive:SEED")
       ->check(not_empty("a scene"))
       ->required();

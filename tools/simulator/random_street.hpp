@@ -1,4 +1,4 @@
-// Streets drawn by lot, for measuring accuracy on more than the scenes that ship. The same seed gives the same text.
+// Random streets, for measuring accuracy on more than the scenes that ship. The same seed gives the same text.
 //
 // The window of a robot that stands, x in [0, 4] m and y in [-2, 2] m, is crossed by a curb that has any direction; the
 // robot stands on either side of it. One street in three is each of: straight, curved, a side road that opens into the

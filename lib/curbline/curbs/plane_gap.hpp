@@ -29,7 +29,7 @@ struct CrossedCell {
 ///   - a sloped face as densely seen as the planes;
 ///   - a gap without points, of which the cells on both sides hold a part: their centroids tell how much, and half of
 ///     it is counted.
-/// A centroid is not bounded: what a few points lie off by lot averages out.
+/// A centroid is not bounded: what a few points lie off at random averages out.
 float before_middle(const CrossedCell& cell);
 
 template <Limits limits>

@@ -64,7 +64,7 @@ void TiltLatency::turn_standing() {
   p[earlier][earlier] = p[now][earlier] = p[earlier][now] = turned_ ? 0.0f : prior_variance_s2_;
 }
 
-/// The ground that the last sweep has mapped is that before the new one, which differs from the constant by lot.
+/// The ground that the last sweep has mapped is that before the new one, which differs from the constant at random.
 void TiltLatency::turn_driving() {
   auto& p = covariance_;
   p[earlier][earlier] = p[now][now];
@@ -178,9 +178,9 @@ float TiltLatency::sd_s() const {
 }
 
 /// The constant of a drive; of a robot that stands the mean of both directions, each by its variance. Where sweeps are
-/// as different as those of a drive may be, each differs from it by lot; of two that were taken to be alike so do both.
-/// Where the mean of a drive's last two, one of each direction, lies farther from the constant than that the servo's
-/// latency may have changed, and the constant lags behind.
+/// as different as those of a drive may be, each differs from it at random; of two that were taken to be alike so do
+/// both. Where the mean of a drive's last two, one of each direction, lies farther from the constant than that the
+/// servo's latency may have changed, and the constant lags behind.
 TiltLatency::Usual TiltLatency::usual() const {
   const auto& p = covariance_;
   if (!turned_ || known(now)) return {offset_s_, sd_s()};
