@@ -1,8 +1,8 @@
-// Table of contents, in the order of the data's way. A user needs pipeline.hpp; the rest is there to be read.
+// Table of contents, in the order of the data's way. A user needs pipeline.hpp alone; the rest is listed for readers.
 #pragma once
 
 // clang-format off
-// What all share.
+// Shared by all.
 #include "curbline/limits.hpp"                  // sizes, at compile time
 #include "curbline/settings.hpp"                // geometry, noise and tuning, at run time
 #include "curbline/status.hpp"                  // how a call ended
@@ -16,28 +16,28 @@
 // Before the pipeline.
 #include "curbline/scan_line.hpp"               // in: ranges
 #include "curbline/intake/rising_times.hpp"     // what comes late; a clock that is set back
-#include "curbline/intake/line_clock.hpp"       // times of lines that bear that of their arrival
+#include "curbline/intake/line_clock.hpp"       // times of lines that are stamped on arrival
 #include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt and pose
 #include "curbline/intake/source_watch.hpp"     // whether the servo and the localisation are alive
 
 // A line to its points.
-#include "curbline/intake/extrapolation.hpp"    // how angles and poses go on beyond the newest
+#include "curbline/intake/extrapolation.hpp"    // angles and poses beyond the newest
 #include "curbline/tilt_reading.hpp"            // in: an angle of the servo
 #include "curbline/intake/tilt_track.hpp"       // its readings over time, from an interrupt
 #include "curbline/intake/tilt_snapshot.hpp"    // the tilt at each beam
-#include "curbline/intake/sweep_turns.hpp"      // where the servo turns round
-#include "curbline/intake/tilt_latency.hpp"     // how late its readings are, found on the way
+#include "curbline/intake/sweep_turns.hpp"      // where the servo reverses
+#include "curbline/intake/tilt_latency.hpp"     // how late its readings are, estimated on line
 #include "curbline/pose.hpp"                    // in: a pose of the robot
 #include "curbline/intake/pose_track.hpp"       // poses over time, where they jump and step
 #include "curbline/intake/pose_offset.hpp"      // whether a step was the robot's or its localisation's
 #include "curbline/point.hpp"                   // a point, and from where it is seen
 #include "curbline/intake/line_projection.hpp"  // beams to points with variance
-#include "curbline/intake/map_comparison.hpp"   // what a line says against the map
+#include "curbline/intake/map_comparison.hpp"   // a line compared with the map
 #include "curbline/intake/line_intake.hpp"      // all of these together
 
 // Points to cells.
 #include "curbline/map/cell.hpp"                // normal-inverse-gamma posterior of a cell
-#include "curbline/map/viewpoints.hpp"          // from where a laser that drives has seen the cells
+#include "curbline/map/viewpoints.hpp"          // from where a driving laser has seen the cells
 #include "curbline/map/window.hpp"              // where cells lie, in the map and in memory
 #include "curbline/map/dem.hpp"                 // what is in them
 
@@ -47,45 +47,45 @@
 #include "curbline/regions/region_graph.hpp"    // merging by evidence
 #include "curbline/regions/gain_heap.hpp"       // which merge gains most
 #include "curbline/plane.hpp"                   // moments, fit
-#include "curbline/regions/plane_evidence.hpp"  // that points lie on one plane, or on two that are parted
+#include "curbline/regions/plane_evidence.hpp"  // whether points lie on one plane, or on two
 
 // Regions to planes that keep their labels.
 #include "curbline/planes/region_ranking.hpp"   // which regions become planes, under which labels
-#include "curbline/planes/clean_fit.hpp"        // fit to cells that hold nothing else
-#include "curbline/planes/obstacles.hpp"        // which planes are of what stands on the ground
+#include "curbline/planes/clean_fit.hpp"        // fit to cells that hold one surface only
+#include "curbline/planes/obstacles.hpp"        // which planes belong to obstacles
 #include "curbline/planes/run.hpp"              // cells of one plane in line, as the laser sees them
-#include "curbline/planes/strip_tally.hpp"      // what these tell of a plane
+#include "curbline/planes/strip_tally.hpp"      // what they say about a plane
 #include "curbline/planes/ground.hpp"           // which planes are ground
 #include "curbline/planes/plane_mixture.hpp"    // all of these together
-#include "curbline/planes/common_noise.hpp"     // what cells about their planes err alike
+#include "curbline/planes/common_noise.hpp"     // noise that neighbouring cells share
 
 // Labels of cells.
-#include "curbline/labels/planes_near_by.hpp"   // which planes a cell may bear
+#include "curbline/labels/planes_near_by.hpp"   // candidate planes of a cell
 #include "curbline/labels/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/labels/label_field.hpp"      // belief propagation
 
 // Labels to curbs.
-#include "curbline/curbs/curb_stages.hpp"       // what curbs are found in
+#include "curbline/curbs/curb_stages.hpp"       // the stages that curbs are found in
 #include "curbline/curbs/cell_line.hpp"         // a row or column
 #include "curbline/curbs/beside.hpp"            // the ground beside a border
-#include "curbline/curbs/borders.hpp"           // where labels change, and chains of such places
+#include "curbline/curbs/borders.hpp"           // where labels change, and chains of such points
 #include "curbline/curbs/plane_gap.hpp"         // where between two planes the edge lies, to a part of a cell
-#include "curbline/curbs/border_finder.hpp"     // all such places of the window
-#include "curbline/curbs/ground_end.hpp"        // edges of which only one side is seen
+#include "curbline/curbs/border_finder.hpp"     // all such points of the window
+#include "curbline/curbs/ground_end.hpp"        // edges with only one side in view
 #include "curbline/line_fit.hpp"                // a line through borders
 #include "curbline/curbs/curb_piece.hpp"        // borders on one line
 #include "curbline/shadow.hpp"                  // of a step down
 #include "curbline/curbs/curb.hpp"              // out: a curb
-#include "curbline/curbs/step_height.hpp"       // how high it is, if it is a step
-#include "curbline/curbs/curb_maker.hpp"        // its kind, its place, how well that is known
+#include "curbline/curbs/step_height.hpp"       // the height of a step
+#include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next
 #include "curbline/curbs/surfaces.hpp"          // which planes are one bent surface, without creases
 #include "curbline/curbs/curb_tracer.hpp"       // from borders to curbs
-#include "curbline/curbs/crossed_cells.hpp"     // where steps go, for the planes of the next line
+#include "curbline/curbs/crossed_cells.hpp"     // cells that steps cross, for the planes of the next line
 
-// What may be asked.
-#include "curbline/curbs/ground_label.hpp"      // of which plane the ground under a cell is
-#include "curbline/curbs/curb_ahead.hpp"        // which curb a robot meets first
+// Queries.
+#include "curbline/curbs/ground_label.hpp"      // the plane of the ground under a cell
+#include "curbline/curbs/curb_ahead.hpp"        // the curb that a robot meets first
 #include "curbline/curbs/passability.hpp"       // where a robot may drive
 
 // All of it, in order.

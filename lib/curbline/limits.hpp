@@ -1,23 +1,23 @@
-// Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is its whole
-// memory: nothing is allocated later. The stack that a call wants beside it grows by 2 bytes for each pair of planes:
-// 4 KiB are enough for 16 (tools/budget), 255 want 130 KiB more.
+// Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is all of its
+// memory: nothing is allocated later. The stack of a call grows by 2 bytes for each pair of planes: 4 KiB suffice for
+// 16 (tools/budget), 255 need 130 KiB more.
 #pragma once
 
 namespace curbline {
 
-/// Every size is a capacity. The window in use may be smaller (Settings::window); a store that is full refuses and
-/// counts (Counters). More cells want more regions, links, borders and curbs, as many times.
+/// Every size is a capacity. The window in use may be smaller (Settings::window); a full store refuses and counts
+/// (Counters). Scale regions, links, borders and curbs with the number of cells.
 struct Limits {
   int rows = 40;          ///< cells of the window along x, a multiple of 4
   int cols = 40;          ///< cells of the window along y, a multiple of 4
   int planes = 16;        ///< planes of the mixture, 2 to 255
   int beams = 1081;       ///< beams of a scan line
-  int tilt_samples = 64;  ///< tilt angles kept, a power of two from 4 on: all of a line and its wait; 2 s at 32 Hz
+  int tilt_samples = 64;  ///< tilt readings kept, a power of two from 4 on: of a line and its wait; 2 s at 32 Hz
   int poses = 32;         ///< poses kept
   int regions = 384;      ///< leaves and standing regions that one merging pass holds
   int links = 1024;       ///< links between them
   int borders = 512;      ///< border points between planes, at most 65534
-  int curbs = 96;         ///< pieces of curb line that are given out: at most 32 on random streets
+  int curbs = 96;         ///< pieces of curb given out: at most 32 on random streets
 };
 
 }  // namespace curbline

@@ -7,7 +7,8 @@
 //   curbs <------------------------------------------------------------------------------------ CurbTracer <------+
 //
 // No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
-// Except for add_tilt() all calls come from one context, or from two that exclude each other.
+// add_tilt() may be called from an interrupt; all other calls come from one context, or from two that exclude each
+// other.
 #pragma once
 
 #include <cstdint>
@@ -47,54 +48,53 @@ class Pipeline {
   static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
                 "every store has room for one at least");
 
-  /// Checks the settings and empties everything. Any other Status than ok tells in which part one was refused, and
-  /// bad_setting(settings, limits) which; the pipeline then takes nothing and knows of no curb, label or ground to
-  /// drive on. May be called again to start afresh, with the interrupt that calls add_tilt() masked, and not beside
-  /// that of another thread.
-  // Cold, as are the large ones of those that it calls: they are made small, not fast.
+  /// Checks the settings and empties everything. A Status other than ok names the part with a bad setting, and
+  /// bad_setting(settings, limits) the setting itself; the pipeline then refuses data and has no curbs, labels or
+  /// passable cells. May be called again to start afresh, as long as nothing calls add_tilt() meanwhile: mask its
+  /// interrupt, or stop its thread.
+  // Cold, as are the large functions that it calls: compiled for size, not speed.
   [[gnu::cold]] Status init(const Settings& settings);
 
-  /// A reading of the tilt servo. Wait-free; may be called from an interrupt or another thread (one of them). False if
-  /// dropped: not finite, beyond TiltReading::furthest_rad, not later than the one before. init() forgets those before
-  /// it.
+  /// A reading of the tilt servo. Wait-free; may be called from one interrupt or one other thread. False if dropped:
+  /// not finite, beyond TiltReading::furthest_rad, not later than the one before. init() forgets earlier readings.
   bool add_tilt(const TiltReading& reading) { return line_intake_.add_tilt(reading); }
 
   /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond
-  /// Pose::furthest_m, its quaternion not of unit length; before init().
+  /// Pose::furthest_m, its quaternion not of unit length, or before init().
   bool add_pose(const Pose& pose);
 
-  /// Takes a scan line: observe(), then one half of infer(), so that no line costs more than a quarter of what a small
-  /// core can do between two: after one line the regions and planes, after the next the labels and curbs of both. Its
-  /// tilt readings and poses should be in: beams later than the newest are extrapolated, within
-  /// TiltSettings::max_extrapolation_s. Bounded by the limits. A line that is refused (not_initialised, line_too_long,
-  /// line_out_of_order, no_pose, no_tilt) changes nothing but counters.
+  /// Takes a scan line: observe(), then one half of infer(), in turn regions and planes, and labels and curbs, so that
+  /// no line costs more than a quarter of what a small core can do between two. Its tilt readings and poses should be
+  /// in already: beams later than the newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the
+  /// limits. A refused line (not_initialised, line_too_long, line_out_of_order, no_pose, no_tilt) changes nothing but
+  /// counters.
   Status take(const ScanLine& line);
 
-  /// Beams to points, points to cells. About 170 operations a beam, 120 of one outside the window.
+  /// Beams to points, points to cells. About 170 operations a beam, 120 outside the window.
   Status observe(const ScanLine& line);
 
-  /// The points of a line that lie in the window or beside it, in the map frame, to take(const Point&): what observe()
-  /// puts into cells, and instead of it: the line is taken. The window follows.
+  /// In place of observe(): hands the points that it would put into cells, in the map frame, in the window or beside
+  /// it, to take(const Point&). The line counts as taken; the window follows the robot.
   template <typename Take>
   Status project(const ScanLine& line, Take&& take);
 
   /// The same for points that are already in the map frame: a recorded cloud, another sensor.
   void observe(std::span<const Point> points);
 
-  /// Regions, planes, labels and curbs follow what was observed since. As often as time allows.
+  /// Updates regions, planes, labels and curbs with what was observed since the last time. As often as time allows.
   void infer();
 
-  /// infer() with passes over the label field, without a bound on messages, until no label changes or `passes`, 1 at
-  /// least, is reached: what a finished map wants. What cells share of their noise stays as it was: few lines of one
-  /// sweep do not tell it. Returns the passes made.
+  /// infer() for a finished map: repeats the pass over the labels, with no bound on messages, until no label changes or
+  /// `passes` (at least 1) are made. The noise that cells share keeps its value: one sweep does not show it. Returns
+  /// the passes made.
   int settle(int passes = 10);
 
-  /// Curbs in the window, in the map frame; where it has moved since they were traced, up to a line before, as it was
-  /// then. Valid until the next take(), infer(), settle() or init().
+  /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and the
+  /// window be where it was then. Valid until the next take(), infer(), settle() or init().
   std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
-  /// May a robot that takes steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or over
-  /// a curb of curbs()? A curb may be older than the planes by a line. passability.hpp
+  /// May a robot that can take steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or
+  /// over one of curbs()? See passability.hpp.
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
     return ready_ && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
@@ -103,24 +103,27 @@ class Pipeline {
     return ready_ && curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
-  /// Plane that the readings in a valid cell are of (i along x, j along y, from the window's lowest corner, 0 <= i <
-  /// dem().rows(), 0 <= j < dem().cols()); no_label for the others. It may outlive its plane by a line.
+  /// The plane that the readings in cell (i, j) belong to; no_label if there are none, or none on a plane of ground. i
+  /// counts along x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label
+  /// may outlive its plane by a line.
   Label label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label; }
-  /// Probability of that label; 0 before init().
+  /// The probability of that label; 0 before init().
   float label_probability(int i, int j) const;
-  /// Plane of the ground under the cell's middle: beside a step not always that of the readings. ground_label.hpp
+  /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. See
+  /// ground_label.hpp.
   Label ground_label(int i, int j) const {
     return ready_ ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label;
   }
-  /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes: not
-  /// no_label.
+  /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes;
+  /// no_label is not allowed.
   const Plane& plane(int label) const { return plane_mixture_.plane(label); }
-  /// Name of the surface that a plane is a part of: planes that follow one bent surface, as a cambered road, share the
-  /// lowest of their labels, and no crease is told between them. Of others their own. surfaces.hpp
+  /// The name of the surface that a plane is part of: planes along one bent surface, such as a cambered road, share the
+  /// lowest of their labels, and no crease is reported between them. For any other plane its own label. See
+  /// surfaces.hpp.
   Label surface(Label label) const { return ready_ ? curb_tracer_.surfaces().name(label) : label; }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
-  /// What the map has been set back by against the poses, about where the robot is: pose_offset.hpp
+  /// What is taken off the poses, for steps of the localisation, about the robot's place: see pose_offset.hpp.
   const PoseShift& pose_offset() const { return line_intake_.pose_offset().offset(); }
   const TiltLatency& tilt_latency() const { return line_intake_.tilt_latency(); }
   const Settings& settings() const { return settings_; }
@@ -255,7 +258,7 @@ void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
   dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
 }
 
-/// Moves the window with the robot, its middle with the robot's heading; what leaves it leaves every stage.
+/// Moves the window with the robot, its centre with the robot's heading; what leaves it leaves every stage.
 template <Limits limits>
 void Pipeline<limits>::move_window(const Transform& T_map_base) {
   const WindowSettings& window = settings_.window;
@@ -263,7 +266,7 @@ void Pipeline<limits>::move_window(const Transform& T_map_base) {
   const float middle_x = window.origin_x_m + 0.5f * static_cast<float>(window.rows) * window.cell_x_m;
   const float middle_y = window.origin_y_m + 0.5f * static_cast<float>(window.cols) * window.cell_y_m;
   const SinCos ahead = heading(T_map_base);
-  // By how much the middle lies elsewhere than that of a robot which heads along the map's x axis.
+  // How far the centre is from where it would be if the robot headed along the map's x axis.
   const float aside_x = (ahead.cos - 1.0f) * middle_x - ahead.sin * middle_y;
   const float aside_y = ahead.sin * middle_x + (ahead.cos - 1.0f) * middle_y;
   dem_.follow(T_map_base.translation.x() + aside_x, T_map_base.translation.y() + aside_y, [this](int slot) {

@@ -7,9 +7,9 @@
 namespace curbline {
 
 /// ranges_m[i] was measured at bearing first_bearing_rad + i * bearing_step_rad and at time_ns + i * beam_interval
-/// (LaserSettings). NaN, infinite and out-of-range readings are no returns. Owned by the caller.
+/// (LaserSettings). NaN, infinite and out-of-range readings mean no return. Owned by the caller.
 struct ScanLine {
-  std::int64_t time_ns;             ///< of beam 0, nanoseconds of any epoch that tilt samples and poses share
+  std::int64_t time_ns;             ///< of beam 0, nanoseconds of any epoch, the same for tilt readings and poses
   std::span<const float> ranges_m;  ///< metres, at most Limits::beams
 };
 

@@ -1,5 +1,5 @@
-// What a robot's builder tells the pipeline: geometry, noise and tuning, each with its unit, range and reason. Checked
-// once, at init; a bad setting is refused with the Status of its part, and bad_setting() names it.
+// What the builder of a robot states: geometry, noise and tuning, each with its unit, range and reason. Checked once,
+// at init; a bad setting is refused with the Status of its part, and bad_setting() names it.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 namespace curbline {
 
 /// The rolling window: rows x cols cells of cell_x_m by cell_y_m, along the map's axes. It follows the robot in steps
-/// of four cells: its middle stays where it is in the base frame, whatever way the robot heads. Its corner and
-/// max_height_m are given in the base frame, of a robot that heads along the map's x axis; of a window that is fixed,
-/// in the map frame.
+/// of four cells, so that its centre stays at one place in the base frame, whatever the heading. Its corner and
+/// max_height_m are in the base frame, for a robot that heads along the map's x axis; for a fixed window, in the map
+/// frame.
 struct WindowSettings {
   static constexpr float furthest_m = 1e5f;  ///< of the corner along each axis: float tells a centimetre there
   int rows = 40;                             ///< cells along x, a multiple of 4, at most Limits::rows
@@ -35,14 +35,14 @@ struct LaserSettings {
   float first_bearing_rad = -2.3561945f;    ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
   float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0
   float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
-  float min_range_m = 0.1f;                 ///< readings below are no returns, nor is 0; [0, 1e6]
-  float max_range_m = 60.0f;                ///< readings at or above are no returns; at most 1e6
+  float min_range_m = 0.1f;                 ///< readings below, and 0, mean no return; [0, 1e6]
+  float max_range_m = 60.0f;                ///< readings at or above mean no return; at most 1e6
   float range_sd_m = 0.01f;                 ///< standard deviation of a range, [0, 10]
   float bearing_sd_rad = 0.0005f;           ///< of a bearing, [0, 1]
 
-  /// Between two beams, in whole nanoseconds.
+  /// From one beam to the next, in whole nanoseconds.
   std::int64_t beam_interval_ns() const { return static_cast<std::int64_t>(beam_interval_s * 1e9f + 0.5f); }
-  /// From the first beam of a line to the last of so many.
+  /// From the first beam of a line of `count` to the last.
   std::int64_t duration_ns(std::size_t count) const { return duration_ns(count, beam_interval_ns()); }
   static std::int64_t duration_ns(std::size_t count, std::int64_t interval_ns) {
     return count > 1 ? static_cast<std::int64_t>(count - 1) * interval_ns : 0;
@@ -63,25 +63,25 @@ struct TiltSettings {
   bool fixed = false;                 ///< true: no servo, the angle is fixed_tilt_rad
   float fixed_tilt_rad = 0.0f;        ///< [-pi, pi]
   float latency_s = 0.0f;             ///< [-10, 10]: an angle stamped t was true at t - latency_s
-  float latency_sd_s = 0.01f;         ///< [0, 1]: how far it may be off, and change by sweeps; 0: it is not estimated
+  float latency_sd_s = 0.01f;         ///< [0, 1]: its error, and change between sweeps; 0: it is not estimated
   float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; [0, 1]
-  float time_sd_s = 0.0f;             ///< jitter of its time stamp; times the tilt rate it is an angle error; [0, 1]
+  float time_sd_s = 0.0f;             ///< jitter of its time stamp, an angle error by the tilt's rate; [0, 1]
   float max_extrapolation_s = 0.05f;  ///< [0, 10]: beams later than the newest reading by more are dropped
-  float max_gap_s = 0.2f;             ///< (0, 10]: readings further apart are not interpolated across
+  float max_gap_s = 0.2f;             ///< (0, 10]: no interpolation between readings further apart
   float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin, [0, 1]
   float pitch_sd_rad = 0.0f;          ///< the same about y
 };
 
-/// The robot's pose, T_map_base. A robot that stands gives none. One that drives states both deviations: with 0 every
-/// rounding of a pose is a jump, and no step of its localisation is told from a kerb that it climbs.
+/// The robot's pose, T_map_base. A robot that stands gives none. One that drives must state both deviations: with 0
+/// every rounding of a pose is a jump, and a step of its localisation cannot be told from a curb that it climbs.
 struct PoseSettings {
   bool still = true;                 ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;          ///< of z between two poses, [0, 10]; if it stands, by how much it sways
-  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, [0, 1]; the same
+  float height_sd_m = 0.0f;          ///< of z between two poses, [0, 10]; standing, how much the robot sways
+  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, [0, 1]; standing, the same
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 
-/// How cells become regions. The constants and how little depends on them: lib/README.md.
+/// How cells become regions. lib/README.md has the reason of each constant, and how little depends on it.
 struct SegmentationSettings {
   CellPrior cell{};
   float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; > 0
@@ -90,31 +90,31 @@ struct SegmentationSettings {
 
 /// Where a plane's parameters come from.
 enum class PlaneUpdate : unsigned char {
-  regions,           ///< moments of its region: what scores better
+  regions,           ///< moments of its region: scores better
   responsibilities,  ///< the M-step of the paper's EM, from the beliefs of the label field
 };
 
 struct PlaneSettings {
-  PlanePrior prior{};      ///< no plane is known better than the part of the noise that the points of a cell share
-  float min_cells = 4.0f;  ///< 3 to 1e6; fewer make no plane: one more than it has parameters
+  PlanePrior prior{};      ///< of the noise and the slopes of ground
+  float min_cells = 4.0f;  ///< fewer cells make no plane, 3 to 1e6; 4 is one more than a plane has parameters
   PlaneUpdate update = PlaneUpdate::regions;
 };
 
 struct LabelSettings {
   float coupling = 1.5f;  ///< J of the Potts factor exp(J) between like labels, [0.01, 7.9]
-  int link_reach = 10;    ///< as SegmentationSettings; the coupling falls as 1 / distance
-  int refresh_rows = 1;   ///< rows of the window that every line visits in turn, changed or not, >= 0
-  /// Of a call, >= 4. Cells that are left over wait for the next, with 4 cols or more none for ever. Not set: three for
-  /// every four cells of the window, 1200 of the usual one, as many as the budgets of board/ leave time for; 1600 find
-  /// no more.
+  int link_reach = 10;    ///< as in SegmentationSettings; the coupling falls as 1 / distance
+  int refresh_rows = 1;   ///< rows of the window that each line visits in turn, changed or not, >= 0
+  /// Per call, >= 4. Cells left over wait for the next call; with at least 4 * cols none waits for ever. Not set: three
+  /// for every four cells of the window, 1200 in the usual one, as many as the budgets of board/ allow; 1600 score no
+  /// better.
   std::optional<int> max_messages{};
 };
 
 struct CurbSettings {
-  int link_reach = 5;       ///< cells, 1 to max_link_reach; of a wider gap that a step down hides a curb is told too
-  float max_step_m = 0.3f;  ///< > 0; a step up that is higher is an obstacle, no curb: kerbs and steps of stairs stay
-                            ///< below 0.2 m, and half as much again for the unusual. A step down is told however deep
-                            ///< it is, but from what is as much higher than the ground nearest to the laser
+  int link_reach = 5;       ///< cells, 1 to max_link_reach: the widest gap of a curb, unless a step down hides more
+  float max_step_m = 0.3f;  ///< > 0; a higher step up is an obstacle, not a curb: curbs and steps of stairs stay below
+                            ///< 0.2 m, and half as much again allows for the unusual. A step down may have any depth,
+                            ///< unless its upper side is this much higher than the ground nearest to the laser
 };
 
 /// Everything, as Pipeline::init() takes it.
@@ -129,11 +129,11 @@ struct Settings {
   CurbSettings curbs{};
 };
 
-/// The first setting that is out of its range, or beyond what a pipeline of these limits holds, as it is written here:
-/// "tilt.max_gap_s". Null if all are good. Static storage.
+/// The first setting that is out of its range, or beyond these limits, by its name here, as in "tilt.max_gap_s". Null
+/// if all are good. Static storage.
 [[gnu::cold]] const char* bad_setting(const Settings& settings, const Limits& limits);
 
-/// In which part of the settings that is, ok if all are good: what Pipeline::init() answers.
+/// The part of the settings that it belongs to, ok if all are good: what Pipeline::init() returns.
 [[gnu::cold]] Status check(const Settings& settings, const Limits& limits);
 
 }  // namespace curbline

@@ -5,11 +5,11 @@
 
 namespace curbline {
 
-/// What init() refuses with, each naming the part of the settings at fault, and what a call that takes data may answer.
+/// What init() returns, naming the part of the settings at fault, and what a call that takes data returns.
 enum class Status : std::uint8_t {
   ok,
   not_initialised,    ///< init() has not succeeded
-  bad_window,         ///< rows, cols not multiples of 4 within the limits, or a cell size out of range
+  bad_window,         ///< rows or cols not a multiple of 4 within the limits, or a cell size out of range
   bad_laser,          ///< beams, bearings, intervals, ranges or noise out of range
   bad_tilt,           ///< mount, latency or noise not finite, or a bound not positive
   bad_pose,           ///< noise or bound out of range

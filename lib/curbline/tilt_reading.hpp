@@ -1,4 +1,4 @@
-// The angle of the tilt servo at one time: what a bus or an encoder tells the pipeline.
+// The angle of the tilt servo at one time, from a bus or an encoder: input of the pipeline.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 namespace curbline {
 
 struct TiltReading {
-  /// No servo winds further, and what follows can reduce it, carried beyond the readings too: a greater angle is a
-  /// damaged frame.
+  /// A greater angle is a damaged frame: no servo winds further, and up to there, extrapolated too, sine and cosine
+  /// hold.
   static constexpr float furthest_rad = 1e6f;
   std::int64_t time_ns = 0;  ///< nanoseconds of the epoch of ScanLine::time_ns
-  float angle_rad = 0.0f;    ///< tilt > 0 looks down; continuous: an encoder's zero does not lie within the sweep
+  float angle_rad = 0.0f;    ///< tilt > 0 looks down; continuous: no wrap of the encoder within the sweep
 };
 
 }  // namespace curbline

@@ -1,7 +1,7 @@
-// Of which plane the ground under the middle of a cell is. A cell's label is that of its readings. Beside a step they
-// are of the side that the laser sees: of a step down, whose shadow hides where the lower side begins, of the upper
-// one, though most of the cell lies below. The line of the curb tells it to a part of a cell, of a step whose face is
-// steeper than the laser's rays. Cost: 15 operations a curb.
+// The plane of the ground under the middle of a cell. A cell's label is that of its readings. Beside a step those are
+// of the side that the laser sees: at a step down, whose shadow hides where the lower side begins, the upper side, even
+// if most of the cell lies below. The curb's line, known to a part of a cell, decides, for faces steeper than the
+// laser's rays. Cost: 15 operations a curb.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@
 
 namespace curbline {
 
-/// By the step nearest to the middle of cell (i, j), within two cells: farther away readings are of their own side. It
-/// must part the plane of the readings from another that is seen, and lives: a curb may be older by a line. Else the
+/// By the step nearest to the middle of cell (i, j), within two cells (farther away readings are of their own side), if
+/// it parts the plane of the readings from another that is in view and still alive (a curb may be a line old). Else the
 /// cell's label.
 template <Limits limits>
 Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,

@@ -1,5 +1,5 @@
-// Where a robot may drive: what steps and slopes its builder says it can take, asked of the map and of curbs. Unknown
-// ground is not passable.
+// Where a robot may drive, given the steps and slopes that it can take: answers for cells of the map and for curbs.
+// Unknown ground is not passable.
 #pragma once
 
 #include "curbline/curbs/curb.hpp"
@@ -11,19 +11,19 @@ namespace curbline {
 
 struct Mobility {
   float max_step_m = 0.0f;     ///< up or down, >= 0
-  float max_slope_rad = 0.0f;  ///< against the map's x and y plane, [0, pi / 2)
+  float max_slope_rad = 0.0f;  ///< against the map's x-y plane, [0, pi / 2)
 };
 
 /// May a plane be driven on?
 bool passable(const Plane& plane, const Mobility& mobility);
 
-/// May a curb be crossed? A step if it is no higher than max_step_m with a probability of 97.5 %; a crease or the edge
-/// of a ramp if both its planes are no steeper than max_slope_rad.
+/// May a curb be crossed? A step, if it is no higher than max_step_m with a probability of 97.5 %; a crease or a ramp
+/// edge, if neither of its planes is steeper than max_slope_rad.
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
 
-/// May a wheel stand in cell (i, j) and leave it? If its plane is ground and not too steep, the heights within it
-/// spread over no more than the step (the width of an even distribution of their variance, that of noise taken off),
-/// and neither it nor a next cell within two cells along x and y lies a step off the plane. O(1).
+/// May a wheel stand in cell (i, j) and leave it? Yes, if its plane is ground and not too steep, if the heights within
+/// it spread over no more than the step (the width of a uniform distribution of their variance, less that of noise),
+/// and if neither it nor the next cell within two cells along x and y lies a step off the plane. O(1).
 template <Limits limits>
 bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
               int j, const Mobility& mobility) {

@@ -1,6 +1,6 @@
-// Which planes follow one bent surface (bend.hpp). Planes stay what they are, so that heights at kerbs are those of the
-// ground beside them; a surface is a name that they share, and no crease is told between its planes. Cost: a pass over
-// a quarter of the window where planes meet at a crease, and 120 operations a crease and one for each curb.
+// Which planes follow one bent surface (bend.hpp). Planes stay as they are, so that the height of a curb is that of the
+// ground beside it; a surface is a name that they share, and no crease is reported between its planes. Cost: a pass
+// over a quarter of the window where planes meet at a crease, 120 operations a crease, and one for each curb.
 #pragma once
 
 #include <algorithm>
@@ -25,20 +25,20 @@ class Surfaces {
     for (std::size_t l = 0; l < limits.planes; ++l) name_[l] = static_cast<Label>(l);
   }
 
-  /// The lowest label of the planes of its surface; its own if it is no part of one.
+  /// The lowest label among the planes of its surface; its own if it shares none.
   Label name(Label plane) const { return plane == no_label ? no_label : name_[plane]; }
 
   /// Working memory of one follow(), by label.
   using Work = std::array<BendSums, limits.planes>;
 
-  /// Names planes anew. Those that meet at a crease, of a ramp or not, are one surface if their cells are likelier to
-  /// follow its bend than to lie even, by three standard deviations, unless most of their border is a step. Takes
-  /// creases within surfaces out of `curbs`, and returns how many stay.
-  // Cold, as what it calls: made small, not fast, or it would not fit the flash's budget.
+  /// Names all planes anew. Two that meet at a crease, of a ramp or not, are one surface if their cells are likelier to
+  /// follow its bend than to lie flat, by three standard deviations, unless most of their border is a step. Removes
+  /// creases within surfaces from `curbs`, and returns how many curbs stay.
+  // Cold, as are its callees: compiled for size, to fit the flash budget.
   [[gnu::cold]] std::size_t follow(const CurbStages<limits>& stages, Work& work, std::span<Curb> curbs);
 
  private:
-  static constexpr int rows_apart = 4;  ///< of those whose cells are asked: neighbours err alike
+  static constexpr int rows_apart = 4;  ///< between rows whose cells are used: neighbours err alike
 
   static bool is_crease(const Curb& curb) { return !is_step(curb) && curb.far_label != no_label; }
   [[gnu::cold]] static void look_at(const CurbStages<limits>& stages, Work& work);
@@ -68,7 +68,7 @@ std::size_t Surfaces<limits>::follow(const CurbStages<limits>& stages, Work& wor
   return kept;
 }
 
-/// Cells that hold their plane alone, and lie on it: what else they hold would bend it.
+/// Sums over cells that hold their plane alone, and lie on it: anything else in them would pass for a bend.
 template <Limits limits>
 void Surfaces<limits>::look_at(const CurbStages<limits>& stages, Work& work) {
   const Dem<limits>& dem = stages.dem;
@@ -86,7 +86,7 @@ void Surfaces<limits>::look_at(const CurbStages<limits>& stages, Work& work) {
   }
 }
 
-/// Is most of what is told between the planes of a crease a step? Planes cross where a kerb runs out.
+/// Are the steps between the planes of a crease longer than its creases? Planes cross where a curb runs out.
 template <Limits limits>
 bool Surfaces<limits>::step_between(std::span<const Curb> curbs, const Curb& crease) {
   float steps_m = 0.0f;  // less creases

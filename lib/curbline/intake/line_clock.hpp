@@ -1,19 +1,21 @@
-// The times of scan lines that bear the time of their arrival: on a host, from USB or TCP, that is late by 1 to 10 ms,
-// each line by another time, never early. The mirror turns steadily, so lines are whole turns apart; the lowest line
-// under the newest arrivals tells its turns, as only those that were hardly late lie on it. Before the pipeline, where
-// the scanner's driver does not know better:
+// Times for scan lines that are stamped on arrival: on a host, over USB or TCP, they are 1 to 10 ms late, each by
+// another delay, never early. The mirror turns steadily, so lines are whole turns apart; the straight line that
+// supports the newest arrivals from below gives the turns, since only lines with hardly any delay touch it. Stands
+// before the pipeline, unless the scanner's driver knows better:
 //
 //   scanner --> LineClock::time_of() --> LineQueue --> Pipeline::take()
 //
-//   - A stamp that lies on a turn is kept as it is: of a scanner whose stamps are exact nothing changes.
-//   - Where stamps lie anywhere between turns (delays of half a turn on the mean), or turns take more or less than
-//     1/200 from what the settings say, stamps are kept too. So are the first, until there are enough to tell.
-//   - A stamp that goes back is given out as it is: the pipeline drops and counts the line.
-//   - A line that is late by a turn or more looks like the next one after a loss. One that may be either has no time:
-//     it is better left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
+//   - A stamp on a turn is kept: nothing changes for a scanner with exact stamps.
+//   - Stamps are also kept where they lie anywhere between turns (a mean delay of half a turn), where turns take over
+//   1/200
+//     more or less than the settings say, and at first, until there are enough.
+//   - A stamp that goes back is passed on: the pipeline drops and counts the line.
+//   - A line late by a turn or more looks like the next one after a loss. One that may be either gets no time: it is
+//   better
+//     left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
 //
-// What is constant in the delay is none of its business: the tilt latency takes it up. No clock: times come in. 40
-// operations for each of 64 lines a call, 1.1 kB. One context.
+// A constant part of the delay is left to the tilt latency. No clock: times come in. 40 operations for each of 64 lines
+// a call, 1.1 kB. One context.
 #pragma once
 
 #include <array>
@@ -28,12 +30,12 @@ namespace curbline {
 
 class LineClock {
  public:
-  /// Starts afresh. A turn is what LaserSettings says: as many beam intervals as beams fill a circle. Without a beam
-  /// interval, as of a sensor that does not turn, all stamps are kept.
+  /// Starts afresh. A turn takes as many beam intervals as beams fill a circle (LaserSettings). With a beam interval of
+  /// 0, as of a sensor that does not turn, all stamps are kept.
   void init(const LaserSettings& laser);
 
-  /// When a line was measured that is stamped with this time: that time or, if it came late, an earlier one. Nothing if
-  /// it is not clear which turn it was. For each line, in the order in which they come.
+  /// The time at which the line with this stamp was measured: the stamp or, if it came late, an earlier time. Nothing
+  /// if its turn is not clear. Call for each line, in order of arrival.
   std::optional<std::int64_t> time_of(std::int64_t stamp_ns);
 
   std::uint32_t set_back() const { return set_back_; }  ///< lines that were given an earlier time

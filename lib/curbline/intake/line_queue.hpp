@@ -1,14 +1,14 @@
-// Scan lines that wait for their tilt and pose. A line is there when its last beam is, its angles only with the next
-// servo frame, where the robot was only with its next pose, up to a period later: taken at once, its end would be
-// extrapolated. Before the pipeline:
+// Scan lines that wait for their tilt and pose. A line is complete with its last beam, but its angles are known only
+// with the next servo frame, and its pose with the next pose, up to a period later: taken at once, its end would be
+// extrapolated. Stands before the pipeline:
 //
 //   scanner --> LineQueue --> Pipeline::take()       pop(newest, now, offset) after every line, tilt reading and pose
 //
-// First in, first out; a copy of each line is kept, sizeof is capacity * (4 beams + 32) bytes and a little. A line
-// waits for at most the time in which capacity - 1 more come: for the settings' latency and two periods of the servo's
-// frames, one of which may be lost, capacity is that time over a line's period, rounded up, and one; for two periods of
-// poses likewise. No clock: times come in. push() costs a copy of the ranges, pop() constant time. One context, or
-// several that exclude each other.
+// First in, first out. It keeps a copy of each line; sizeof is about capacity * (4 beams + 32) bytes. Capacity: a line
+// waits at most until capacity - 1 more have come, and should be able to wait for the settings' latency and two periods
+// of the servo's frames (one may be lost), or two periods of poses: that time over a line's period, rounded up, plus
+// one. No clock: times come in. push() costs a copy of the ranges, pop() constant time. One context, or several that
+// exclude each other.
 #pragma once
 
 #include <algorithm>
@@ -26,19 +26,19 @@
 
 namespace curbline {
 
-/// Every line pushed ends in one of the others, or still waits. All wrap at 2^32.
+/// Every line pushed is counted in one of the others, or still waits. All wrap at 2^32.
 struct LineQueueCounters {
   std::uint32_t pushed = 0;
   std::uint32_t covered = 0;   ///< given out with tilt and pose for every beam
   std::uint32_t overdue = 0;   ///< given out after the longest wait: beams may be extrapolated or dropped
   std::uint32_t crowded = 0;   ///< given out early, because the queue was full
-  std::uint32_t dropped = 0;   ///< the oldest of a full queue from which nobody took
+  std::uint32_t dropped = 0;   ///< the oldest, because the queue was full and nobody took it
   std::uint32_t too_long = 0;  ///< refused: more beams than the limits have
   std::uint32_t bad_time = 0;  ///< refused: a stamp beyond RisingTimes::furthest_ns
 };
 
-/// Stamps of the newest tilt reading and the newest pose that the pipeline took; `none` before the first, and of what
-/// never comes: where the tilt is fixed, where the robot stands.
+/// Stamps of the newest tilt reading and the newest pose that the pipeline took; `none` before the first, and where
+/// none ever comes, with a fixed tilt or a robot that stands.
 struct NewestTimes {
   static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
   std::int64_t tilt_ns = none, pose_ns = none;
@@ -49,19 +49,19 @@ class LineQueue {
   static_assert(capacity >= 2, "one line waits, one comes");
 
  public:
-  /// Empties the queue. A line waits for max_wait_s at most, however seldom lines come: TiltSettings::max_gap_s is a
-  /// good choice, as beams in a longer gap have no angle, PoseSettings::max_extrapolation_s of a robot that drives, if
-  /// that is longer. For as long the pipeline must keep readings and poses: Limits::tilt_samples, Limits::poses.
+  /// Empties the queue. A line waits at most max_wait_s. A good choice is TiltSettings::max_gap_s, as beams in a longer
+  /// gap have no angle, or PoseSettings::max_extrapolation_s of a robot that drives, if longer. The pipeline must keep
+  /// readings and poses for as long: Limits::tilt_samples, Limits::poses.
   void init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose, float max_wait_s);
 
-  /// Copies a line that has come at now_ns (any clock that pop() is given too). False if it was refused, for its length
-  /// or its stamp. If the queue is full the oldest line is dropped: pop() until it has nothing to give after each
-  /// push(), and none is.
+  /// Copies a line that has arrived at now_ns (any clock, the same as for pop()). False if it is refused, for its
+  /// length or its stamp. A full queue drops its oldest line; it never does if each push() is followed by pop() until
+  /// that returns nothing.
   bool push(const ScanLine& line, std::int64_t now_ns);
 
-  /// The oldest line, if tilt and poses reach to its last beam, if it has waited long enough, or if the queue is full.
-  /// A reading's stamp is later than its angle by the settings' latency and offset_s, the pipeline's
-  /// tilt_latency().latest_offset_s(). The ranges are valid until the next push().
+  /// The oldest line, if tilt and poses reach its last beam, if it has waited for max_wait_s, or if the queue is full.
+  /// offset_s is the pipeline's tilt_latency().latest_offset_s(): with the settings' latency, it is how much later a
+  /// reading's stamp is than its angle. The ranges are valid until the next push().
   std::optional<ScanLine> pop(const NewestTimes& newest, std::int64_t now_ns, float offset_s);
 
   int size() const { return size_; }
