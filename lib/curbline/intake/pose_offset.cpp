@@ -5,25 +5,25 @@
 namespace curbline {
 namespace {
 
-/// ln 20: what 5 % say.
+/// ln 20: a probability of 5 %.
 constexpr float sure = 3.0f;
 
-/// ln of how much likelier a jump goes on as fast as before if it is a localisation's: of those of simulated robots
-/// that climb kerbs one in 31 does with poses of 50 Hz, one in 13 with 10 Hz (tools/streets --drive). And of how much
-/// likelier a localisation has not stepped while a robot climbed: poses that jump on end are the robot's.
+/// Log likelihood ratio of a jump that goes on at the old speed: always of a localisation's, but of those of simulated
+/// robots that climb curbs, one in 31 with poses of 50 Hz, one in 13 with 10 Hz (tools/streets --drive). Also the log
+/// odds that a localisation has not stepped during a climb: consecutive jumps are the robot's.
 constexpr float rarely = 3.0f;
 
-/// Variance of a step that is told by five poses, in those of one (PoseTrack).
+/// Variance of a step known from five poses, in units of that of one pose (PoseTrack).
 constexpr float poses_of_a_step = 2.625f;
 
-/// Three standard deviations of such a step, squared: poses tell of those that are larger.
+/// Three standard deviations of such a step, squared: poses show larger ones.
 constexpr float least_told = gate * poses_of_a_step;
 
-/// Of the line that is compared, and of those that have mapped the ground.
+/// Poses that a comparison depends on: of the line, and of those that mapped the ground.
 constexpr float poses_compared = 2.0f;
 
-/// Of a standard deviation of the poses, what an offset fades a line: one in 400 lines, longer than ground stays in the
-/// window.
+/// Share of a standard deviation of the poses by which an offset fades a line: one in 400 lines, longer than ground
+/// stays in the window.
 constexpr float fade_share = 0.0025f;
 
 float faded(float value, float by) {
@@ -63,7 +63,7 @@ void PoseOffset::follow(const PoseStepNews& step) {
       undecided_ = likelier_ = false;
       break;
     case PoseStepNews::Kind::climbed:
-      // Of one that has not been found to step, or of exact poses, there is nothing to be told.
+      // Nothing to decide for a localisation that was never found to step, or for exact poses.
       if (!localisation_steps_ || !(height_variance_m2_ + attitude_variance_ > 0.0f)) break;
       settle();
       open(offset_, least_told * height_variance_m2_, least_told * attitude_variance_);
@@ -97,13 +97,13 @@ void PoseOffset::settle() {
   undecided_ = likelier_ = false;
 }
 
-/// What neither of the two explains is another surface.
+/// A point that neither cause explains is of another surface.
 void PoseOffset::compare(const Sighting& seen) {
   ++points_;
   const float dx = seen.x_m - x_m_, dy = seen.y_m - y_m_;
   const float pose_m2 = height_variance_m2_ + attitude_variance_ * (dx * dx + dy * dy);
   const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + poses_compared * pose_m2;
-  const float lacks_m = offset().at(dx, dy) - seen.above_m;  // the offset that the point asks for
+  const float lacks_m = offset().at(dx, dy) - seen.above_m;  // the offset that would put the point on the ground
   if (square(lacks_m - offset_.at(dx, dy)) > gate * variance_m2 &&
       square(lacks_m - stepped_.at(dx, dy)) > gate * (variance_m2 + step_variance_m2(dx, dy)))
     return;
@@ -126,7 +126,7 @@ float PoseOffset::step_variance_m2(float dx, float dy) const {
   return p[0][0] + dx * (2.0f * p[0][1] + dx * p[1][1]) + dy * (2.0f * (p[0][2] + dx * p[1][2]) + dy * p[2][2]);
 }
 
-/// A number that is linear in the offset: its likelihoods, and Kalman's update.
+/// An observation linear in the offset: its likelihoods, and the Kalman update.
 void PoseOffset::see(const Row& of, float correction, float variance) {
   const auto off = [&](const PoseShift& shift) {
     return correction - (of[0] * shift.height_m + of[1] * shift.slope_x + of[2] * shift.slope_y);
@@ -145,8 +145,8 @@ void PoseOffset::see(const Row& of, float correction, float variance) {
   }
 }
 
-/// A line's points lie on a straight line of the ground: they tell how high it lies, and how it rises along itself, the
-/// axis of their greatest scatter.
+/// A line's points lie on a straight line of the ground. They show its height, and its slope along the axis of their
+/// greatest scatter.
 PoseShift PoseOffset::end_line() {
   const Sums s = seen_;
   const int points = points_;
@@ -161,7 +161,7 @@ PoseShift PoseOffset::end_line() {
   const float half = 0.5f * (xx - yy), greatest = 0.5f * (xx + yy) + square_root(half * half + xy * xy);
   float ux = half > 0.0f ? greatest - yy : xy, uy = half > 0.0f ? xy : greatest - xx;
   const float length = square_root(ux * ux + uy * uy);
-  if (length > 0.0f && greatest > 0.0f) {  // points of one place tell of no axis
+  if (length > 0.0f && greatest > 0.0f) {  // points at one place have no axis
     ux /= length;
     uy /= length;
     see({0.0f, ux, uy}, (ux * (s.xz - s.x * z) + uy * (s.yz - s.y * z)) / greatest,
@@ -169,7 +169,7 @@ PoseShift PoseOffset::end_line() {
   }
   likelier_ = climbed_ ? evidence_ >= sure && large() : evidence_ > 0.0f;
   const PoseShift after = offset();
-  // Lines say that a robot has climbed when they alone make it twenty times likelier.
+  // After a climb, the robot is settled on when lines alone make it 20 times likelier.
   if (confirmed_ && (evidence_ <= (climbed_ ? -sure - rarely : -sure) || evidence_ >= sure)) {
     localisation_steps_ = localisation_steps_ || likelier_;
     settle();
@@ -177,7 +177,7 @@ PoseShift PoseOffset::end_line() {
   return after - before;
 }
 
-/// Is the step as large as one of which poses tell?
+/// Is the step as large as one that poses would show?
 bool PoseOffset::large() const {
   const PoseShift by = stepped_ - offset_;
   return square(by.height_m) > least_told * height_variance_m2_ ||
@@ -188,7 +188,7 @@ float PoseOffset::doubt_m2(float x_m, float y_m) const {
   return undecided_ ? square(at(stepped_ - offset_, x_m, y_m)) : 0.0f;
 }
 
-/// Turned about the level axis that the slopes have, by an angle that is small.
+/// Turned by a small angle about the horizontal axis of the slopes.
 Pose PoseOffset::corrected(const Pose& pose) const {
   const PoseShift& by = offset();
   const float ax = 0.5f * by.slope_y, ay = -0.5f * by.slope_x;

@@ -5,12 +5,12 @@
 namespace curbline {
 namespace {
 
-/// q and -q are one attitude: the sign by which b's lies nearer to a's.
+/// q and -q are the same attitude: the sign that brings b's nearer to a's.
 float nearer_sign(const Pose& a, const Pose& b) {
   return a.qx * b.qx + a.qy * b.qy + a.qz * b.qz + a.qw * b.qw < 0.0f ? -1.0f : 1.0f;
 }
 
-/// Roll and pitch by which the robot has turned, if that is little; in its own frame.
+/// Roll and pitch by which the robot has turned, in its own frame, for small turns.
 struct Turn {
   float roll_rad, pitch_rad;
 };
@@ -55,7 +55,7 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
           mix(a.qw, sign * b.qw)};
 }
 
-/// The variance of an independent error of each of the three poses comes in by 1, (1 + f)^2 and f^2.
+/// Independent errors of the poses enter its variance with 1, (1 + f)^2 and f^2.
 PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
                          const PoseSettings& settings) {
   const float f = to_float(now.time_ns - before.time_ns) / to_float(last.time_ns - first.time_ns);

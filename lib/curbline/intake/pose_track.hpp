@@ -17,15 +17,15 @@
 
 namespace curbline {
 
-/// How far poses lie off where those before them led, by three standard deviations or more: a wheel has met a kerb, or
-/// a localisation has thought better of it. Sums of squares.
+/// How far poses deviate from where the poses before them led, if by three standard deviations or more: a wheel has met
+/// a curb, or the localisation has corrected itself. Sums of squares.
 struct PoseJumps {
   float height_m2 = 0.0f;      ///< of z
   float attitude_rad2 = 0.0f;  ///< of roll and pitch together
   bool any() const { return height_m2 + attitude_rad2 > 0.0f; }
 };
 
-/// By how much heights of what is seen from a pose change with it: at the robot, and along the map's axes.
+/// A change of the pose as it changes heights seen from there: at the robot, and their slopes along the map's axes.
 struct PoseShift {
   float height_m = 0.0f, slope_x = 0.0f, slope_y = 0.0f;
   bool any() const { return height_m != 0.0f || slope_x != 0.0f || slope_y != 0.0f; }
@@ -38,37 +38,37 @@ struct PoseShift {
   }
 };
 
-/// What a pose says of steps: one begins where it lies off where those before it lead, and the next confirms it by
-/// going on from it as fast as they did, off where they lead it too. No robot does that, a localisation does; if poses
-/// come seldom a robot does, too. Until the next has come a pose that jumps may be either; one that jumps on, or back
-/// to the way before, withdraws the step. Those that jump on are a robot's that climbs; whether its localisation has
-/// stepped meanwhile no pose tells. It has climbed when they have gone on for a whole way without a jump.
+/// What a pose says about steps. A step begins with a pose off the way of those before it; the next pose confirms it by
+/// going on from there at the old speed, off the old way too. No robot moves like that, but a localisation does (and a
+/// robot, if poses are far apart in time). Until the next pose has come, one that jumps may be either. A next pose that
+/// jumps again, or back to the old way, withdraws the step. Consecutive jumps mean that the robot climbs; no pose shows
+/// whether its localisation steps meanwhile. It has climbed when poses have gone on for a whole way without a jump.
 struct PoseStepNews {
   enum class Kind { begun, confirmed, withdrawn, climbed } kind;
-  PoseShift by{};  ///< of one that has begun
+  PoseShift by{};  ///< of a step that has begun
 };
 
 namespace detail {
 bool acceptable(const Pose& pose);
-/// Of the map: within Pose::furthest_m.
+/// Within Pose::furthest_m of the map's origin?
 bool near_origin(const Pose& pose);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 
-/// How far a pose lies off where others lead.
+/// How far a pose deviates from where others lead.
 struct PoseResidual {
   float height_m = 0.0f, roll_rad = 0.0f, pitch_rad = 0.0f;
   bool height_jumps = false, attitude_jumps = false;  ///< by three standard deviations or more
   bool jumps() const { return height_jumps || attitude_jumps; }
 };
-/// Of `now`, where `before` leads as fast as on the way from `first` to `last`.
+/// That of `now`, going on from `before` at the speed between `first` and `last`.
 PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
                          const PoseSettings& settings);
-/// What heights make of it, with the heading of the pose.
+/// The same as a change of heights in the map, with the heading of `now`.
 PoseShift shift_of(const PoseResidual& off, const Pose& now);
 }  // namespace detail
 
-/// Ring of the newest poses, 12 ms apart at least but for the very newest; linear in position and normalised-linear in
-/// attitude between two of them.
+/// Ring of the newest poses, at least 12 ms apart except for the very newest. Between two of them, position and
+/// attitude are linear, the latter normalised.
 template <Limits limits>
 class PoseTrack {
  public:
@@ -79,22 +79,22 @@ class PoseTrack {
     forget();
   }
 
-  /// Takes a pose, in place of the newest if that one has come sooner than poses are kept apart: the pose of a line
-  /// hangs on how many have come then. False if it is not finite or beyond 1000 km, its quaternion not of unit length
-  /// within 1 %, or not later than the one before (rising_times.hpp). O(1).
+  /// Takes a pose. It replaces the newest if that one came within 12 ms of the one before, so the pose of a line
+  /// depends on how many have come by then. False if it is not finite or beyond 1000 km, its quaternion not of unit
+  /// length within 1 %, or not later than the one before (rising_times.hpp). O(1).
   bool push(const Pose& pose);
 
-  /// Pose at a time; false if there is none within max_extrapolation_s. O(poses).
+  /// The pose at a time; false if there is none within max_extrapolation_s. O(poses).
   bool at(std::int64_t time_ns, Pose& out) const;
 
-  /// Jumps of the poses later than a line's first beam, up to the first that is not before its last. O(poses).
+  /// Jumps of the poses later than a line's first beam, up to the first one at or after its last. O(poses).
   PoseJumps jumps(std::int64_t first_ns, std::int64_t last_ns) const;
 
-  /// What the next of the poses not asked yet says of a step; nothing if none says anything, as far as they are not
-  /// later than a line's first beam. O(1) a pose.
+  /// The next news of a step, from poses not examined yet and not later than a line's first beam; nothing if there is
+  /// none. O(1) a pose.
   std::optional<PoseStepNews> next_step(std::int64_t until_ns);
 
-  /// By the poses that were asked: does the robot climb?
+  /// Does the robot climb, by the poses examined so far?
   bool climbs() const { return climbs_; }
 
   const Pose& newest() const { return back(0); }
@@ -103,15 +103,15 @@ class PoseTrack {
   std::size_t place(int age) const { return static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses); }
   const Pose& back(int age) const { return poses_[place(age)]; }
 
-  /// Does the pose of an age, the second since a jump, lie off where those before the jump lead? If not, the first did
-  /// by its own error, as one in seventy does.
+  /// Is the pose of this age, the second since a jump, off the way before the jump too? If not, the first one was off
+  /// by its own error, as one in seventy is.
   bool lies_off_before(int age) const { return residual(age + 2, poses_of_a_way, age + 2, age).jumps(); }
 
-  /// Is the newest pose nearer to the one before than poses are kept apart, so that the next one takes its place?
+  /// Has the newest pose come within 12 ms of the one before, so that the next one replaces it?
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
-  /// How far the pose of an age lies off where the one of age `before` leads, as fast as on the way that ends with the
-  /// pose of age `last`, over `most` poses before that; nothing if there are too few.
+  /// How far the pose of `age` deviates from going on from that of age `before`, at the speed over the `most` poses up
+  /// to that of age `last`; nothing if there are too few.
   detail::PoseResidual residual(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;
@@ -126,26 +126,26 @@ class PoseTrack {
   }
 
   bool beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const;
-  /// Each pose errs on its own (PoseSettings): of more of them more jump by chance, and the way of a few is too short
-  /// to tell where they lead. More than 83 a second are thinned out.
+  /// Poses err independently (PoseSettings): of more poses more jump by chance, and a few span too short a way to show
+  /// where they lead. More than 83 a second are thinned out.
   static constexpr std::int64_t least_spacing_ns = 12'000'000;
-  /// Where a robot is led is told by the way of as many poses: less than a tenth of a second at 50 Hz.
+  /// Poses that show where the robot is led: less than a tenth of a second at 50 Hz.
   static constexpr int poses_of_a_way = 4;
 
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
-  int fresh_ = 0;         ///< of the newest poses: as many have not been asked for steps
-  int jumps_on_end_ = 0;  ///< of those that have: as many have jumped up to the last; 0 if that did not
-  int since_jump_ = 0;    ///< as many from the last that jumped on; limits.poses: long ago
-  bool climbs_ = false;   ///< poses have jumped on end, and not gone on for a whole way since
+  int fresh_ = 0;         ///< so many of the newest poses have not been examined for steps
+  int jumps_on_end_ = 0;  ///< consecutive jumps up to the last one examined; 0 if that did not jump
+  int since_jump_ = 0;    ///< poses from the last jump on; limits.poses: long ago
+  bool climbs_ = false;   ///< consecutive poses have jumped, and not gone on for a whole way since
   RisingTimes times_{};
 };
 
 template <Limits limits>
 bool PoseTrack<limits>::push(const Pose& pose) {
   if (!detail::acceptable(pose) || !times_.admits(pose.time_ns)) return false;
-  if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // those before are of another time
+  if (size_ > 0 && pose.time_ns <= newest().time_ns) forget();  // earlier poses are of another time base
   times_.take(pose.time_ns);
   if (open()) {
     poses_[place(0)] = pose;
@@ -188,7 +188,7 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
   using Kind = PoseStepNews::Kind;
   while (fresh_ > (open() ? 1 : 0) && back(fresh_ - 1).time_ns <= until_ns) {
     const int age = --fresh_;
-    // As fast as after the last jump, if there are two poses to tell, else as before it.
+    // At the speed since the last jump if two poses show it, else at that before.
     const int last = since_jump_ == 1 ? age + 2 : age + 1;
     const int most = since_jump_ > 1 && since_jump_ <= poses_of_a_way ? since_jump_ - 1 : poses_of_a_way;
     const detail::PoseResidual off = residual(last, most, age + 1, age);
@@ -209,8 +209,8 @@ std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) 
   return {};
 }
 
-/// Later than all poses, or earlier: goes on from the one at that end as the robot went; without another that tells, it
-/// stands. `inward` is the way to the other end.
+/// Later than all poses, or earlier: goes on from the one at that end at the robot's speed, or stands if no other pose
+/// shows it. `inward` is the direction to the other end.
 template <Limits limits>
 bool PoseTrack<limits>::beyond(std::int64_t time_ns, int end, int inward, std::int64_t bound, Pose& out) const {
   const std::int64_t end_ns = back(end).time_ns;

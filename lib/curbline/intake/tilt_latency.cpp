@@ -8,14 +8,14 @@
 namespace curbline {
 namespace {
 
-/// Of what is not known of the latency, the part by which the sweeps of a robot that drives may differ.
+/// Share of the prior deviation by which sweeps of a robot that drives may differ.
 constexpr float sweep_share = 0.2f;
 
-/// Of lines on end that disagree with what is known, each by three standard deviations at least.
+/// Consecutive lines that disagree with the estimate, each by at least three standard deviations.
 constexpr int lines_of_a_step = 10;
 
-/// What is estimated is known no better than to that share of the prior's variance: 3 us of 10 ms. Rounding would have
-/// it known exactly, which is said of what is not estimated.
+/// Lower bound of an estimate's variance, as a share of the prior's: 3 us of 10 ms. Rounding could make it 0, which
+/// means that it is not estimated.
 constexpr float least_share = 1e-7f;
 
 }  // namespace
@@ -27,7 +27,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   largest_offset_s_ = 5.0f * tilt.latency_sd_s;
   time_variance_s2_ = square(tilt.time_sd_s);
   angle_variance_ = square(tilt.angle_sd_rad);
-  // Below it a wrong latency is less than the error of an angle.
+  // At slower rates a wrong latency matters less than the error of an angle.
   turns_.init(tilt.latency_sd_s > 0.0f ? tilt.angle_sd_rad / tilt.latency_sd_s : 0.0f);
   covariance_[now][now] = other_.variance_s2 = prior_variance_s2_;
   if (!drives_) return;
@@ -57,14 +57,14 @@ void TiltLatency::take_up_other_direction() {
   other_ = before;
 }
 
-/// The second sweep is late as the first is; after that the ground is the datum.
+/// The second sweep is as late as the first; after that the ground is the datum.
 void TiltLatency::turn_standing() {
   auto& p = covariance_;
   p[now][now] = turned_ ? p[now][now] + prior_variance_s2_ : prior_variance_s2_;
   p[earlier][earlier] = p[now][earlier] = p[earlier][now] = turned_ ? 0.0f : prior_variance_s2_;
 }
 
-/// The ground that the last sweep has mapped is that before the new one, which differs from the constant at random.
+/// The last sweep's ground becomes the ground before; the new sweep differs from the constant at random.
 void TiltLatency::turn_driving() {
   auto& p = covariance_;
   p[earlier][earlier] = p[now][now];
@@ -95,7 +95,7 @@ void TiltLatency::Sums::add(const Sums& other) {
   points += other.points;
 }
 
-/// What even a step does not explain is another surface: the face of a curb, somebody walking.
+/// A point that not even a step explains is of another surface: the face of a curb, a pedestrian.
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
@@ -123,21 +123,21 @@ TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
   return correction;
 }
 
-/// Of a line as a whole, with what all its points share: the time and angle of the readings next to it, the pose, the
-/// ground's slope.
+/// The observation of a whole line, with the variance that all its points share: time and angle of the readings next to
+/// it, pose, slope of the ground.
 TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
   const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
   const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
   return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision};
 }
 
-/// Kalman's update by one observation, of this sweep's offset less a multiple of that of the ground before; false if
-/// they disagree.
+/// Kalman update by one observation of this sweep's offset less a multiple of the ground's; false if it disagrees with
+/// the estimate.
 bool TiltLatency::update(const Observation& seen, Correction& correction) {
   std::array<float, states> cross{};  // covariance of each state and the observation
   for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // nor what is no number
+  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // NaN too
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
   offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
@@ -153,10 +153,10 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   return true;
 }
 
-/// A line that disagrees with what is known. A step is common to all that is not known exactly: a ground that is the
-/// datum stays where it is.
+/// A line that disagrees with the estimate. A step moves every state that is not known exactly: ground that is the
+/// datum stays.
 void TiltLatency::suspect(const Observation& seen) {
-  if (known(now)) return;  // it is not estimated
+  if (known(now)) return;  // the latency is not estimated
   const float apart_s2 = square(seen.missing_s - suspected_.missing_s);
   const bool like_last = lines_suspected_ > 0 && apart_s2 <= gate * (seen.variance_s2 + suspected_.variance_s2);
   lines_suspected_ = like_last ? lines_suspected_ + 1 : 1;
@@ -177,10 +177,10 @@ float TiltLatency::sd_s() const {
   return square_root(covariance_[now][now]);
 }
 
-/// The constant of a drive; of a robot that stands the mean of both directions, each by its variance. Where sweeps are
-/// as different as those of a drive may be, each differs from it at random; of two that were taken to be alike so do
-/// both. Where the mean of a drive's last two, one of each direction, lies farther from the constant than that the
-/// servo's latency may have changed, and the constant lags behind.
+/// Driving, the constant; standing, the mean of both directions, weighted by variance. Single sweeps differ from it at
+/// random, standing too (and both of two that were taken to be alike). If the mean of a drive's last two sweeps, one of
+/// each direction, deviates from the constant by more than that, the servo's latency may have changed, and the constant
+/// lag.
 TiltLatency::Usual TiltLatency::usual() const {
   const auto& p = covariance_;
   if (!turned_ || known(now)) return {offset_s_, sd_s()};
