@@ -1,15 +1,15 @@
-// How a track of samples goes on beyond its ends. Two samples a moment apart differ by their errors: poses of two
-// sources, a servo's frame that has waited on the bus and is stamped just before the next. Carried on at the rate
-// between them, that would grow as many times as the moment is shorter than the way.
+// Extrapolation beyond the ends of a track of samples. Two samples a moment apart differ mostly by their errors: poses
+// of two sources, or a servo's frame that waited on the bus and is stamped just before the next. Extrapolated at the
+// rate between them, these errors would be multiplied.
 #pragma once
 
 #include <cstdint>
 
 namespace curbline {
 
-/// Of `size` samples at rising or falling times time_of(k), the one that tells the rate at `end` for a time beyond it:
-/// the nearest on the way `inward`, 1 or -1, that lies at least half as far from it as that time does. -1 if none does.
-/// O(size), as a rule one look.
+/// Which of `size` samples, at rising or falling times time_of(k), gives the rate at sample `end` for a time beyond it:
+/// the nearest in direction `inward`, 1 or -1, at least half as far from it as that time is. -1 if there is none.
+/// O(size), as a rule one step.
 template <typename TimeOf>
 int sample_for_rate(std::int64_t time_ns, int end, int inward, int size, TimeOf&& time_of) {
   const auto apart = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };

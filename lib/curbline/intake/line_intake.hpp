@@ -1,8 +1,8 @@
-// From a scan line to its points in the map. Owns all that tells where they lie: the tilt and the poses over time, how
-// late the tilt is, what the poses are set back by. The map is not its own: it tells it where a sweep begins and where
-// poses jump, and moves what was mapped too late or too early. A line is placed first, the window follows the robot,
-// then the line is projected. Cost: about 170 operations a beam, 120 of one outside the window (line_projection.hpp),
-// and what tilt_latency.hpp and pose_offset.hpp say.
+// From a scan line to its points in the map. Owns everything that decides where they lie: tilt and poses over time, the
+// tilt's latency, the correction of poses. It does not own the map, but marks there where a sweep begins and where
+// poses jump, and corrects heights that were mapped with a wrong latency. A line is placed first, then the window
+// follows the robot, then the line is projected. Cost: about 170 operations a beam, 120 outside the window
+// (line_projection.hpp), and those of tilt_latency.hpp and pose_offset.hpp.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +30,14 @@ namespace curbline {
 template <Limits limits>
 class LineIntake {
  public:
-  /// Working memory of one line: its tilt and motion as place() finds them, its points as project() does.
+  /// Working memory of one line: its tilt and motion, set by place(), and its points, by project().
   struct Work {
     TiltSnapshot<limits> tilt;
     LineMotion motion;
     ProjectedLine<limits> projected;
   };
 
-  /// With the interrupt that calls add_tilt() masked, and not beside that of another thread. Settings are valid.
+  /// While nothing calls add_tilt(), from an interrupt or another thread. Settings are valid.
   [[gnu::cold]] void init(const Settings& settings);
 
   /// A reading of the tilt servo; false if dropped. Wait-free: TiltTrack::push().
@@ -47,13 +47,13 @@ class LineIntake {
   /// Readings that add_tilt() has dropped.
   std::uint32_t tilt_dropped() const { return tilt_track_.dropped(); }
 
-  /// Finds everything that can be wrong with a line, before it changes anything. If nothing is: where it lies.
+  /// Refuses a bad line before it changes anything; else finds its tilt and motion.
   Status place(const ScanLine& line, Dem<limits>& dem, Work& work);
 
-  /// The points of a line that has been placed, compared with ground that was mapped before: whose a jump of the poses
-  /// was, and how late the tilt is. What the latency turns out to be moves the map. False if the line was measured as
-  /// poses jumped, or the robot climbed, and the map says that it does not lie where they have it: a ridge as high as
-  /// the jump, of a single line. Where the map says nothing points that may be one are left out.
+  /// Projects a line that has been placed, and compares it with ground mapped before, to find whose a jump of the poses
+  /// was and how late the tilt is; a correction of the latency moves the map. False if the line was measured while
+  /// poses jumped or the robot climbed, and lies off the map: it would form a ridge as high as the jump. Where there is
+  /// no map to compare with, doubtful points are left out.
   bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                Counters& counters);
 
@@ -61,18 +61,18 @@ class LineIntake {
   const PoseOffset& pose_offset() const { return pose_offset_; }
 
  private:
-  /// Over a kerb, wheels half a metre apart, at a quarter of a metre a second. Poses that jump for longer say nothing
-  /// of it: lines are taken where they have them, or there would be no map to compare any with.
+  /// Time to cross a curb, with wheels half a metre apart, at 0.25 m/s. Poses that jump for longer are something else:
+  /// lines are taken where they put them, or there would never be a map to compare with.
   static constexpr std::int64_t longest_climb_ns = 2'000'000'000;
 
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem);
-  /// May its localisation step while the robot climbs, as it does now?
+  /// Does the robot climb, with a localisation that may step meanwhile?
   bool climbs() const { return pose_track_.climbs() && pose_offset_.localisation_steps(); }
 
-  float tilt_rate_rad_s_ = 0.0f;     ///< of the line in hand
-  bool jumped_ = false;              ///< poses, while the last line was measured
-  std::int64_t jumps_since_ns_ = 0;  ///< and all before it, or the robot climbed, from that one on
+  float tilt_rate_rad_s_ = 0.0f;     ///< of the current line
+  bool jumped_ = false;              ///< poses jumped during the last line ...
+  std::int64_t jumps_since_ns_ = 0;  ///< ... and, or the robot climbed, during all lines from this time on
   RisingTimes line_times_{};
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};
@@ -113,7 +113,7 @@ Status LineIntake<limits>::place(const ScanLine& line, Dem<limits>& dem, Work& w
   return Status::ok;
 }
 
-/// False if there are no angles for the line.
+/// False if the line has no angles.
 template <Limits limits>
 bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem,
                                      TiltSnapshot<limits>& tilt) {
@@ -131,8 +131,8 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
   return true;
 }
 
-/// The robot is where a line begins. Lines that are measured while poses jump say nothing of where the ground was
-/// before, nor do those after, and as long as it climbs those between jumps.
+/// Follows the poses up to a line. Ground seen while poses jump, or later, does not count as mapped before the jump;
+/// nor, while the robot climbs, does that seen between jumps.
 template <Limits limits>
 void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
   pose_offset_.begin_line(pose.x_m, pose.y_m);
@@ -153,7 +153,7 @@ template <Limits limits>
 bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                                  Counters& counters) {
   const LineMotion& motion = work.motion;
-  // As long as it is not decided who has jumped, heights may be set back, to below the ceiling too.
+  // While it is undecided whose a jump was, heights may yet be lowered below the ceiling.
   const float ceiling_m = pose_offset_.undecided() ? std::numeric_limits<float>::infinity() : map.ceiling_m();
   line_projection_.project(line, work.tilt, motion, dem.surroundings(ceiling_m), counters, work.projected);
   if (!motion.jumps.any() && !climbs()) {

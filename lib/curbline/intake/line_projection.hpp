@@ -1,6 +1,6 @@
-// From a scan line to points with the variance of their heights: the beam's own time, tilt and pose for each (as
-// every nodding laser wants: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line). About 170
-// operations a beam, 120 of one that returns from outside the map.
+// From a scan line to points with the variance of their heights. Each beam has its own time, tilt and pose, as a
+// nodding laser requires: at 40 Hz and 0.3 rad/s the tilt turns by half a degree within a line. About 170 operations a
+// beam, 120 for one that returns from outside the map.
 #pragma once
 
 #include <algorithm>
@@ -23,32 +23,30 @@
 
 namespace curbline {
 
-/// Where the robot is while a line is measured: the poses of its first and last beam. Between them points are
-/// interpolated, which is exact for a motion without turning and off by (turn)^2 / 8 of the range with one: 0.5 mm at
-/// 10 m and 1 deg a line.
+/// The robot's motion while a line is measured: the poses of its first and last beam. Points are interpolated between
+/// them, which is exact without turning, and with it off by (turn)^2 / 8 of the range: 0.5 mm at 10 m and 1 deg a line.
 struct LineMotion {
   Transform T_map_base_first{}, T_map_base_last{};
   bool still = true;  ///< both are the identity
   PoseJumps jumps{};  ///< of the poses around the line
 
-  /// Variance of a point's height by these: in between, the robot has jumped at any time. s of the way from the one to
-  /// the other, the pose that is interpolated is off by s of the jump or 1 - s: s (1 - s) is the mean square, over all
-  /// s a sixth.
+  /// Variance of a point's height by jumps, which may have happened at any time in between. At a share s of the way,
+  /// the interpolated pose is off by s of the jump or by 1 - s: the mean square is s (1 - s), a sixth over all s.
   float blur_m2(float x_m, float y_m) const {
     const float dx_m = x_m - T_map_base_first.translation.x(), dy_m = y_m - T_map_base_first.translation.y();
     return (1.0f / 6) * (jumps.height_m2 + jumps.attitude_rad2 * (dx_m * dx_m + dy_m * dy_m));
   }
 };
 
-/// The points of a line, in the order of the beams; those that did not return, stand alone or lie outside the bounds
-/// that are asked for, are left out.
+/// The points of a line, in the order of the beams, without those that did not return, stand alone or lie out of
+/// bounds.
 template <Limits limits>
 class ProjectedLine {
  public:
   ProjectedLine() {}
   void add(const Point& point) { ::new (static_cast<void*>(points_.data() + count_++)) Point(point); }
   void leave_out() { ++outside_; }
-  /// Leaves out the points of which that is true; false if it is of none.
+  /// Removes the points for which `of` is true; false if there are none.
   template <typename Of>
   bool leave_out_if(Of&& of) {
     const std::span<Point> all = points();
@@ -58,11 +56,11 @@ class ProjectedLine {
   }
   std::span<const Point> points() const { return {points_.data(), count_}; }
   std::span<Point> points() { return {points_.data(), count_}; }
-  /// How many have returned from outside the bounds.
+  /// How many returned from out of bounds.
   std::uint32_t outside() const { return outside_; }
 
  private:
-  /// Begun as they are added: to begin them all takes 13,000 instructions.
+  /// Constructed as they are added: to construct them all takes 13,000 instructions.
   union {
     std::array<Point, limits.beams> points_;
   };
@@ -75,8 +73,8 @@ class LineProjection {
  public:
   [[gnu::cold]] void init(const Settings& settings);
 
-  /// Adds a point to `out` for each beam that returned from within bounds. `tilt` is not read with a fixed tilt.
-  /// The line has at most limits.beams. What stands alone is left out, unless it did in the line before too.
+  /// Adds a point to `out` for each beam that returned from within bounds. `tilt` is not read with a fixed tilt. The
+  /// line has at most limits.beams. Lone returns are left out, unless the same beam stood alone in the line before.
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, const Bounds& bounds,
                Counters& counters, ProjectedLine<limits>& out);
 
@@ -88,10 +86,10 @@ class LineProjection {
   bool returned(float range_m) const {
     return range_m > 0.0f && range_m >= laser_.min_range_m && range_m < laser_.max_range_m;
   }  // false for NaN
-  /// How a beam lies to the two beside it, by three standard deviations.
+  /// A beam compared with the two beside it, by three standard deviations.
   struct Neighbours {
-    float farther_m = 0.0f;  ///< they see, on the mean, as long as all three agree: one surface
-    bool alone = false;      ///< it is nearer than both, or farther. What did not return is neither.
+    float farther_m = 0.0f;  ///< their mean range less its own, if all three agree: one surface
+    bool alone = false;      ///< it is nearer than both, or farther; both have returned
   };
   Neighbours neighbours(float before_m, float own_m, float after_m, float three_sd_m2) const {
     const float apart = after_m - before_m, off = 0.5f * (before_m + after_m) - own_m;
@@ -102,7 +100,7 @@ class LineProjection {
       return {};
     return {0.0f, returned(before_m) && returned(after_m)};
   }
-  /// Of the map's x, y or z in the tilt axis' frame.
+  /// The map's x, y or z axis, in the frame of the tilt axis.
   Eigen::Vector3f gradient(const LineMotion& motion, int axis) const {
     if (motion.still) return T_base_tilt_.rotation.row(axis);
     return rotated(T_base_tilt_.rotation.transpose(), motion.T_map_base_first.rotation.row(axis));
@@ -119,7 +117,7 @@ class LineProjection {
   Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(),
                   laser_y_ = Eigen::Vector3f::UnitY();           ///< the laser's axes, in the tilt frame
   std::array<SinCos, limits.beams> bearing_;                     ///< of each beam
-  std::array<std::uint32_t, (limits.beams + 31) / 32> alone_{};  ///< which beams stood alone in the last line, bits
+  std::array<std::uint32_t, (limits.beams + 31) / 32> alone_{};  ///< bits: beams that stood alone in the last line
 };
 
 template <Limits limits>
@@ -139,7 +137,7 @@ void LineProjection<limits>::init(const Settings& settings) {
   }
 }
 
-/// Of a point outside the bounds nothing more is asked than where it lies: most are, above the ground or far away.
+/// For a point out of bounds only the place is computed: most points are, above the ground or far away.
 template <Limits limits>
 void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion,
                                      const Bounds& bounds, Counters& counters, ProjectedLine<limits>& out) {

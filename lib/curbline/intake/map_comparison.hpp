@@ -1,6 +1,6 @@
-// What the points of a line say against the ground that the map has had before them: whether a jump of the poses was
-// the robot's or its localisation's (pose_offset.hpp), and how late the tilt is (tilt_latency.hpp). Owns nothing and
-// lives for one line: it looks at what the stages know when that comes. Cost: that of those two, a point each.
+// Compares the points of a line with the ground mapped before it, to find whether a jump of the poses was the robot's
+// or its localisation's (pose_offset.hpp), and how late the tilt is (tilt_latency.hpp). A view of the stages, made for
+// one line; owns nothing. Cost: that of those two, a point each.
 #pragma once
 
 #include "curbline/intake/line_projection.hpp"
@@ -16,39 +16,39 @@ namespace curbline {
 template <Limits limits>
 class MapComparison {
  public:
-  /// Points above the ceiling, z of the map frame, are none of the ground. Cells without a mark are looked for at most
-  /// `reach` away, on a row or column.
+  /// Points above the ceiling, z of the map frame, are not of the ground. Unmarked cells are searched up to `reach`
+  /// cells away, on a row or column.
   MapComparison(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
                 float ceiling_m, int reach)
       : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m), reach_(reach) {}
 
   float ceiling_m() const { return ceiling_m_; }
 
-  /// While it is not decided who has jumped: tells `offset` how the line lies against cells without a mark, and sets
-  /// the line back by what is known then.
+  /// While it is undecided whose a jump was: gives `offset` the line's heights above unmarked cells, and applies the
+  /// correction to the line.
   void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
 
-  /// Where does a line lie that is measured while poses jump, or between jumps of a robot that climbs? Off the map if
-  /// all of it is off, the same way, by as much as they jump. If too little of it lies where the map knows the ground,
-  /// in part: points are left out that may be off by more than the points of a place share of their noise.
+  /// Tests a line measured while poses jump, or between jumps of a robot that climbs. It is off the map if it deviates
+  /// as a whole, by about as much as the poses jump. If too little of it lies on mapped ground, it is taken in part:
+  /// without points that may be off by more than the noise that points of one place share.
   enum class JumpLine : unsigned char { on_map, in_part, off_map };
   JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,
                       const PoseOffset& offset) const;
 
-  /// Tells `latency` of the points that lie where an earlier sweep has been, and this one not yet.
+  /// Gives `latency` the points on ground seen by an earlier sweep, and not yet by this one.
   void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
                       TiltLatency& latency) const;
 
  private:
-  /// Of a step by which no pose tells how large it is: from farther away the ground beyond a kerb would look like one.
+  /// Cells, for a step of unknown size: from farther away, ground beyond a curb would look like one.
   static constexpr int reach_of_climbs = 2;
 
   using Place = typename Dem<limits>::Place;
   void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach, PoseOffset& offset) const;
-  /// What a cell says of the ground at a point.
+  /// The ground at a point, by a cell.
   struct Ground {
-    float above_m, variance_m2;  ///< how far the point lies above it; variance of the ground's own height
-    float rise_variance_m2;      ///< and by the slope of the plane, from the cell's centroid to the point
+    float above_m, variance_m2;  ///< the point's height above it; variance of the ground's own height ...
+    float rise_variance_m2;      ///< ... and by the plane's slope, from the cell's centroid to the point
     float growth_m_s;
   };
   bool ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const;
@@ -118,7 +118,7 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
   }
 }
 
-/// By the slope of the cell's plane from its centroid; false if it has no plane, or more than one surface.
+/// From the cell's centroid along the slope of its plane; false if it has no plane, or more than one surface.
 template <Limits limits>
 bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const {
   const int slot = dem_.slot(of.i, of.j);

@@ -1,6 +1,6 @@
-// Times that must rise: of readings, poses and scan lines. What is not later than the newest is refused; but where 16
-// times on end rise among themselves, it is the newest that was wrong, a damaged stamp or a clock that has been set
-// back since, and they are right. No queue on the way holds as many in order. O(1); one context.
+// Times that must rise: of readings, poses and scan lines. One that is not later than the newest is refused. But if 16
+// in a row are refused and rise among themselves, the newest was wrong (a damaged stamp, or a clock set back since),
+// and they are right: no queue before the pipeline holds as many in order. O(1); one context.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@ namespace curbline {
 class RisingTimes {
  public:
   static constexpr int most_refused = 15;  ///< in a row that rise
-  /// 126 years either way, so that the difference of two times, and a little more, is one: beyond, it is damaged.
+  /// 126 years either way: the difference of two such times, and a little more, does not overflow. A time beyond is
+  /// damaged.
   static constexpr std::int64_t furthest_ns = 4'000'000'000'000'000'000;
 
   static constexpr bool is_time(std::int64_t time_ns) { return time_ns <= furthest_ns && time_ns >= -furthest_ns; }
 
-  /// May a time follow the newest? Counts it if not.
+  /// May this time follow the newest? Counts it if not.
   bool admits(std::int64_t time_ns) {
     if (!is_time(time_ns)) return false;
     if (time_ns > newest_ns_) return true;

@@ -1,5 +1,5 @@
-// Where the tilt servo turns round, and a new sweep begins. Known from two lines on end that lie between other
-// readings: one damaged reading leads all those before it or after it astray. O(1) a line.
+// Where the tilt servo reverses, and a new sweep begins. Needs two consecutive lines between different readings, since
+// one damaged reading misleads all lines before it or after it. O(1) a line.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace curbline {
 
 class SweepTurns {
  public:
-  /// A rate below slow_rad_s tells no direction.
+  /// A rate below slow_rad_s has no direction.
   void init(float slow_rad_s) {
     *this = SweepTurns{};
     slow_rad_s_ = slow_rad_s;
@@ -16,22 +16,22 @@ class SweepTurns {
 
   enum class Turn : std::uint8_t {
     none,
-    back,  ///< by play: the sweep goes on
+    back,  ///< by play: the old sweep goes on
     new_sweep,
   };
-  /// The angle and its rate at the beginning of a line, and the number of the reading after it: has the servo turned
-  /// round?
+  /// Has the servo reversed? Given the angle and its rate at the beginning of a line, and the number of the next
+  /// reading.
   Turn follow(float angle_rad, float rate_rad_s, std::uint32_t reading);
 
  private:
-  /// No sweep worth the name is smaller; turns closer together come from damaged readings and from play.
+  /// Smaller than any real sweep: reversals closer together come from damaged readings and from play.
   static constexpr float least_sweep_rad = 0.05f;
 
   float slow_rad_s_ = 0.0f;
   bool begun_ = false;
   bool downward_ = false;            ///< the angle grows
-  bool turns_ = false;               ///< it seems to grow no more, or again, by the last line ...
-  std::uint32_t turns_reading_ = 0;  ///< ... and this reading
+  bool turns_ = false;               ///< the last line has the other direction, first seen ...
+  std::uint32_t turns_reading_ = 0;  ///< ... before this reading
   float turned_at_rad_ = 0.0f;       ///< where the sweep began
 };
 

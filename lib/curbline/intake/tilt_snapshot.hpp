@@ -1,5 +1,6 @@
-// The angle of the tilt servo at each beam of a line, between the readings that a TiltTrack held when the line came,
-// and a little beyond them. Working memory of one line. Cost: a step a beam, and a search for a rate a reading.
+// The angle of the tilt servo at each beam of a line, interpolated between the readings that a TiltTrack held when the
+// line came, and extrapolated a little. Working memory of one line. Cost: a step a beam, and a search for the rate a
+// reading.
 #pragma once
 
 #include <array>
@@ -19,34 +20,33 @@ struct TiltAngle {
   enum class Source : std::uint8_t { none, interpolated, extrapolated };
   Source source = Source::none;
   float angle_rad = 0.0f;
-  float rate_rad_s = 0.0f;  ///< by which the angle would differ if time did: over 15 ms about it, if there are readings
+  float rate_rad_s = 0.0f;  ///< over at least 15 ms around the time, if there are readings
 };
 
 /// Readings ascending in time; times are those at which the angles were true.
 template <Limits limits>
 class TiltSnapshot {
  public:
-  /// How TiltTrack makes one: it puts `count` readings in, number 0 the oldest, and begins with the newest `whole` of
-  /// them, as far as their times rise. `written`: how many there have been up to the newest, since init(). How many
-  /// have come beyond the first that is later than `until_ns`, a line's last beam, changes nothing of what is told
-  /// between readings.
+  /// For TiltTrack: put() stores `count` readings, number 0 the oldest, and begin() uses the newest `whole` of them, as
+  /// far as their times rise. `written` counts the readings up to the newest since init(). Angles between readings do
+  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam.
   void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
   void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
              std::int64_t until_ns);
 
-  /// The angle at a time; Source::none where readings do not tell. O(1) on average while times rise; an earlier one
-  /// than the last only after rewind().
+  /// The angle at a time; Source::none where no readings are near. Times must not fall, except after rewind(). O(1) on
+  /// average.
   TiltAngle at(std::int64_t time_ns);
-  /// Number of the reading up to which the last answer goes; the same for all times between two readings.
+  /// Number of the reading that follows the last time asked for; the same for all times between two readings.
   std::uint32_t reading_number() const { return written_ - static_cast<std::uint32_t>(size_ - cursor_); }
-  /// Lets the next question be an earlier one.
+  /// Allows the next time to be an earlier one.
   void rewind() {
     cursor_ = 0;
     segment_from_ns_ = segment_to_ns_ = 0;
   }
 
  private:
-  /// Not inlined, so that at() is, which is asked for each beam: 16,000 instructions a line of a Cortex-M7.
+  /// Not inlined, so that at() is, which runs for each beam: saves 16,000 instructions a line on a Cortex-M7.
   [[gnu::noinline]] TiltAngle find(std::int64_t time_ns);
   TiltAngle beyond(std::int64_t time_ns, int end, int inward) const;
   static float seconds(std::int64_t ns) { return to_float(ns) * 1e-9f; }
@@ -59,24 +59,24 @@ class TiltSnapshot {
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
-  int awaited_ = 0;            ///< readings up to the first later than the line's last beam
-  std::uint32_t written_ = 0;  ///< readings up to the newest of them, since init()
-  int cursor_ = 0;             ///< readings_[cursor_] is the first later than the last question, or size_
+  int awaited_ = 0;            ///< readings up to the first one later than the line's last beam
+  std::uint32_t written_ = 0;  ///< readings up to the newest, since init()
+  int cursor_ = 0;             ///< the first reading later than the last time asked for, or size_
   std::int64_t max_gap_ns_ = 0, max_extrapolation_ns_ = 0;
   float angle_variance_ = 0.0f, time_variance_s2_ = 0.0f;  ///< of a reading
-  // Between the two readings that a question fell between last; empty before one does.
+  // The segment between two readings that the last time fell into; empty at first.
   std::int64_t segment_from_ns_ = 0, segment_to_ns_ = 0;
   float segment_angle_rad_ = 0.0f, segment_slope_rad_s_ = 0.0f, segment_rate_rad_s_ = 0.0f;
 
-  /// Rates are told over as long a time at least. Stamps jitter by a millisecond: two frames at 50 Hz tell a rate to
-  /// 7 %, at 100 Hz to 14 %, and those of a servo that reports at 1 kHz any.
+  /// Shortest time over which a rate is computed. Stamps jitter by a millisecond: two frames at 50 Hz give a rate to 7
+  /// %, at 100 Hz to 14 %, and at 1 kHz any.
   static constexpr std::int64_t rate_span_ns = 15'000'000;
 };
 
 template <Limits limits>
 void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written,
                                  const TiltSettings& settings, std::int64_t until_ns) {
-  std::uint32_t kept = whole > 0 ? 1 : 0;  // what came before the times went back is of another time
+  std::uint32_t kept = whole > 0 ? 1 : 0;  // readings before times went back are of another time base
   while (kept < whole && readings_[count - kept - 1].time_ns < readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) readings_[k] = readings_[count - kept + k];
   size_ = awaited_ = static_cast<int>(kept);
@@ -97,8 +97,7 @@ TiltAngle TiltSnapshot<limits>::at(std::int64_t time_ns) {
   return {TiltAngle::Source::interpolated, segment_angle_rad_ + since_s * segment_slope_rad_s_, segment_rate_rad_s_};
 }
 
-/// The angle at a time outside the segment in hand; makes the segment that the time lies in, if it does, the one in
-/// hand.
+/// The angle at a time outside the current segment; the segment around that time, if there is one, becomes the current.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   while (cursor_ < size_ && reading(cursor_).time_ns <= time_ns) ++cursor_;
@@ -118,9 +117,8 @@ TiltAngle TiltSnapshot<limits>::find(std::int64_t time_ns) {
   return {TiltAngle::Source::interpolated, a.angle_rad + seconds(time_ns - a.time_ns) * slope, rate_rad_s};
 }
 
-/// About two readings, of which the rate from one to the other is `own_rad_s`: with those around them, as long as they
-/// are too close to tell it. If they lie off that by three standard deviations, near a turn of the servo or a damaged
-/// reading, their own.
+/// The rate around two readings: over as many more on both sides as make up rate_span_ns. `own_rad_s`, that between the
+/// two, is used where they deviate from it by three standard deviations, near a reversal or at a damaged reading.
 template <Limits limits>
 float TiltSnapshot<limits>::rate_about(int before, int after, float own_rad_s) const {
   const auto goes_on = [this](int k) { return reading(k + 1).time_ns - reading(k).time_ns <= max_gap_ns_; };
@@ -137,7 +135,7 @@ float TiltSnapshot<limits>::rate_about(int before, int after, float own_rad_s) c
   return square(off_rad) <= gate * variance ? rate_rad_s : own_rad_s;
 }
 
-/// The angle at an end of the readings or beyond it, at their rate there. `inward` is the way to the other end.
+/// The angle at an end of the readings or beyond it, at the rate there. `inward` is the direction to the other end.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward) const {
   const std::int64_t end_ns = reading(end).time_ns;
@@ -153,7 +151,7 @@ TiltAngle TiltSnapshot<limits>::beyond(std::int64_t time_ns, int end, int inward
           reading(end).angle_rad + seconds(time_ns - end_ns) * rate_rad_s, rate_rad_s};
 }
 
-/// Of one reading, or beside a gap too wide to say anything of the time between: good at its own moment only.
+/// The angle of a single reading, or beside a gap too wide to interpolate: valid at its own time only.
 template <Limits limits>
 TiltAngle TiltSnapshot<limits>::alone(std::int64_t time_ns, const TiltReading& reading) {
   if (time_ns != reading.time_ns) return {};

@@ -1,5 +1,5 @@
-// The angle of the tilt servo over time: readings come from an interrupt or another thread, in their own rhythm, and a
-// scan line takes a snapshot of them (tilt_snapshot.hpp), without a lock.
+// The angle of the tilt servo over time. Readings come from an interrupt or another thread, at their own rate; a scan
+// line takes a snapshot of them (tilt_snapshot.hpp), without a lock.
 #pragma once
 
 #include <array>
@@ -25,8 +25,7 @@ class TiltTrack {
       "one out, and a rate wants two");
 
  public:
-  /// Forgets all readings. Before the interrupt that calls push() is enabled, or with it masked; not beside push() of
-  /// another thread.
+  /// Forgets all readings. Call while nothing calls push(): with its interrupt masked or its thread stopped.
   void init(const TiltSettings& settings) {
     settings_ = settings;
     written_.store(0, std::memory_order_relaxed);
@@ -39,8 +38,8 @@ class TiltTrack {
   /// One writer only.
   bool push(const TiltReading& reading);
 
-  /// Copies the readings. O(tilt_samples). A reading that the writer may have been replacing meanwhile is left out.
-  /// `offset_s` is added to TiltSettings::latency_s. `until_ns` is the line's last beam.
+  /// Copies the readings, except those that the writer may have replaced meanwhile. `offset_s` is added to
+  /// TiltSettings::latency_s; `until_ns` is the time of the line's last beam. O(tilt_samples).
   void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) const;
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
