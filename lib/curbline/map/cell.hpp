@@ -11,10 +11,10 @@ struct CellPrior {
   float variance_m2 = 0.02f * 0.02f;  ///< [1e-10, 100]
 };
 
-/// Sufficient statistics. A point of weight w is a height with variance (noise variance of the cell) / w, so that a
-/// noisier reading moves the mean less. Offsets are from the cell's centre: exact in float wherever the map is.
+/// Sufficient statistics. A point of weight w is a height with the variance (noise variance of the cell) / w, so that a
+/// noisier reading moves the mean less. Offsets are from the cell's centre: as exact in float wherever the map is.
 struct Cell {
-  float points = 0.0f;      ///< how many; those that have faded count in part
+  float points = 0.0f;      ///< their number; faded ones count in part
   float weight = 0.0f;      ///< kappa: sum of their weights
   float height_m = 0.0f;    ///< posterior mean
   float scatter_m2 = 0.0f;  ///< weighted sum of squares about the mean
@@ -35,14 +35,14 @@ struct Cell {
     dy_m += gain * (point_dy_m - dy_m);
   }
 
-  /// What was seen so far counts for a share of what it did.
+  /// What was seen so far keeps a share of its weight.
   void fade(float share) {
     points *= share;
     weight *= share;
     scatter_m2 *= share;
   }
 
-  /// Mode of the variance's posterior, for a point of weight 1.
+  /// Posterior mode of the variance, for a point of weight 1.
   float variance_m2(const CellPrior& prior) const {
     return (prior.degrees * prior.variance_m2 + scatter_m2) / (prior.degrees + points);
   }

@@ -1,6 +1,6 @@
-// The elevation map: what is in the cells of the rolling window (window.hpp). The heights of each (cell.hpp), its
-// neighbours, when and from where it was seen last, and how it moves with the tilt's latency. Cells that leave the
-// window are cleared.
+// The elevation map: the contents of the cells of the rolling window (window.hpp). For each cell its heights
+// (cell.hpp), its neighbours, when and from where it was last seen, and how its height depends on the tilt's latency.
+// Cells that leave the window are cleared.
 #pragma once
 
 #include <algorithm>
@@ -37,25 +37,25 @@ class Dem : public Window<limits> {
   /// Empties the map and places the window. Settings are valid.
   [[gnu::cold]] void init(const WindowSettings& settings, const PlanePrior& prior);
 
-  /// Makes the window follow (x, y), unless it is fixed. Cells that leave are cleared; calls left(slot) for each valid
-  /// one first. Cost: O(1), and a pass over the window if it moves.
+  /// Makes the window follow (x, y), unless it is fixed. Clears cells that leave, after calling left(slot) for each
+  /// valid one. O(1), or a pass over the window if it moves.
   template <typename Left>
   void follow(float x_m, float y_m, Left&& left);
 
-  /// Takes a point into its cell; false if it lies outside the window, beyond Pose::furthest_m above or below, or has a
-  /// value that is not finite. Its weight is the expected noise over its variance plus the ground's texture; none
-  /// beyond [1e-9, 1e9] is taken. The first of a sweep makes what a cell of more than one surface has of earlier ones
-  /// fade. O(1).
+  /// Takes a point into its cell. False if it is outside the window, beyond Pose::furthest_m above or below, has a
+  /// value that is not finite, or a weight outside [1e-9, 1e9]; the weight is the expected noise over the point's
+  /// variance plus the ground's texture. In a cell of more than one surface, the first point of a sweep makes earlier
+  /// sweeps fade. O(1).
   bool add(const Point& point);
 
-  /// The latency has turned out to be greater: moves the heights of cells that this sweep has seen, and of those that
-  /// it has not, to where they would have been put. None is touched by that: neighbours move alike.
+  /// Corrects heights for a latency that is greater than assumed, by this_sweep_s for cells seen in this sweep, by
+  /// earlier_s for the others. Cells do not count as touched: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
 
   // Its cells.
 
   const Cell& cell(int slot) const { return cells_[slot]; }
-  /// How far a cell's mean height lies above a plane, at its centroid.
+  /// Mean height of a cell above a plane, at the cell's centroid.
   float above_m(int i, int j, const Cell& cell, const Plane& plane) const {
     return cell.height_m - plane.height_m(centroid_x_m(i, cell), centroid_y_m(j, cell));
   }
@@ -100,18 +100,18 @@ class Dem : public Window<limits> {
     const int g = distances_[slot] >> (4 * direction) & 15;
     return g <= reach ? g : 0;
   }
-  /// The nearest valid cell without a mark on the row and column of a place inside the window, at most `reach` away.
+  /// The nearest valid unmarked cell on the row and column of a place inside the window, at most `reach` away.
   Place nearest_unmarked(const Place& place, int reach) const;
 
-  // What the heights within one say, beside the noise of its points.
+  // Spread of the heights within a cell, and noise.
 
-  /// What is known before any point; PlanePrior::common_share by what was found last.
+  /// The prior, with PlanePrior::common_share as last estimated.
   const PlanePrior& prior() const { return prior_; }
-  /// Variance that the points of a cell share, as it was found; what the prior makes of it until then.
+  /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }
-  /// Of cells that lie at a distance and hold few points, see Viewpoint::reach_m2(): no less.
+  /// The same for distant cells with few points, by Viewpoint::reach_m2(): at least as much.
   float common_m2(float reach_m2) const { return std::max(common_m2_, line_rad2_ * reach_m2); }
-  /// As evidence it is no less than the ground's texture.
+  /// In evidences, the shared part is at least the ground's texture.
   void set_common(float found_m2, float found_line_rad2) {
     common_m2_ = found_m2;
     line_rad2_ = found_line_rad2;
@@ -120,31 +120,31 @@ class Dem : public Window<limits> {
 
   /// Variance of a cell's mean height, from the noise of its points.
   float height_variance_m2(const Cell& cell) const { return prior_.noise_m2 / cell.weight; }
-  /// Scatter of a cell's heights beyond what the noise of its points makes; below 0 by chance.
+  /// Scatter of a cell's heights beyond the noise of its points; may be below 0 by chance.
   float spread_m2(const Cell& cell) const { return cell.scatter_m2 - prior_.noise_m2 * cell.points; }
-  /// Do they spread by two standard deviations of that noise? Then it holds more than one surface, or a steep one, or
+  /// Do its heights spread by two standard deviations of that noise? Then it holds several surfaces, or a steep one, or
   /// one after another.
   bool several_surfaces(const Cell& cell) const { return cell.scatter_m2 > 4.0f * prior_.noise_m2 * cell.points; }
-  /// Do the heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. Of
-  /// several, the sums of their spreads and weights.
+  /// Do heights within cells spread beyond noise as on a slope of 45 degrees? Then they are an obstacle's. For several
+  /// cells, pass the sums of their spreads and weights.
   bool steep(float spread_m2, float weight) const { return spread_m2 > (1.0f / 12) * cell_x_m() * cell_y_m() * weight; }
   bool steep(const Cell& cell) const { return steep(spread_m2(cell), cell.weight); }
-  /// Variance of the heights of a plane within a cell.
+  /// Variance of a plane's heights within a cell.
   float slope_m2(const Plane& plane) const {
     const float rise_x_m = plane.slope_x * cell_x_m(), rise_y_m = plane.slope_y * cell_y_m();
     return (rise_x_m * rise_x_m + rise_y_m * rise_y_m) * (1.0f / 12);
   }
-  /// Do the heights of a cell spread by two standard deviations beyond what the noise of its points and the slope of
-  /// its plane make? Then it holds more than the plane.
+  /// Do the heights of a cell spread by two standard deviations beyond noise and the slope of its plane? Then it holds
+  /// more than the plane.
   bool mixed(const Cell& cell, float slope_m2) const { return spreads(cell, slope_m2, prior_.noise_m2); }
   /// The same on rough ground.
   bool mixed(const Cell& cell, float slope_m2, float rough_m2) const {
     return spreads(cell, slope_m2, prior_.noise_m2 + rough_m2 * cell.weight / cell.points);
   }
 
-  // When and from where it was seen last.
+  // When and from where a cell was last seen.
 
-  /// Cells that a point has changed since clear_touched(), or that were cleared, by slot.
+  /// Has a cell changed since clear_touched(): by a point, or by being cleared?
   bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
   void clear_touched() {
     if (any_touched_) clear_all(touched_bit);
@@ -152,48 +152,48 @@ class Dem : public Window<limits> {
   }
   bool any_touched() const { return any_touched_; }
 
-  /// The laser sweeps over the ground anew. A pass over the window.
+  /// A new sweep begins. A pass over the window.
   void begin_sweep() { clear_all(sweep_bit); }
-  /// Has an earlier sweep seen the cell, and this one not yet?
+  /// Was the cell seen by an earlier sweep, and not yet by this one?
   bool mapped_before(int slot) const { return cell(slot).valid() && (seen_[slot] & sweep_bit) == 0; }
-  /// From now on cells that are seen bear a mark. A pass over the window.
+  /// Cells seen from now on are marked. A pass over the window.
   void begin_marking() { clear_all(marked_bit); }
   bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
-  /// The laser is there, in the map frame: what is seen from now on is seen from there.
+  /// Where the laser is from now on, in the map frame.
   void look_from(float x_m, float y_m) {
     viewpoints_.look_from({x_m, y_m});
     flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
   }
-  /// From where a cell was seen last: from `now`, with the laser in another place if it has moved.
+  /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved.
   Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
     const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
     return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
   }
-  /// If not, all has been seen from one place.
+  /// Has the laser moved? If not, all cells were seen from one place.
   bool seen_from_several() const { return viewpoints_.moved(); }
 
-  /// Mean of its points' growth by the tilt's latency.
+  /// Mean growth of its points' heights with the tilt's latency.
   float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
 
  private:
-  /// What the earlier sweeps of a cell that holds more than one surface count for when a new one sees it. Who has gone
-  /// is forgotten, and what has come is known, after a few; ground that stays is known the better the longer it is
-  /// seen.
+  /// Share that the earlier sweeps of a cell with several surfaces keep when a new sweep sees it. After a few sweeps a
+  /// person who has left is forgotten, and one who has come is known; ground that stays is known the better the longer
+  /// it is seen.
   static constexpr float memory = 0.25f;
-  /// A cell's points count as no more than that, in favour of the newest. More tell nothing, since they share a part of
-  /// their errors: of 512 that share a half all is known but 1 in 500. What has changed is known after as many, however
-  /// long a robot has stood before it.
+  /// A cell's points count as no more than this, in favour of the newest. More would add nothing, since they share a
+  /// part of their errors: 512 that share a half leave 1 in 500 to know. A change is known after as many points,
+  /// however long the robot has stood there.
   static constexpr float most_points = 512.0f;
   static constexpr int growth_scale = 1024;
-  /// Of a point. With one beyond these float would lose what it tells beside the others, or what they tell.
+  /// Of a point: beyond these, float would lose it beside the others, or the others beside it.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
   static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
-  /// Beyond slope and noise.
+  /// By two standard deviations beyond slope and noise?
   static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
-    const float freedom = cell.points - 1.0f;  // of the scatter that noise makes, chi^2
+    const float freedom = cell.points - 1.0f;  // of the noise's scatter, chi^2
     const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / noise_m2 - freedom;
     return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
   }
@@ -212,13 +212,13 @@ class Dem : public Window<limits> {
   float common_m2_ = 0.0f;
   PerCell<Cell, limits> cells_{};
   Viewpoints viewpoints_{};
-  /// Three bits, and above them the number of the viewpoint that the cell was seen from last.
+  /// Three bits, and above them the number of the viewpoint from which the cell was last seen.
   PerCell<std::uint8_t, limits> seen_{};
-  std::uint8_t flags_ = seen_bits;              ///< of a cell that is seen now
+  std::uint8_t flags_ = seen_bits;              ///< of a cell seen now
   PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
-  PerCell<std::uint16_t, limits> distances_{};  ///< of a valid cell: to the next valid ones, four bits a direction
-  float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Behind the cells: before them it costs the worst line of a
-                            ///< Cortex-R5F 9,000 instructions (tools/budget)
+  PerCell<std::uint16_t, limits> distances_{};  ///< from a valid cell to the next valid ones, four bits a direction
+  float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Placed behind the cells: before them it costs the worst line
+                            ///< of a Cortex-R5F 9,000 instructions (tools/budget)
   bool any_touched_ = false;
 };
 
@@ -256,7 +256,7 @@ void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
   this->move(to);
 }
 
-/// A cell that has just become valid: it and the next ones on its row and column learn of each other.
+/// Links a cell that has just become valid with the next ones on its row and column.
 template <Limits limits>
 void Dem<limits>::meet_neighbours(int i, int j) {
   const int s = this->slot(i, j);
@@ -276,7 +276,7 @@ void Dem<limits>::meet_neighbours(int i, int j) {
   }
 }
 
-/// Clears a cell. What lies beyond it leaves too, so its neighbours see nothing there any more.
+/// Clears a cell. What lies beyond it leaves too, so that its neighbours have none in that direction any more.
 template <Limits limits>
 void Dem<limits>::leave(int i, int j) {
   const int s = this->slot(i, j);
@@ -307,10 +307,10 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
 
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
-  const bool near = square(point.z_m) <= square(Pose::furthest_m);  // not of no number
+  const bool near = square(point.z_m) <= square(Pose::furthest_m);  // false for NaN
   if (!near || !(point.variance_m2 >= 0.0f)) return false;
   const float weight = prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2);
-  if (!(weight >= least_weight && weight <= most_weight)) return false;  // nor has an infinite variance one
+  if (!(weight >= least_weight && weight <= most_weight)) return false;  // false for an infinite variance too
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
@@ -326,8 +326,9 @@ bool Dem<limits>::add(const Point& point) {
   return true;
 }
 
-/// After the point has been added. A mean of many points changes by less than what is stored: it is rounded up as often
-/// as its fraction says, by the lot that the last bits of the point's height draw.
+/// Called after the point has been added. A mean of many points changes by less than the stored resolution, so it is
+/// rounded stochastically: up as often as its fraction says, with the last bits of the point's height for random
+/// numbers.
 template <Limits limits>
 void Dem<limits>::add_growth(int s, const Point& point, float weight) {
   const float before = static_cast<float>(growth_[s]);

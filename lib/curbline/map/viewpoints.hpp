@@ -1,6 +1,6 @@
-// From where a laser that drives has seen what it has: a ring of the newest places on its way, a twenty-fourth of the
-// window's side apart, each under a number of five bits that a cell can bear. It holds a way of a third more than that
-// side: of a cell that is older the number stands for a place where the robot has been since. Cost: O(1).
+// From where a driving laser has seen cells: a ring of the newest places on its way, a 24th of the window's side apart,
+// each with a number of five bits that a cell can store. It holds a way a third longer than that side; for an older
+// cell, the number stands for a place where the robot has been since. O(1).
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class Viewpoints {
     apart_m_ = window_side_m * (1.0f / 24);
   }
 
-  /// The laser is there.
+  /// The laser is at this place.
   void look_from(const Position& position) {
     const float dx_m = position.x_m - began_.x_m, dy_m = position.y_m - began_.y_m;
     if (places_ == 0 || dx_m * dx_m + dy_m * dy_m > apart_m_ * apart_m_) {
@@ -32,18 +32,18 @@ class Viewpoints {
     at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + position.x_m), 0.5f * (began_.y_m + position.y_m)};
   }
 
-  /// Has it left the first place?
+  /// Has the laser left its first place?
   bool moved() const { return places_ > 1; }
-  /// Of what is seen now; after look_from().
+  /// Number of the current place; after look_from().
   int newest() const { return static_cast<int>((places_ - 1) % numbers); }
-  /// The middle of the way on which that was the number. 0 <= number < numbers.
+  /// The middle of the stretch of the way with this number. 0 <= number < numbers.
   const Position& at(int number) const { return at_[static_cast<std::size_t>(number)]; }
 
  private:
   std::array<Position, numbers> at_{};
-  Position began_{};  ///< the newest
+  Position began_{};  ///< start of the newest stretch
   float apart_m_ = 0.0f;
-  std::uint32_t places_ = 0;  ///< that there have been; 2^32 are 700,000 km in windows of 4 m
+  std::uint32_t places_ = 0;  ///< so far; 2^32 are 700,000 km in windows of 4 m
 };
 
 }  // namespace curbline

@@ -1,6 +1,6 @@
-// The rolling window: where its cells lie in the map, and in memory. A two-dimensional ring: when the window moves no
-// cell is copied. Cells are addressed by (i, j), i along x from the window's lowest corner; what stages keep for a cell
-// is stored under its slot, which stays the same while the cell is in the window.
+// The rolling window: where its cells lie, in the map and in memory. A two-dimensional ring buffer: no cell is copied
+// when the window moves. Cells are addressed by (i, j), i along x, from the window's lowest corner; stages store what
+// belongs to a cell under its slot, which stays the same while the cell is in the window.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class Window {
   float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }
   float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + settings_.origin_y_m; }
 
-  /// It and a cell around it: what lies outside that lies outside the window, however places are rounded.
+  /// The window and one cell around it: what lies outside is outside the window, however places are rounded.
   Bounds surroundings(float ceiling_m) const {
     const float x_m = origin_x_m(), y_m = origin_y_m();
     return {x_m - cell_x_m(), y_m - cell_y_m(), x_m + static_cast<float>(rows() + 1) * cell_x_m(),
@@ -49,16 +49,16 @@ class Window {
     if (j >= settings_.cols) j -= settings_.cols;
     return i * limits.cols + j;
   }
-  /// Of the k-th cell of a block, row by row, by the slot of its first: no block lies across the ends of the ring.
+  /// Slot of the k-th cell of a block, row by row, from that of its first: no block lies across the ends of the ring.
   static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
-  /// Where in the window something lies.
+  /// A place in the window.
   struct Place {
     int i = -1, j = -1;        ///< its cell; -1 outside the window
     float u = 0.0f, v = 0.0f;  ///< in cells from the window's lowest corner
 
     bool inside() const { return i >= 0; }
   };
-  /// Of a place of the map; what is not finite lies outside.
+  /// That of a point of the map; one that is not finite lies outside.
   Place place_at(float x_m, float y_m) const { return place_within(x_m - origin_x_m(), y_m - origin_y_m()); }
   /// The same, from the window's lowest corner.
   Place place_within(float x_m, float y_m) const {
@@ -75,7 +75,7 @@ class Window {
   }
 
  protected:
-  /// The slots of a column, along x (axis 0), or of a row, along y (1), one after the other.
+  /// Iterates over the slots of a column, along x (axis 0), or of a row, along y (1).
   struct Walk {
     int slot, step, end, count;
     void next() {
@@ -90,20 +90,20 @@ class Window {
     return {first, step, first + (count - (along_x ? row_shift_ : col_shift_)) * step, count};
   }
 
-  /// The lowest corner, in cells of an endless grid of which (0, 0) begins where the window first did.
+  /// The lowest corner, in cells of an infinite grid whose (0, 0) is where the window's corner first was.
   struct Corner {
     std::int32_t row = 0, col = 0;
     bool operator==(const Corner&) const = default;
   };
   const Corner& corner() const { return corner_; }
-  /// Where it will be with the robot at (x, y): in steps of a block and half a cell late, so that a pose that trembles
+  /// The corner with the robot at (x, y): in steps of a block, with a hysteresis of half a cell, so that a noisy pose
   /// does not move it to and fro; a fixed window stays.
   Corner corner_of(float x_m, float y_m) const {
     if (settings_.fixed) return corner_;
     return {nearest_block(x_m / (settings_.cell_x_m * block_side), corner_.row),
             nearest_block(y_m / (settings_.cell_y_m * block_side), corner_.col)};
   }
-  /// Will a row, or a column, of the window be one of it when the corner is there?
+  /// Does a row, or a column, stay in the window when the corner is there?
   bool row_stays(int i, const Corner& to) const { return stays(i, corner_.row, to.row, settings_.rows); }
   bool col_stays(int j, const Corner& to) const { return stays(j, corner_.col, to.col, settings_.cols); }
   void move(const Corner& to) {
@@ -113,7 +113,7 @@ class Window {
   }
 
  private:
-  /// First cell of the block whose border is nearest; that before as long as it is, but for half a cell.
+  /// First cell of the block whose border is nearest; the previous one within the hysteresis.
   static std::int32_t nearest_block(float blocks, std::int32_t before) {
     constexpr float late = 0.5f + 0.5f / block_side;
     const float moved = blocks - static_cast<float>(before) / block_side;
@@ -121,7 +121,7 @@ class Window {
     return floor_to_int(blocks + 0.5f) * block_side;
   }
   static bool stays(int place, std::int32_t first, std::int32_t first_then, int count) {
-    const auto place_then =  // a great number if it lies before the window
+    const auto place_then =  // wraps to a large number before the window
         static_cast<std::uint32_t>(place) + static_cast<std::uint32_t>(first) - static_cast<std::uint32_t>(first_then);
     return place_then < static_cast<std::uint32_t>(count);
   }

@@ -1,5 +1,5 @@
-// Which of numbered things gains most: a binary heap that knows where each of them is, so that any may be taken out.
-// Cost: O(1) to ask, O(log n) to change. Equal gains come up in an order that hangs on nothing but the calls.
+// A binary heap of numbered items by gain, which knows the place of each, so that any can be removed. O(1) to query,
+// O(log n) to change. The order of equal gains depends on the calls alone.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@ namespace curbline {
 template <typename Index, std::size_t capacity>
 class GainHeap {
  public:
-  /// Holds 0 to count - 1, at most capacity - 1, in no order: set() each, then order().
+  /// Holds items 0 to count - 1, at most capacity - 1, unordered: set() each, then order().
   void fill(std::size_t count) {
     size_ = count;
     for (std::size_t place = 0; place < count; ++place) put(place, static_cast<Index>(place));
   }
-  /// Gains change without a move, of as many as one likes: order() follows.
+  /// Changes a gain without moving the item; order() must follow.
   void set(Index number, float gain) { gain_[number] = gain; }
   void order() {
     for (std::size_t place = size_ / 2; place > 0; --place) sift_down(place - 1);
@@ -23,9 +23,9 @@ class GainHeap {
 
   std::size_t size() const { return size_; }
   float gain(Index number) const { return gain_[number]; }
-  /// Any of them, 0 <= place < size(); the first one gains most.
+  /// The item at a place, 0 <= place < size(); the first has the largest gain.
   Index at(std::size_t place) const { return heap_[place]; }
-  /// The first one gains something else.
+  /// Changes the gain of the first item.
   void set_first(float gain) {
     set(heap_[0], gain);
     sift_down(0);
@@ -45,7 +45,7 @@ class GainHeap {
     place_[number] = static_cast<Index>(place);
   }
   void sift_up(std::size_t place);
-  // Called: inlined it and RegionGraph::gain() take half a kilobyte of flash for 900 instructions a line.
+  // Not inlined: with RegionGraph::gain(), inlining costs half a kilobyte of flash and saves 900 instructions a line.
   [[gnu::noinline]] void sift_down(std::size_t place);
 
   std::array<float, capacity> gain_;   ///< by number

@@ -1,5 +1,5 @@
-// Neighbours: what is known of one cell tells of the next valid one on its row and on its column, also where scan lines
-// leave rows between them empty. A pass over the window.
+// Links between neighbours: each valid cell and the next valid one on its row and on its column, also across cells that
+// scan lines leave empty. A pass over the window.
 #pragma once
 
 #include "curbline/limits.hpp"
@@ -24,8 +24,8 @@ void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   });
 }
 
-/// The first cell from link.to on, the way that a link leads, that is not obstructed(slot); -1 if none is at most
-/// `reach` cells from link.from.
+/// The first cell that is not obstructed(slot), from link.to on in the link's direction; -1 if there is none within
+/// `reach` cells of link.from.
 template <Limits limits, typename Obstructed>
 int beyond_obstacle(const Dem<limits>& dem, const Link& link, int reach, Obstructed&& obstructed) {
   int slot = link.to;

@@ -42,8 +42,8 @@ bool PlaneEvidence::step_between(const Plane& first, const Plane& second, const 
   return mean_m * mean_m > 4.0f * share_m2 && rises(first, second, border, mean_m);
 }
 
-/// Does the ground jump along the border, up if `toward` is above 0, else down? Where it is one bent surface it rises
-/// there by the mean of both planes' slopes.
+/// Does the ground jump along the border, up if `toward` is above 0, else down? One bent surface rises there by the
+/// mean of both planes' slopes.
 bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderRise& border, float toward) const {
   if (!(border.pairs > 0.0f)) return false;
   const float share_m2 = prior_.common_m2();
@@ -56,7 +56,7 @@ bool PlaneEvidence::rises(const Plane& first, const Plane& second, const BorderR
   return jump_m * toward > 0.0f && square_m2 > share_m2 && square_m2 > gate * variance_m2;
 }
 
-/// The angle, across the line along which they meet, and what is known of it; all times its own square.
+/// The angle, across the line along which they meet, against its uncertainty; both multiplied by the angle's square.
 bool PlaneEvidence::crease_between(const Plane& first, const Plane& second) const {
   const float x = second.slope_x - first.slope_x, y = second.slope_y - first.slope_y;
   const float bend = prior_.curvature_1_m * (x * (second.x_m - first.x_m) + y * (second.y_m - first.y_m));

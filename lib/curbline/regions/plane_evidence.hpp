@@ -1,6 +1,6 @@
-// The evidence that points lie on one plane, by which regions merge, and where planes are parted as bent ground is not.
-// The precision of level and slopes is noise_m2 per noise variance, a standard deviation of 1 m and of 45 degrees:
-// faces and obstacles are regions too.
+// The evidence that points lie on one plane, by which regions merge, and the test whether two planes are parted by more
+// than bent ground explains. The prior of level and slopes has a standard deviation of 1 m and of 45 degrees (precision
+// noise_m2, in units of the noise): faces and obstacles are regions too.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace curbline {
 
-/// What the neighbouring cells on both sides of the border between two regions show: means over their pairs, from a
-/// cell of the first region to that of the second.
+/// Means over pairs of adjacent cells along the border of two regions, from the cell of the first to that of the
+/// second.
 struct BorderRise {
-  float pairs = 0.0f;  ///< how many; 0: the regions lie apart, and nothing is known
+  float pairs = 0.0f;  ///< their number; 0 if the regions do not touch
   float dx_m = 0.0f, dy_m = 0.0f, rise_m = 0.0f;
 };
 
-/// How well one plane explains points; what depends on the prior alone is computed once.
+/// How well one plane explains points; terms that depend on the prior alone are computed once.
 class PlaneEvidence {
  public:
   PlaneEvidence() : PlaneEvidence(PlanePrior{}) {}
@@ -29,13 +29,13 @@ class PlaneEvidence {
   /// partitions of the same points. About 60 operations and 2 logarithms.
   float log_evidence(const PlaneMoments& moments) const;
 
-  /// The share of a region in the posterior of a partition of the cells under a Dirichlet process with alpha = 1: its
-  /// evidence times Gamma(cells).
+  /// Log of a region's factor in the posterior of a partition of the cells under a Dirichlet process with alpha = 1:
+  /// its evidence times Gamma(cells).
   float score(const PlaneMoments& moments) const { return log_evidence(moments) + log_gamma_of(moments.cells); }
 
-  /// By how much the posterior of the partition rises, in nats, when two regions of which the scores are known become
-  /// `both`. The prior keeps ground that is bent from falling apart into the planes that follow it; it takes no part
-  /// where two planes are parted as bent ground is not, see parted(), which wants border_of(), a BorderRise.
+  /// By how much the log posterior of the partition rises, in nats, when two regions with known scores become `both`.
+  /// The prior keeps bent ground from falling apart into the planes that follow it; it is left out where two planes are
+  /// parted(), for which border_of() returns the BorderRise.
   template <typename BorderOf>
   float gain(const PlaneMoments& a, float score_a, const PlaneMoments& b, float score_b, const PlaneMoments& both,
              BorderOf&& border_of) const {
@@ -46,12 +46,13 @@ class PlaneEvidence {
     return by_evidence < 0.0f && parted(a, b, border_of()) ? by_evidence : gain;
   }
 
-  /// Two planes that follow one bent surface meet between their centroids, at an angle that its curvature makes over
-  /// the distance between them. Parted are two of which one lies above the other by more than what the points of a
-  /// place share of their noise (two standard deviations): at both centroids, by three standard deviations (a step); or
-  /// on the mean of both, and the ground rises as much more than either plane from cell to cell along their border, by
-  /// one standard deviation of that share and three of its own (a step between planes of different slope). Or which
-  /// meet at an angle that is more by three standard deviations (a crease). About 250 operations.
+  /// Are two planes parted by more than bent ground explains? Planes along one bent surface meet between their
+  /// centroids, at the angle that its curvature makes over the distance between them. They are parted by a step if one
+  /// lies above the other by more than two standard deviations of the noise that points of one place share, either at
+  /// both centroids, by three standard deviations; or at the mean of both, while the ground rises that way from cell to
+  /// cell along their border beyond the planes' slopes, by one standard deviation of the shared noise and three of its
+  /// own. They are parted by a crease if they meet at an angle that is larger by three standard deviations. About 250
+  /// operations.
   bool parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const;
 
  private:

@@ -1,8 +1,7 @@
 // Merging by evidence: a graph whose nodes are leaves or standing regions and whose links join neighbours. Greedy, best
 // gain first, until no merge raises the posterior of the partition under a Dirichlet process (alpha = 1) of planes.
-// Lazy: a merge leaves the gains of its neighbours as they were, to be computed anew when they come up or when nothing
-// else gains. That takes a quarter of the evidences. This is working memory of one call: nothing in it outlives
-// merge().
+// Lazy: a merge leaves the gains of its neighbours stale, to be computed again when they come up or when nothing else
+// gains, which takes a quarter of the evidences. Working memory of one call.
 #pragma once
 
 #include <algorithm>
@@ -37,24 +36,24 @@ class RegionGraph {
   }
   int nodes() const { return nodes_; }
 
-  /// A new node without points, or `none` if the store is full.
+  /// Adds a node without points; `none` if the store is full.
   Index add_node();
   PlaneMoments& moments(Index node) { return node_[node].moments; }
   const PlaneMoments& moments(Index node) const { return node_[node].moments; }
 
-  /// Joins two nodes, once. Returns the end of their link that leaves from `a`, `none` if the store is full. Cost: the
-  /// links that `b` has.
+  /// Links two nodes, unless they are linked. Returns the end of their link at `a`; `none` if the store is full. Cost:
+  /// the number of `b`'s links.
   Index link(Index a, Index b);
 
-  /// A pair of cells side by side: one of the node that the end leaves from, the other next to it along +x (axis 0) or
-  /// +y (1) and higher by rise_m. What is more than 6 cm counts as that, and as many as 127 pairs tell enough.
+  /// Adds a pair of adjacent cells: one of the node at this end, the other next to it along +x (axis 0) or +y (1),
+  /// higher by rise_m, which is limited to 6 cm; after 127 pairs more are ignored.
   void add_pair(Index end, int axis, float rise_m);
 
-  /// Merges until no gain is >= 0. Returns how many evidences it computed: nodes + links, and at most the degrees of
-  /// merged nodes, a few each as a rule. Cost of each: a PlaneEvidence and a heap move.
+  /// Merges until no gain is >= 0. Returns the number of evidences computed: nodes + links, plus at most the degrees of
+  /// merged nodes, as a rule a few each. Each costs a PlaneEvidence and a heap move.
   int merge(const PlaneEvidence& evidence);
 
-  /// The node that a node has become part of by merge().
+  /// The node that a node has become part of in merge().
   Index root(Index node) const { return node_[node].parent; }
 
  private:
@@ -64,19 +63,19 @@ class RegionGraph {
     Index parent;
     Index first;  ///< an end of a link, `none` if there is none
   };
-  /// Ends 2 l and 2 l + 1 belong to link l; an end lies in the ring of the node it leaves from.
+  /// Ends 2 l and 2 l + 1 belong to link l; an end is in the ring of the node that it leaves from.
   struct End {
     Index target;  ///< node the other end leaves from
     Index next, previous;
   };
   struct Link {
-    // Sums over its pairs of cells, from the node that its odd end leaves from to that of its even one.
+    // Sums over its pairs of cells, from the node of its odd end to that of its even one.
     std::int16_t rise;             ///< in 1 / rise_scale m
     std::int8_t along_x, along_y;  ///< cells
     std::uint8_t pairs;
-    bool stale;  ///< a node has grown since
+    bool stale;  ///< the gain is: a node has grown since
 
-    /// Takes in others, as long as they fit: sign 1, or -1 if these lead the other way.
+    /// Adds pairs, as long as they fit: sign 1, or -1 if they lead the other way.
     void add_pairs(int sign, int more, int more_rise, int more_x, int more_y) {
       if (pairs + more > most_pairs) return;
       pairs = static_cast<std::uint8_t>(pairs + more);
@@ -88,7 +87,7 @@ class RegionGraph {
   static constexpr int most_pairs = 127;
   static constexpr float rise_scale = 2000.0f;
 
-  // Called, as GainHeap::sift_down().
+  // Not inlined, as GainHeap::sift_down().
   [[gnu::noinline]] float gain(Index link, const PlaneEvidence& evidence) const {
     const Node& a = node_[end_[2 * link].target];
     const Node& b = node_[end_[2 * link + 1].target];
@@ -124,12 +123,12 @@ class RegionGraph {
   void move_end(Index end, Index a);
 
   union {
-    std::array<Node, limits.regions> node_;  ///< begun as they are added
+    std::array<Node, limits.regions> node_;  ///< constructed as they are added
   };
   std::array<End, 2 * limits.links> end_;
   std::array<Link, limits.links> link_;
-  GainHeap<Index, limits.links> heap_;      ///< links by what a merge of their nodes gains
-  std::array<Index, limits.regions> seen_;  ///< end that led an absorbing node to a neighbour, the last time
+  GainHeap<Index, limits.links> heap_;      ///< links by the gain of merging their nodes
+  std::array<Index, limits.regions> seen_;  ///< for a neighbour of the last absorbing node, the end that leads there
   int nodes_ = 0;
   int links_ = 0;
   float cell_x_m_ = 0.0f, cell_y_m_ = 0.0f;
@@ -218,7 +217,7 @@ int RegionGraph<limits>::merge(const PlaneEvidence& evidence) {
     } else if (heap_.gain(best) >= 0.0f) {
       merge_ends(best);
     } else {
-      // Nothing gains that is known; what was put off may.
+      // No known gain is left; stale ones may be gains.
       const int refreshed = refresh_all(evidence);
       if (refreshed == 0) break;
       evidences += refreshed;
@@ -253,8 +252,8 @@ void RegionGraph<limits>::merge_ends(Index link) {
   node_[a].score = score;
 }
 
-/// b becomes part of a: its links leave from a; a second link to the same neighbour, but for its pairs, and the one
-/// between a and b go. What a gains with its neighbours is open then.
+/// Makes b part of a. Its links move to a; the link between the two goes, and so does a second link to the same
+/// neighbour, except for its pairs. All gains of a become stale.
 template <Limits limits>
 void RegionGraph<limits>::absorb(Index a, Index b) {
   node_[a].moments.add(node_[b].moments);
@@ -266,7 +265,7 @@ void RegionGraph<limits>::absorb(Index a, Index b) {
   for_each_end(b, [&](Index end) { move_end(end, a); });
 }
 
-/// From the node that has become part of a.
+/// Moves a link's end to `a`, from the node that has become part of it.
 template <Limits limits>
 void RegionGraph<limits>::move_end(Index end, Index a) {
   const auto other = static_cast<Index>(end ^ 1u);

@@ -8,14 +8,14 @@ struct Edge {
   std::uint8_t a, b;
 };
 
-/// KL(a || b) + KL(b || a) of two normals; the logarithms cancel.
+/// KL(a || b) + KL(b || a) of two normal distributions; the logarithms cancel.
 float divergence(const BlockCell& a, const BlockCell& b) {
   const float v = a.variance_m2, w = b.variance_m2;
   const float d = a.height_m - b.height_m, e = v - w;
   return 0.5f * (e * e + d * d * (v + w)) / (v * w);
 }
 
-/// Edges to the next valid cell along each axis, ascending by weight. Two a cell at most.
+/// Edges to the next valid cell along each axis, ascending by weight; at most two a cell.
 int list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge, 2 * block_cells>& edges) {
   int count = 0;
   for (int k = 0; k < block_cells; ++k) {
@@ -40,8 +40,8 @@ int list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge,
 }  // namespace
 
 BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float scale) {
-  BlockLeaves root{};  // of a component: its first cell, which bears itself; others bear one before them
-  std::array<float, block_cells> limit{};  // Int(C) + s / |C| of the component of a root
+  BlockLeaves root{};                      // union-find; the root of a component is its first cell
+  std::array<float, block_cells> limit{};  // Int(C) + s / |C|, at the root of component C
   std::array<float, block_cells> size{};
   for (std::size_t k = 0; k < root.size(); ++k) {
     root[k] = cells[k].valid ? static_cast<std::uint8_t>(k) : std::uint8_t{255};

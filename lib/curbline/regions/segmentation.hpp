@@ -1,8 +1,8 @@
-// Which cells belong together. Two steps: leaves, the graph segmentation of the paper (Felzenszwalb and Huttenlocher
-// 2004) inside each block of 4 x 4 cells, by heights above what the ground leans; regions, leaves merged by evidence
+// Which cells belong together, in two steps. Leaves: the graph segmentation of the paper (Felzenszwalb and Huttenlocher
+// 2004) inside each block of 4 x 4 cells, on heights above the slope of the ground. Regions: leaves merged by evidence
 // (region_graph.hpp). A scan line re-cuts the blocks that it touched, dissolves the regions that it touched and their
-// neighbours into leaves and merges again: that is how a region splits. What no line touched stands. What stands on the
-// ground parts no regions.
+// neighbours into leaves, and merges again: that is how a region splits. What no line touched stays. Obstacles on the
+// ground do not divide regions.
 #pragma once
 
 #include <array>
@@ -23,11 +23,11 @@ namespace curbline {
 
 inline constexpr int block_cells = block_side * block_side;
 
-/// Leaf of each cell of a block, by the number (4 i + j) of its first cell; 255 for cells that are not valid.
+/// Leaf of each cell of a block, by the number (4 i + j) of the leaf's first cell; 255 for invalid cells.
 using BlockLeaves = std::array<std::uint8_t, block_cells>;
 
-/// Felzenszwalb-Huttenlocher on one block: edge weight is the symmetric Kullback-Leibler divergence of the cells'
-/// normals; links reach across cells that are not valid. `valid` may be false for any cell. About 24 edges.
+/// Felzenszwalb-Huttenlocher on one block: the edge weight is the symmetric Kullback-Leibler divergence of the cells'
+/// normal distributions; links reach across invalid cells. About 24 edges.
 struct BlockCell {
   float height_m;
   float variance_m2;
@@ -38,7 +38,7 @@ BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float sca
 template <Limits limits>
 class Segmentation {
  public:
-  using Region = Slot<limits>;  ///< a region bears the slot of one of its cells
+  using Region = Slot<limits>;  ///< a region is named by the slot of one of its cells
   static constexpr Region none = static_cast<Region>(-1);
 
   void init(const SegmentationSettings& settings, const PlanePrior& prior) {
@@ -48,7 +48,7 @@ class Segmentation {
     dissolved_.clear();
   }
 
-  /// A cell is about to leave the window: its region will be cut anew.
+  /// A cell is about to leave the window: its region will be cut again.
   void forget(int slot) {
     if (region_[slot] != none) dissolved_.insert(static_cast<int>(region_[slot]));
     region_[slot] = none;
@@ -61,16 +61,16 @@ class Segmentation {
     std::array<Region, limits.regions> region_of_node;
   };
 
-  /// Follows the cells that were touched, in working memory that is the caller's. `ground` is the plane of the ground,
-  /// a level one if none is known. What is obstructed(slot) parts no regions: those on both sides are neighbours too.
+  /// Follows the touched cells, in working memory of the caller. `ground` is the plane of the ground, a level one if
+  /// none is known. Cells that are obstructed(slot) do not divide regions: those on both sides are neighbours too.
   /// Cost: five passes over the window, 16 cells a touched block, and the merging; nothing if no cell was touched.
   template <typename Obstructed>
   void update(const Dem<limits>& dem, Work& work, const Plane& ground, Obstructed&& obstructed, Counters& counters);
 
-  /// Of a valid cell; `none` if the store of regions was full when it came to its leaf.
+  /// Region of a valid cell; `none` if the store of regions had no room for its leaf.
   Region region(int slot) const { return region_[slot]; }
 
-  /// Calls visit(node) for the node of each region, right after an update() that had something to do.
+  /// Calls visit(node) for the node of each region; right after an update() that had work.
   template <typename Visit>
   static void for_each_region(const Work& work, Visit&& visit) {
     for (int n = 0; n < work.graph.nodes(); ++n) {
@@ -89,7 +89,7 @@ class Segmentation {
   template <typename Obstructed>
   void build_graph(const Dem<limits>& dem, Work& work, Obstructed&& obstructed, Counters& counters) const;
   void name_regions(const Dem<limits>& dem, Work& work);
-  /// What stands for a cell in the graph: its leaf if its region is dissolved, else its region.
+  /// A cell's node in the graph is that of its leaf if its region is dissolved, else of its region.
   Region representative(int slot) const {
     return region_[slot] == none || dissolved_.contains(static_cast<int>(region_[slot])) ? leaf_[slot] : region_[slot];
   }
@@ -98,7 +98,7 @@ class Segmentation {
   PlaneEvidence evidence_{};
   PerCell<Region, limits> leaf_{};  ///< slot of the first cell of a cell's leaf
   PerCell<Region, limits> region_{};
-  CellSet<limits> dissolved_{};  ///< regions to be cut into leaves and merged anew, by name
+  CellSet<limits> dissolved_{};  ///< regions to be cut into leaves and merged again, by name
 };
 
 template <Limits limits>
@@ -127,10 +127,10 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
   }
 }
 
-/// Cuts a block, by its first cell, into leaves. Cells that are about as high lie along contours where the ground
-/// leans: leaves would be rows of cells, which say nothing of the slope across them and join end to end, through low
-/// steps. So what the ground is steeper than 1 in 20 is taken off. Not all of it: leaves as large as blocks tear ground
-/// that is bent (lib/formulas.md).
+/// Cuts a block, given by its first cell, into leaves. On a slope, cells of about the same height lie along contours:
+/// leaves would be rows of cells, which say nothing about the slope across them and join end to end, through low steps.
+/// So the ground's slope beyond 1 in 20 is taken off; not all of it, as leaves of whole blocks tear bent ground
+/// (lib/formulas.md).
 template <Limits limits>
 void Segmentation<limits>::cut(const Dem<limits>& dem, int row, int col, const Plane& lean) {
   const bool leans = square(lean.slope_x) + square(lean.slope_y) > 0.0f;
@@ -155,7 +155,7 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
   CellSet<limits> neighbours;
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Region a = region_[link.from], b = region_[link.to];
-    // In two ifs, since most links end at the first: 25,000 instructions less in the worst line of a Cortex-R5F
+    // Two ifs, since most links end at the first: saves 25,000 instructions in the worst line of a Cortex-R5F
     // (tools/budget).
     if (a == b) return;
     if (a == none || b == none) return;
@@ -173,7 +173,7 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   graph.clear(dem.cell_x_m(), dem.cell_y_m());
   work.node_of_cell.fill(no_node);
   dem.for_each_valid([&](int i, int j, int s) {
-    const Region name = representative(s);  // a cell that bears it
+    const Region name = representative(s);  // the slot of one of its cells
     Node& node = work.node_of_cell[name];
     if (node == no_node) node = graph.add_node();
     if (node == no_node) {
@@ -191,7 +191,7 @@ void Segmentation<limits>::build_graph(const Dem<limits>& dem, Work& work, Obstr
   for_each_link(dem, settings_.link_reach, [&](const Link& link) {
     const Node a = work.node_of_cell[link.from], b = work.node_of_cell[link.to];
     if (a == b) return;
-    if (a == no_node || b == no_node) return;  // in two ifs, as in dissolve_neighbours()
+    if (a == no_node || b == no_node) return;  // two ifs, as in dissolve_neighbours()
     const Cell& from = dem.cell(link.from);
     const Cell& to = dem.cell(link.to);
     const Node end = join(a, b);
