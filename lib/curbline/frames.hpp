@@ -11,8 +11,8 @@
 
 namespace curbline {
 
-// Sums of three are written out: Eigen orders them, and fuses them with the multiplications, as the target's vectors
-// suit it.
+// Sums of three are written out: Eigen would order them, and fuse them with multiplications, to suit the target's
+// vector unit.
 
 inline float dot(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
@@ -43,7 +43,7 @@ inline Transform make_transform(const MountSettings& mount) {
 /// T_map_base. The quaternion is normalised here and must not be zero.
 Transform make_transform(const Pose& pose);
 
-/// Which way the x axis of a frame points, level; along x if it points up or down.
+/// Horizontal direction of a frame's x axis; that of the map's x axis if it points straight up or down.
 inline SinCos heading(const Transform& T) {
   const float x = T.rotation(0, 0), y = T.rotation(1, 0), level = square_root(x * x + y * y);
   return level > 0.0f ? SinCos{y / level, x / level} : SinCos{0.0f, 1.0f};

@@ -1,4 +1,4 @@
-// A set of whole numbers below a size, a bit each; walked in ascending order at a cost of its members.
+// A set of integers below a size, one bit each; iterates in ascending order, at a cost of its members.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Total least squares of a line through points of the plane: what a chain of border points becomes.
+// Total least squares fit of a line to points: what a chain of border points becomes.
 #pragma once
 
 namespace curbline {
@@ -21,22 +21,21 @@ class LineFit {
     xy_ += weight * dx * (y_m - y_);
     yy_ += weight * dy * (y_m - y_);
   }
-  /// A point that was added, not the last.
+  /// Removes a point that was added; not the only one.
   void remove(float x_m, float y_m, float weight = 1.0f) { add(x_m, y_m, -weight); }
   float weight() const { return weight_; }
-  /// Sum of the points' squared distances from the line, by weight.
+  /// Weighted sum of the points' squared distances from the line.
   float squares() const;
-  /// By how much the variance of where the line lies grows from the mean of its points to another place on it.
+  /// Factor by which the variance of the line's position grows from the mean of its points to another place on it.
   float grown(float x_m, float y_m) const;
   /// Mean of the points.
   float x_m() const { return x_; }
   float y_m() const { return y_; }
 
-  /// The line between the feet of two points on it, made longer by `margin_m` at both ends. Falls back to the points
-  /// themselves, without a normal, if the fit has no direction.
+  /// The line between the projections of two points on it, longer by `margin_m` at both ends. If the fit has no
+  /// direction, between the points themselves, without a normal.
   Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
-  /// A line of its own for a single place: across a way of any length, x if it has none, `margin_m` to both
-  /// sides.
+  /// A line for a single place, perpendicular to a direction of any length (x if that is 0), `margin_m` to both sides.
   static Segment across(float x_m, float y_m, float way_x, float way_y, float margin_m);
 
  private:

@@ -1,5 +1,5 @@
-// The few functions that the algorithm needs of a maths library, in float and with the same bits on every target: no
-// libm but the square root, only +, -, *, / and bit patterns. Errors are measured by tests/unit/math_test.cpp.
+// The few mathematical functions that the algorithm needs, in float and with the same bits on every target: no libm but
+// the square root, only +, -, *, / and bit patterns. tests/unit/math_test.cpp measures their errors.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@ namespace curbline {
 
 inline constexpr float pi = 3.14159265f;
 
-/// Three standard deviations, squared: what lies off by more is something else. By chance, one in 370.
+/// Three standard deviations, squared: the gate of outliers. Exceeded by chance once in 370.
 inline constexpr float gate = 9.0f;
 
 constexpr float square(float x) {
@@ -40,8 +40,8 @@ constexpr bool is_finite(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u;
 }
 
-/// The nearest float, as a conversion makes it. A core of 32 bits has no instruction for that, and the compiler's own
-/// function brings the sums of soft-float with it: 500 bytes of flash.
+/// The nearest float, as by conversion. A 32-bit core has no instruction for it, and the compiler's own function links
+/// the additions of soft-float: 500 bytes of flash.
 float to_float(std::int64_t x);
 
 /// Correctly rounded, from the hardware or the compiler's soft-float.
@@ -64,8 +64,8 @@ struct SinCos {
 /// Error below 2e-7 for |x| <= 4 pi.
 SinCos sin_cos(float x);
 
-/// The same for angles that follow each other closely: within 2 mrad of the last full one by its Taylor series to the
-/// second order, whose rest is below 2e-9.
+/// The same for angles that change little from call to call: within 2 mrad of the last one computed in full, by a
+/// Taylor series of second order, whose remainder is below 2e-9.
 class NearSinCos {
  public:
   SinCos at(float x) {

@@ -1,4 +1,4 @@
-// What a stage keeps for the window's cells, by their slots (window.hpp).
+// What a stage stores for the window's cells, by their slots (window.hpp).
 #pragma once
 
 #include <array>
@@ -27,11 +27,11 @@ class PerCell {
   std::array<T, static_cast<std::size_t>(limits.rows* limits.cols)> all_;
 };
 
-/// A plane of each; no_label of a cell that has none.
+/// A label for each cell; no_label for none.
 template <Limits limits>
 using CellLabels = PerCell<Label, limits>;
 
-/// Some of the cells.
+/// A set of cells.
 template <Limits limits>
 using CellSet = IndexSet<limits.rows * limits.cols>;
 

@@ -7,11 +7,11 @@
 namespace curbline {
 namespace {
 
-/// With the variance that a sum of squares has by a weight.
+/// The variance is the residual sum of squares over `weight`, at least least_m2.
 Plane fitted(const PlaneMoments& m, const PlanePrior& prior, float weight, float least_m2) {
   const float ridge = prior.noise_m2 / (steepest_ramp * steepest_ramp);
   const RidgeFit fit = ridge_fit(m, ridge);
-  // Positions weigh by points; one cell is one observation.
+  // Moments are weighted by points; a cell is one observation.
   const float per_cell = m.weight / m.cells / fit.determinant;
   Plane plane;
   plane.x_m = m.x;

@@ -1,6 +1,5 @@
-// Memory that stages use one after the other within a call: the tilt readings and points of a line, the segmentation's
-// region graph, the cells that the label field visits, the border points of curbs and the curbs they make. None
-// outlives the call.
+// Memory that stages use one after the other within a call: tilt readings and points of a line, the region graph, the
+// cells that the label field visits, border points and the curbs made of them. Nothing in it outlives the call.
 #pragma once
 
 #include <new>
@@ -17,7 +16,7 @@ class Workspace {
  public:
   Workspace() {}
 
-  /// Each begins anew and ends what another holds.
+  /// Each starts fresh, and ends the use of the others.
   typename LineIntake<limits>::Work& line() {
     return *::new (static_cast<void*>(&line_)) typename LineIntake<limits>::Work;
   }

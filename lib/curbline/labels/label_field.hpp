@@ -1,10 +1,9 @@
 // Which plane each cell lies on: a Markov random field over the window's cells, its E-step by loopy belief propagation
-// (paper, section III-D). Messages are kept from line to line; one call sends them once along each of four directions,
-// from the cells that changed, and a message that is new makes its receiver one of those. A Potts message has two
-// values, so it costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) out of
-// the planes near by (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of
-// planes_near_by, four messages for each cell that sends, a look at each plane near by for each whose candidates are
-// chosen anew.
+// (paper, section III-D). Messages are kept from line to line; a call sends them once in each of four directions, from
+// the cells that changed, and a new message makes its receiver one of those. A Potts message has two values, so it
+// costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) of the planes near by
+// (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of planes_near_by, four messages
+// for each cell that sends, and a visit of each plane near by for each cell whose candidates are chosen again.
 #pragma once
 
 #include <array>
@@ -25,9 +24,9 @@ namespace curbline {
 
 /// Which cells send messages.
 enum class FieldScope : std::uint8_t {
-  line,     ///< what changed, within max_messages: after each scan line
-  changed,  ///< what changed, all of it
-  window,   ///< every cell
+  line,     ///< cells that changed, within max_messages: after each scan line
+  changed,  ///< all cells that changed
+  window,   ///< all cells
 };
 
 template <Limits limits>
@@ -35,15 +34,15 @@ class LabelField {
  public:
   static constexpr int capacity = Dem<limits>::capacity;
 
-  /// A cell that sends, its nearest valid neighbours, and what they say of its candidates, all together.
+  /// A cell that sends, its nearest valid neighbours, and the sum of their messages about its candidates.
   struct Visit {
     Slot<limits> slot;
     std::array<Slot<limits>, directions> neighbour;
     std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
-    std::uint8_t same_labels;                       ///< a bit a direction: the neighbour has the same candidates
+    std::uint8_t same_labels;                       ///< a bit for each direction: the neighbour has the same candidates
     LabelSite::Heard heard;
   };
-  /// Working memory of one update(): the cells that send, row by row, and where in that list a cell is.
+  /// Working memory of one update(): the cells that send, row by row, and the place of each in that list.
   struct Visits {
     std::array<Visit, capacity> visit;
     PerCell<Slot<limits>, limits> index;
@@ -55,13 +54,13 @@ class LabelField {
   /// Forgets a cell that leaves the window.
   void forget(int slot) { sites_[slot] = LabelSite{}; }
 
-  /// The cells that were touched are to be looked at by the next update().
+  /// Marks the touched cells for the next update().
   void note_touched(const Dem<limits>& dem);
 
-  /// E-step. Changed are cells that were noted as touched, whose region changed its plane, that bore a label that is no
-  /// more or heard a message that was new, and a band of rows that moves on with each call, since planes move as they
-  /// grow. Returns how many labels changed. Cells that are left over by max_messages are counted and wait for the next
-  /// call.
+  /// E-step. Cells count as changed if they were touched, if their region changed its plane, if a candidate of theirs
+  /// is gone, or if they heard a new message; also a band of rows that moves on with each call, since planes move as
+  /// they grow. Cells left over by max_messages are counted and wait for the next call. Returns how many labels
+  /// changed.
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
@@ -70,12 +69,12 @@ class LabelField {
   Belief belief(const Dem<limits>& dem, int i, int j) const;
 
  private:
-  static constexpr int no_news = 2;  ///< a message that differs by so little, 1/16 nat, is not sent again
+  static constexpr int no_news = 2;  ///< a message that changes by no more, 1/16 nat, is not sent again
 
-  /// Bits; renew: its candidates too.
+  /// Bits; renew: choose its candidates again, too.
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
 
-  // Called, so that send() is inlined where it sends for each visit: 50,000 instructions a line of a Cortex-M7.
+  // Not inlined, so that send() is, in the loop over visits: saves 50,000 instructions a line on a Cortex-M7.
   [[gnu::noinline]] void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters);
   int flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
@@ -90,8 +89,8 @@ class LabelField {
 
   LabelSettings settings_{};
   PlanesNearBy<limits> near_by_{};
-  int band_ = 0;                                                    ///< first row to refresh in the next update()
-  int first_row_ = 0;                                               ///< whose cells may send first in it
+  int band_ = 0;       ///< first row of the band in the next update()
+  int first_row_ = 0;  ///< row whose cells have the first right to send in it
   std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
   PerCell<LabelSite, limits> sites_{};
   PerCell<std::uint8_t, limits> flag_{};
@@ -131,7 +130,7 @@ void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   });
 }
 
-/// What changed first, then the band of rows.
+/// Changed cells first, then the band of rows.
 template <Limits limits>
 void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters) {
@@ -153,7 +152,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   });
 }
 
-/// From a row that moves on, so that a budget that is too small starves none as long as it holds a row's cells. Returns
+/// Starts from a row that moves on, so that a small budget starves no cell as long as it suffices for a row. Returns
 /// how many visits are left.
 template <Limits limits>
 int LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
@@ -185,7 +184,7 @@ std::uint8_t LabelField<limits>::wanted(const PlaneMixture<limits>& mixture, Fie
   const std::uint8_t before = flag_[slot];
   if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, slot)) return visited | renew;
   if ((before & (heard | deferred)) == 0) return quiet;
-  return mixture.any_relabelled() ? visited | renew : visited;  // planes near by may be others
+  return mixture.any_relabelled() ? visited | renew : visited;  // the planes near by may have changed
 }
 
 template <Limits limits>
@@ -201,8 +200,8 @@ bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slo
   return site.label[0] == no_label;
 }
 
-/// Node potentials: Student t with 6 degrees of freedom about the plane, the most likely three kept. Where the ground
-/// is covered they are alike, and the cells around decide.
+/// Node potentials: Student t with 6 degrees of freedom about the plane; the three most likely are kept. Where the
+/// ground is covered they are equal, and the surrounding cells decide.
 template <Limits limits>
 void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
                                            int slot) {
@@ -239,7 +238,7 @@ auto LabelField<limits>::visit_to(const Dem<limits>& dem, int i, int j, int slot
   return visit;
 }
 
-/// When all candidates are chosen.
+/// Call when all candidates are chosen.
 template <Limits limits>
 void LabelField<limits>::hear_neighbours(Visit& visit) const {
   const LabelSite& site = sites_[visit.slot];
@@ -254,7 +253,7 @@ void LabelField<limits>::hear_neighbours(Visit& visit) const {
   }
 }
 
-/// To the next cell there, and to what it has heard, if it is news.
+/// Sends to the next cell in a direction, and updates the sum of what that has heard, if the message is news.
 template <Limits limits>
 void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& visits) {
   const std::size_t distance = from.distance[direction];
@@ -285,7 +284,7 @@ void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& 
   sent = message;
 }
 
-/// The most likely label of each cell that was visited or heard something new. Returns how many changed.
+/// Updates the most likely label of each cell that was visited or heard something new. Returns how many changed.
 template <Limits limits>
 int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
   int changed = 0;
@@ -299,7 +298,7 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
   return changed;
 }
 
-/// 1 if it changed.
+/// Returns 1 if the label changed, else 0.
 template <Limits limits>
 int LabelField<limits>::follow_belief(const Visit& visit) {
   LabelSite& site = sites_[visit.slot];

@@ -1,6 +1,6 @@
-// What the label field knows of one cell, and the arithmetic of its beliefs: candidate labels, their node potentials
-// and the Potts messages that it has sent (paper, section III-D). LabelField says who sends when. Sums are of whole
-// fractions of a nat, so that what was added can be taken away again, to the bit.
+// One cell of the label field, and the arithmetic of its beliefs: candidate labels, their node potentials and the Potts
+// messages sent last (paper, section III-D). LabelField decides which cells send. Sums are in integer fractions of a
+// nat, so that a message can be subtracted again exactly.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace curbline {
 
-/// A cell keeps that many labels, the most likely; all others count as impossible for it.
+/// A cell keeps this many labels, the most likely; all others count as impossible for it.
 inline constexpr int label_candidates = 3;
 
 /// Posterior of a cell's label.
@@ -31,31 +31,31 @@ struct Belief {
 };
 
 struct LabelSite {
-  // Messages are kept in 1/32 nat in a byte, node potentials in 1/256 nat below the best: half precision changes
-  // nothing.
+  // Messages are bytes in 1/32 nat, node potentials in 1/256 nat below the best: as exact as needed, even half
+  // precision changes nothing.
   static constexpr int message_scale = 32, node_scale = 256;
 
   using Labels = std::array<Label, label_candidates>;
-  using Message = std::array<std::uint8_t, label_candidates>;  ///< of each candidate of the sender
-  using Heard = std::array<std::int16_t, label_candidates>;    ///< a sum of messages, of each candidate of the hearer
+  using Message = std::array<std::uint8_t, label_candidates>;  ///< for each candidate of the sender
+  using Heard = std::array<std::int16_t, label_candidates>;  ///< a sum of messages, for each candidate of the receiver
   using Probabilities = std::array<float, label_candidates>;
   /// Potts factor exp(J / g) over a gap of g cells.
   struct Coupling {
     float boost = 0.0f;        ///< exp(J / g) - 1
-    std::uint8_t loudest = 0;  ///< J / g, what a cell says that is sure
+    std::uint8_t loudest = 0;  ///< J / g, the message of a cell that is certain
   };
 
   Labels label{no_label, no_label, no_label};
   Label best = no_label;
   std::array<std::int16_t, label_candidates> node{};  ///< log potential of each candidate
-  std::array<Message, directions> sent{};             ///< to the neighbour there, last
+  std::array<Message, directions> sent{};             ///< last message to the neighbour in each direction
 
   static Coupling coupling(float nats) {
     return {exp(nats) - 1.0f, static_cast<std::uint8_t>(round_to_int(nats * float{message_scale}))};
   }
 
-  /// Labels by how likely they are, the best first. `doubt` is exp(-2 log potential) of each: a logarithm each of those
-  /// that are kept is enough.
+  /// Labels in order of likelihood, the best first. `doubt` is exp(-2 log potential): so a logarithm is needed only for
+  /// those that are kept.
   struct Candidates {
     Labels label{no_label, no_label, no_label};
     std::array<float, label_candidates> doubt{};
@@ -65,16 +65,16 @@ struct LabelSite {
 
   /// Only one label is possible, or none.
   bool decided() const { return label[1] == no_label; }
-  /// Candidates in another order, or others: what was said of a label stays with it.
+  /// Replaces or reorders the candidates; messages stay with their labels.
   void set_labels(const Labels& labels);
-  /// The same, with node potentials by their doubts; of a cell whose ground is covered they are level.
+  /// The same, with node potentials from their doubts; flat ones where the ground is covered.
   void set_candidates(const Candidates& candidates, bool covered);
-  /// Adds to `sum` (sign 1) or takes from it (-1) what a neighbour says of the labels that both may bear.
+  /// Adds a neighbour's message to `sum` (sign 1), or subtracts it (-1), for the candidates that both have.
   void hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const;
-  /// Belief, from its node and what was heard.
+  /// The belief, from node potentials and messages heard.
   Probabilities probabilities(const Heard& heard) const;
-  /// What a cell says of whose belief p is, without what it heard from the hearer; normalised to 1 for labels that it
-  /// rules out: m(l) = 1 + (exp(J / g) - 1) p(l).
+  /// The message of a cell with belief p, without the receiver's own message; normalised to 1 for labels that it rules
+  /// out: m(l) = 1 + (exp(J / g) - 1) p(l).
   static Message message(const Probabilities& p, const Coupling& coupling);
   /// The most likely candidate.
   Label most_likely(const Heard& heard) const;
@@ -139,7 +139,7 @@ inline auto LabelSite::log_belief(const Heard& heard) const -> Nats {
 }
 
 inline auto LabelSite::probabilities(const Heard& heard) const -> Probabilities {
-  constexpr std::int32_t nothing = -8 * node_scale;  // below it no message changes
+  constexpr std::int32_t nothing = -8 * node_scale;  // lower ones change no message
   const Nats logs = log_belief(heard);
   std::int32_t top = logs[0];
   for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {

@@ -1,6 +1,6 @@
-// Which planes are near each cell: those of regions in its block or the eight around it. A cell may bear these alone,
-// so that two pavements of one height on either side of a road keep their labels apart. Cost: a pass over the window
-// when regions have changed their planes or the window has moved.
+// The planes near each cell: those of regions in its block or the eight around it. Only these are candidates for its
+// label, so that two pavements of equal height on both sides of a road keep different labels. Cost: a pass over the
+// window when regions have changed their planes or the window has moved.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ class PlanesNearBy {
 
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
-  /// As the last follow() has found them.
+  /// As of the last follow().
   const Planes& of_cell(int i, int j) const { return near_[block(i, j)]; }
 
  private:
@@ -35,7 +35,7 @@ class PlanesNearBy {
   }
   static BlockRow planes_in(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first_row);
 
-  std::array<Planes, limits.rows / block_side * blocks_in_row> near_{};  ///< of each block of the window
+  std::array<Planes, limits.rows / block_side * blocks_in_row> near_{};  ///< for each block of the window
   float origin_x_m_ = 0.0f, origin_y_m_ = 0.0f;                          ///< of the window then
 };
 
@@ -58,7 +58,7 @@ void PlanesNearBy<limits>::follow(const Dem<limits>& dem, const PlaneMixture<lim
   }
 }
 
-/// In each of the blocks that begin in a row.
+/// Planes in each of the blocks that begin in a row.
 template <Limits limits>
 auto PlanesNearBy<limits>::planes_in(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int first_row)
     -> BlockRow {
