@@ -3,9 +3,9 @@
 namespace curbline {
 namespace {
 
-/// How many times its variance a cell counts as whose neighbours along an axis correlate by r.
+/// Factor of a cell's variance for neighbours along an axis that correlate by r.
 float inflation(float r) {
-  constexpr float most = 0.9f;  // ten cells far, a patch: more is not told from its plane
+  constexpr float most = 0.9f;  // over ten cells, a patch: a longer correlation looks like its plane
   if (r > most) r = most;
   if (!(r > -most)) r = -most;
   return (1.0f + r) / (1.0f - r);
@@ -28,7 +28,7 @@ void PatchResiduals::add(float x_cells, float y_cells, float above_m) {
 
 float PatchResiduals::common_m2() const {
   const float n = cells;
-  // Scatter times n: whole numbers.
+  // Scatter times n: integers.
   const float sxx = n * xx - x * x, sxy = n * xy - x * y, syy = n * yy - y * y, determinant = sxx * syy - sxy * sxy;
   const float sxz = n * x_off_m - x * off_m, syz = n * y_off_m - y * off_m;
   const float slope[2] = {(syy * sxz - sxy * syz) / determinant, (sxx * syz - sxy * sxz) / determinant};
@@ -37,7 +37,7 @@ float PatchResiduals::common_m2() const {
 
   float common_m2 = left_m2;
   for (int round = 0; round < 2; ++round) {
-    const float variance_m2 = left_m2 + 3.0f / n * common_m2;  // the plane's three parameters took that much along
+    const float variance_m2 = left_m2 + 3.0f / n * common_m2;  // what the plane's three parameters absorbed
     common_m2 = variance_m2;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const Rises& rise = rises[axis];

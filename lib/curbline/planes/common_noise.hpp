@@ -1,13 +1,13 @@
-// How much of their noise the points of a cell share, found from the map. Cells count as independent observations of
-// their planes, but what their points share they share with the cells around too: ground is uneven over more than one
-// cell, and errors of the tilt lie in stripes. A field whose neighbours along an axis correlate by r adds up as if each
-// of its cells had (1 + r) / (1 - r) times its variance, along both axes by their product (Bartlett 1935, of a
-// first-order autoregression). Each patch of 10 x 10 cells is asked, about a plane of its own: of a step by which no
-// planes are parted yet only the patches that it crosses show anything. What the points of a cell err each on its own
-// is counted too, the less the more there are. What is not known of the tilt's latency moves a whole sweep: the cells
-// of a single one do not show it, and it is added. Errors of the tilt and of poses are those of whole scan lines, and
-// grow with the distance; so each patch tells, too, how much its cells share for theirs and for how many points they
-// hold: a plane far away, or seen in a few lines, errs by more than the evenest patches, near the robot, show.
+// How much of their noise the points of a cell share, estimated from the map. Cells count as independent observations
+// of their planes, but noise that points of a cell share is shared with the cells around too: ground is uneven over
+// more than a cell, and errors of the tilt lie in stripes. A field whose neighbours along an axis correlate by r adds
+// up as if each of its cells had (1 + r) / (1 - r) times its variance, along both axes by the product (Bartlett 1935,
+// for a first-order autoregression). It is estimated in patches of 10 x 10 cells, each about a plane of its own, so
+// that a step that does not divide planes yet affects only the patches that it crosses. Independent noise of a cell's
+// points is included, the less the more there are. The uncertainty of the tilt's latency, which a single sweep does not
+// show, is added. Errors of tilt and poses are those of whole scan lines, and grow with distance: so each patch also
+// yields its variance relative to its distance and points a cell, since a plane far away, or seen in a few lines, errs
+// by more than the evenest patches, near the robot, show.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@
 
 namespace curbline {
 
-/// How far the cells of a patch lie off their planes: sums over cells at whole numbers (x, y), in cells.
+/// Residuals of the cells of a patch: sums over cells at integer places (x, y).
 struct PatchResiduals {
   static constexpr int side = 10;              ///< cells along x and along y
-  static constexpr float least_cells = 20.0f;  ///< more than one row, so that their scatter is never singular
+  static constexpr float least_cells = 20.0f;  ///< more than a row, so that their scatter is not singular
 
   float cells = 0.0f, x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
   float off_m = 0.0f, x_off_m = 0.0f, y_off_m = 0.0f, squares_m2 = 0.0f;
@@ -37,8 +37,8 @@ struct PatchResiduals {
     rises[axis].sum_m += rise_m;
     rises[axis].squares_m2 += rise_m * rise_m;
   }
-  /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the plane that fits
-  /// the patch best. Expects least_cells or more.
+  /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the best plane of
+  /// the patch. Needs at least least_cells.
   float common_m2() const;
 };
 
@@ -47,19 +47,17 @@ class CommonNoise {
  public:
   void init() { *this = CommonNoise{}; }
 
-  /// Looks at the next row of patches; after the last it begins anew with the first. About 45 operations a cell of
-  /// these ten rows.
+  /// Examines the next row of patches; after the last, the first again. About 45 operations for each cell of these ten
+  /// rows.
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view);
 
-  /// What the points of a cell share: of the patches, each weighed by its cells, the one that a quarter of them lie
-  /// below. Curbs on both sides of a street and the end of a ramp may cross all others. At least
-  /// PlanePrior::least_common_share of the expected noise and at most PlanePrior::common_share, which it is too as long
-  /// as there is no plane.
+  /// Variance that the points of a cell share: the lower quartile of the patches, weighted by cells, since curbs on
+  /// both sides of a street and the end of a ramp may cross all others. Between PlanePrior::least_common_share and
+  /// PlanePrior::common_share of the expected noise; the latter as long as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// What scan lines err in tilt and pose, squared: what cells share over Viewpoint::reach_m2(). Near the laser that is
-  /// small, and what ground is uneven makes its share large; so each patch is weighed by it, too, as where the sum of
-  /// the one is divided by that of the other. Of these the middle one, for no curb is missed for it; 0 as long as there
-  /// is no plane.
+  /// Variance of a scan line's error in tilt and pose: the shared variance over Viewpoint::reach_m2(). Near the laser
+  /// the latter is small, and uneven ground makes the ratio large, so patches are weighted by it too, as in a ratio of
+  /// sums. The median, as no curb is missed for it; 0 as long as there is no plane.
   float line_rad2() const;
 
  private:
@@ -73,12 +71,12 @@ class CommonNoise {
     float above_m = 0.0f;
   };
   struct Patch {
-    float cells = 0.0f;  ///< 0: too few to tell
+    float cells = 0.0f;  ///< 0: too few
     float common_m2 = 0.0f;
     float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
-    float growth_m2_s2 = 0.0f;  ///< by latency, sum of squares
+    float growth_m2_s2 = 0.0f;  ///< sum of squares of Dem::growth_m_s()
   };
-  /// Of a patch, while its cells are looked at.
+  /// Sums of a patch, while its cells are examined.
   struct PatchSums {
     PatchResiduals residuals{};
     float growth_m2_s2 = 0.0f, points = 0.0f;
@@ -89,14 +87,14 @@ class CommonNoise {
   };
   void look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
                PatchRow& row) const;
-  /// What a patch shows, and what it weighs.
+  /// The estimate of a patch, and its weight.
   struct Shown {
     float value, weight;
   };
-  [[gnu::noinline]] static float quantile(std::array<Shown, patches>& left, float share);  ///< takes weights off them
+  [[gnu::noinline]] static float quantile(std::array<Shown, patches>& left, float share);  ///< sets weights to 0
 
   std::array<Patch, patches> patches_{};
-  int first_row_ = 0;  ///< of those that are next
+  int first_row_ = 0;  ///< of the next patches
 };
 
 template <Limits limits>
@@ -119,7 +117,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
   if (first_row_ >= dem.rows()) first_row_ = 0;
 }
 
-/// One that holds nothing but its plane is counted, and what it rises from its neighbours before it.
+/// Adds a cell that holds nothing but its plane, and its rise from the preceding neighbours.
 template <Limits limits>
 void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
                                   PatchRow& row) const {
@@ -167,12 +165,12 @@ float CommonNoise<limits>::line_rad2() const {
   return quantile(shown, 0.5f);
 }
 
-/// What a share of the weight lies below; 0 if there is none.
+/// Weighted quantile; 0 if there is no weight.
 template <Limits limits>
 float CommonNoise<limits>::quantile(std::array<Shown, patches>& left, float share) {
   float all = 0.0f, found = 0.0f;
   for (const Shown& shown : left) all += shown.weight;
-  for (float passed = 0.0f; passed < share * all;) {  // the least first, each once
+  for (float passed = 0.0f; passed < share * all;) {  // in ascending order, each once
     Shown* least = nullptr;
     for (Shown& shown : left) {
       if (shown.weight > 0.0f && (least == nullptr || shown.value < least->value)) least = &shown;

@@ -1,23 +1,25 @@
-// Which planes are ground. A region may fit a plane and be none that a wheel could stand on:
-//   - a face: a strip between two others, of a height between theirs, that no cell shows alone. The heights within its
-//     cells spread over most of the step, beyond what noise makes in the planes beside it: it is narrower than a cell
-//     and a half, and its plane is what mixing both sides makes.
+// Which planes are ground. A region may fit a plane on which no wheel could stand:
+//   - a face: a strip between two others, at a height between theirs. The heights within its cells spread over most of
+//   the
+//     step, beyond the noise of the planes beside it: it is narrower than a cell and a half, and its plane is a mixture
+//     of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
-//   - a veil: readings that mix an edge and what lies behind it, on the rays between. Its plane holds the laser itself,
-//     and no surface that does is seen; or it is no wider than the shadow of a step down, and steeper than ground, or
-//     falls there at least a quarter as far as the rays, as about an edge that is bent, or is so narrow that its slope
-//     is not known: what is seen beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a
-//     stair whose cells at both ends hold half of the next one falls by half a step where the rays fall by two.
-//   - a fringe: a strip beside an obstacle that is higher than a kerb, no wider than the laser's spot on the ground is
-//     long, that rises above the ground: readings that mix the obstacle and the ground around it. One that falls away
-//     from the laser as its rays do is a veil before the obstacle.
-// No cell bears such a plane; its cells are left to the ground beside them, and curbs look through them. Faces and
-// veils mix two sides, to the nearer of which a cell belongs; obstacles and fringes cover the ground, and their heights
-// tell nothing of it. A plane that may be a veil, but is not known to be one, is borne by its cells, and no curb has it
-// for a side: one that falls away as rays do, perhaps with what little the window holds behind it; and one that falls
-// away more steeply than a ramp, against what the ground leans, and is no wider than the shadow of what it falls and
-// the laser's spot on an edge, however the rays pass it, blurs that edge.
-// Cost: three passes over the window.
+//   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
+//   itself,
+//     as no visible surface does; or it is no wider than the shadow of a step down, and steeper than ground, or falls
+//     there at least a quarter as far as the rays, as around a bent edge, or is so narrow that its slope is unknown.
+//     What is visible beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair, with
+//     half of the next one in the cells at both ends, falls by half a step where the rays fall by two.
+//   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is long,
+//   that
+//     rises above the ground: readings that mix the obstacle with the ground around it. One that falls away from the
+//     laser as its rays do is a veil before the obstacle.
+// No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
+// veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their heights
+// say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
+// that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
+// steeply than a ramp, relative to the ground's slope, and is no wider than the shadow of its own fall and the laser's
+// spot on an edge, at whatever angle the rays cross it: it blurs that edge. Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -40,14 +42,14 @@ class Ground {
  public:
   void clear() { kind_.fill(Kind::ground); }
 
-  /// Asks each plane anew, by the cells of its region; changed(label) is called for each that is to be borne otherwise
-  /// than before.
+  /// Classifies each plane again, by the cells of its region; calls changed(label) where it becomes ground, or ceases
+  /// to be.
   template <typename Changed>
   void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
               const CellLabels<limits>& region_label, Changed&& changed);
 
   bool is(int label) const { return borne(kind(label)); }
-  /// May it, of planes that are ground, be a veil?
+  /// May a plane of ground be a veil?
   bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
   /// Is it an obstacle or a fringe?
   bool covers(int label) const { return kind(label) == Kind::cover; }
@@ -56,15 +58,15 @@ class Ground {
   enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
   static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
 
-  /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the more of it they hold the
-  /// higher: the strip leans, or all of it is higher than a kerb. A level one below that is a surface.
+  /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the higher the more of the
+  /// obstacle they hold: the strip leans, or is higher than a curb as a whole. A level one below that is a surface.
   static bool stands_out(const Plane& plane, const Plane& ground) {
     const float above_m = plane.above_m(ground);
     const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
     return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
   }
-  /// Of a plane that lies `above_m` below the laser, or above it, where the laser stands: within five standard
-  /// deviations, since an edge need not be straight.
+  /// Does a plane contain the laser, which is above_m above it? Within five standard deviations, as an edge need not be
+  /// straight.
   static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
     return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
@@ -75,8 +77,8 @@ class Ground {
   std::array<Kind, limits.planes> kind_{};
 };
 
-/// Veils are only seen from well above the ground: else the viewpoint is not where the points were seen from, as of a
-/// cloud whose origin lies on the ground, and a plane that holds it may be a pavement.
+/// Veils are only considered for a laser well above the ground: else the points were not seen from the viewpoint, as in
+/// a cloud whose origin is on the ground, and a plane that contains it may be a pavement.
 template <Limits limits>
 auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                              const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
@@ -88,7 +90,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
   const bool steep = plane.steeper_than_ramp();
-  // What mixes an edge and the ground behind rises toward the laser at least half as steeply as the rays.
+  // A mixture of an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;

@@ -1,11 +1,11 @@
-// What stands on the ground: which planes are of obstacles. A region within whose cells the heights spread as on a
-// slope of more than 45 degrees, unless they spread over less than a step and the region is wider than a wall: then it
-// is rough ground, grass or rubble, for anything as steep and as wide would rise higher; and the top of one: level,
-// higher above the ground than a kerb or a stair, smaller than a square metre or narrower than shoulders, and no way
-// that leads on. A way has beside it, as high above the ground, one that is no top, or lies higher or lower by as much
-// as the next step of a stair does. What reaches the window's end may be larger than it looks. So may what begins where
-// nothing is seen before it and, of a robot that drives, what ends where nothing is seen from there on: it may not have
-// looked there yet. Cost: a pass over the window, and two more where there may be tops.
+// Which planes belong to obstacles. An obstacle is a region within whose cells heights spread as on more than 45
+// degrees, unless they spread over less than a step and the region is wider than a wall: that is rough ground, grass or
+// rubble, as anything as steep and as wide would rise higher. So is the top of one: level, higher above the ground than
+// a curb or a stair, smaller than a square metre or narrower than shoulders, and not part of a way. A way has beside
+// it, as high above the ground, a plane that is no top, or one higher or lower by as much as the next step of a stair.
+// A region that reaches the window's end may be larger than it looks; so may one that begins where nothing is seen
+// before it and, on a robot that drives, one that ends where nothing is seen beyond: the laser may not have looked
+// there yet. Cost: a pass over the window, and two more where there may be tops.
 #pragma once
 
 #include <array>
@@ -22,36 +22,36 @@
 
 namespace curbline {
 
-inline constexpr float highest_step_m = 0.3f;  ///< no kerb or stair is as high
+inline constexpr float highest_step_m = 0.3f;  ///< higher than any curb or stair
 
 template <Limits limits>
 class Obstacles {
  public:
-  /// `region_label`: of a valid cell, the plane of its region.
+  /// `region_label`: for each valid cell, the plane of its region.
   Obstacles(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
             const CellLabels<limits>& region_label);
 
   bool is(std::size_t label) const { return is_[label]; }
-  /// Is it one that is higher than a step?
+  /// Is it an obstacle higher than a step?
   bool high(std::size_t label) const { return high_[label]; }
   /// Is it small, level and higher than most steps, but part of a way?
   bool way(std::size_t label) const { return way_[label]; }
-  /// In how many cells a plane's region lies.
+  /// Number of cells of a plane's region.
   float cells(std::size_t label) const { return cells_[label]; }
-  /// The largest plane that is none, null if there is none: what the others are measured against.
+  /// The largest plane that is no obstacle, the reference for the others; null if there is none.
   const Plane* ground() const { return ground_; }
 
  private:
   using PlaneFlags = std::array<bool, limits.planes>;
   using Neighbours = std::array<IndexSet<limits.planes>, limits.planes>;
-  static constexpr float usual_step_m = 0.2f;  ///< few kerbs or stairs are as high
-  static constexpr float way_m = 1.0f;         ///< a square of ground that lies higher is no smaller: stairs lead on
-  static constexpr float shoulders_m = 0.5f;   ///< nor is it narrower: it would be a wall
+  static constexpr float usual_step_m = 0.2f;  ///< few curbs or stairs are higher
+  static constexpr float way_m = 1.0f;         ///< side of the smallest square of raised ground; stairs lead on
+  static constexpr float shoulders_m = 0.5f;   ///< narrowest raised ground; less is a wall
 
-  /// Of a plane's region.
+  /// Extent of a plane's region.
   struct Extent {
     bool reaches_end = false;           ///< of the window
-    std::array<float, 2> thin_cells{};  ///< of runs shorter than shoulders, along x and along y
+    std::array<float, 2> thin_cells{};  ///< cells in runs shorter than shoulders, along x and along y
 
     bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
   };
@@ -96,7 +96,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
 
 template <Limits limits>
 void Obstacles<limits>::add_tops() {
-  PlaneFlags level{}, asked{};  // and above the ground by more than a step; and no larger than a wall may be
+  PlaneFlags level{}, asked{};  // level and raised; and no larger than a wall may be
   const float longest_m =
       static_cast<float>(dem_.rows()) * dem_.cell_x_m() + static_cast<float>(dem_.cols()) * dem_.cell_y_m();
   const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
@@ -120,7 +120,7 @@ void Obstacles<limits>::add_tops() {
   }
 }
 
-/// Tops that lead on are ways. One that is found may make one of what lies beside it.
+/// Tops that lead on are ways. A way found may make a way of the top beside it.
 template <Limits limits>
 void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside) {
   const auto leads_on = [&](std::size_t l) {
@@ -155,9 +155,9 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
   return found;
 }
 
-/// Is the run of cells through (i, j) whose regions bear `label`, along x or y, shorter than shoulders? Not one that
-/// goes on beyond the window's end, or perhaps where nothing is seen: toward the laser; or away from that of a robot
-/// that drives, if nothing is seen farther on that would tell that it has looked there yet.
+/// Is the run of cells of this label through (i, j), along x or y, shorter than shoulders? Not if it may go on: beyond
+/// the window's end; toward the laser, where nothing is seen; or away from the laser of a robot that drives, where
+/// nothing is seen up to the window's end, so that it may not have looked there yet.
 template <Limits limits>
 bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
   const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
@@ -180,7 +180,7 @@ bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const 
   return true;
 }
 
-/// Of the planes that are asked for, which lie beside which, on a row or a column.
+/// Which of the planes asked for are adjacent, on a row or a column.
 template <Limits limits>
 auto Obstacles<limits>::neighbours(const PlaneFlags& asked) const -> Neighbours {
   Neighbours found{};

@@ -1,7 +1,7 @@
-// The mixture of planes. Each label is a slot that holds one plane. After every scan line the largest regions become
-// planes again and take the label with which their cells overlap most, so that a plane keeps its label while it grows,
-// is cut and merged; a label that no region took dies. Planes that are ground are then fitted to the cells that hold
-// nothing else. Cost: four passes over the window, K^3 for the matching, and ground.hpp.
+// The mixture of planes. Each label is a slot for one plane. At each update the largest regions become planes, each
+// with the label that its cells overlap most, so that a plane keeps its label while it grows, is cut and merged; a
+// label that no region takes dies. Planes of ground are then fitted to the cells that hold nothing else. Cost: four
+// passes over the window, K^3 for the matching, and ground.hpp.
 #pragma once
 
 #include <algorithm>
@@ -38,18 +38,18 @@ class PlaneMixture {
     relabelled_.clear();
   }
 
-  /// Births, deaths and matching from the regions; parameters too, unless they come from responsibilities.
-  /// label_of(slot) is the cell's label up to now, none if it has none yet; `crossed` are those that steps cross.
+  /// Births, deaths and matching, by the regions; parameters too, unless they come from responsibilities.
+  /// label_of(slot) is the cell's label so far, or no_label; `crossed` are the cells that steps cross.
   template <typename LabelOf>
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
               const CellSet<limits>& crossed, LabelOf&& label_of, Counters& counters);
 
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
-  /// responsibility) for each label that a cell may bear.
+  /// responsibility) for each candidate of a cell.
   template <typename ForEachBelief>
   void maximise(const Dem<limits>& dem, ForEachBelief&& for_each_belief);
 
-  /// Labels have followed: what is fresh or relabelled counts from here.
+  /// Call when the labels have followed: fresh() and relabelled() count from here.
   void forget_changes();
 
   /// Forgets a cell that leaves the window.
@@ -64,15 +64,15 @@ class PlaneMixture {
   }
 
   const Plane& plane(int label) const { return planes_[static_cast<std::size_t>(label)]; }
-  /// True if the label was born, died, or became ground or none since forget_changes().
+  /// Was the plane born, did it die, or become ground or cease to be, since forget_changes()?
   bool fresh(int label) const { return fresh_.contains(label); }
-  /// The plane of a cell's region; none if the region is too small for one.
+  /// The plane of a cell's region; no_label if the region is too small for one.
   Label region_label(int slot) const { return region_label_[slot]; }
-  /// True if that changed since forget_changes().
+  /// Has that changed since forget_changes()?
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
-  /// Is the plane ground, which cells may bear? ground.hpp
+  /// Is the plane ground, so that cells may have its label? See ground.hpp.
   bool ground(int label) const { return ground_.is(label); }
-  /// May it, being ground, be a veil? No curb has it for a side.
+  /// May a plane of ground be a veil? Then it is no side of a curb.
   bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
   /// The largest plane of ground, a level one if there is none.
   Plane largest_ground() const {
@@ -85,9 +85,9 @@ class PlaneMixture {
   }
   /// False if the cell's region is the face of a curb, an obstacle, a veil or a fringe.
   bool on_ground(int slot) const { return region_label(slot) == no_label || ground_.is(region_label(slot)); }
-  /// Is the ground below it covered, so that its height tells nothing of it? True of an obstacle and a fringe.
+  /// Is the ground below the cell covered, by an obstacle or a fringe, so that its height says nothing about it?
   bool covered(int slot) const { return region_label(slot) != no_label && ground_.covers(region_label(slot)); }
-  /// Does something stand in it: do its heights spread as on 45 degrees, or is its ground covered?
+  /// Is there an obstacle in the cell: do its heights spread as on 45 degrees, or is its ground covered?
   bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }
   bool any_fresh() const { return !fresh_.empty(); }
   bool any_relabelled() const { return any_relabelled_; }
@@ -109,7 +109,7 @@ class PlaneMixture {
   Ground<limits> ground_{};
   CellLabels<limits> region_label_{};
   CellSet<limits> relabelled_{};
-  bool any_relabelled_ = false;  ///< not told by a look at all of relabelled_, since each cell asks
+  bool any_relabelled_ = false;  ///< whether relabelled_ has any; kept, since it is asked for each cell
 };
 
 template <Limits limits>
@@ -122,7 +122,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = ranking.rank_of_cell(s);
     if (rank == no_label) return;
-    // A region may bear a plane that its own cells, asked one by one, leave to another: it keeps it all the same.
+    // The region's plane counts before the cells' own labels: it stays even if these prefer another.
     const Label before = region_label_[s];
     const Label old = before != no_label ? before : label_of(s);
     if (old != no_label) ranking.count(rank, old);
@@ -141,7 +141,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   refine(dem, view, fitted, crossed, label_of);
 }
 
-/// Labels that no region has taken die.
+/// Planes whose label no region has taken die.
 template <Limits limits>
 void PlaneMixture<limits>::take_labels(const RegionRanking<limits>& ranking) {
   for (std::size_t l = 0; l < planes_.size(); ++l) {
@@ -151,7 +151,7 @@ void PlaneMixture<limits>::take_labels(const RegionRanking<limits>& ranking) {
   }
 }
 
-/// Planes of whole regions. Not of responsibilities: these keep what they are.
+/// Fits planes to whole regions, except those whose parameters come from responsibilities.
 template <Limits limits>
 auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking) -> Fitted {
   Fitted fitted{};
@@ -165,12 +165,12 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const RegionRanking<limit
   return fitted;
 }
 
-/// Fits planes that are ground to the mean heights of those cells of their regions that hold nothing else, and do not
-/// bear another plane on which they lie better: what mixes both sides of a step would tilt the plane of a small region
-/// toward the other. Where the step is low the heights within a cell do not show it. A wide plane does without the
-/// cells that a step crosses; of a small one they say too much. They hold something of the other side, and beside a
-/// step down a cell lies too high: all along it do alike. Together they are one observation, off by up to the half of
-/// the step, anywhere.
+/// Fits planes of ground to the mean heights of the clean cells of their regions: those that hold nothing else, and
+/// have no other label on whose plane they lie better. Cells that mix both sides of a step would tilt the plane of a
+/// small region toward the other; if the step is low, the heights within a cell do not show it. A wide plane does
+/// without the cells that a step crosses; a small one needs them. Those hold something of the other side, and a cell
+/// behind a step down lies too high, all along the step alike: together they are one observation, off by anything up to
+/// half of the step.
 template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
@@ -204,7 +204,7 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
   }
 }
 
-/// Does a cell lie nearer to one plane than to another?
+/// Is a cell nearer to one plane than to the other?
 template <Limits limits>
 bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one,
                                        const Plane& other) {
@@ -212,8 +212,8 @@ bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, con
   return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
 }
 
-/// How far a cell lies below those beside it, toward the laser, of other regions, and where a step crosses it, above or
-/// below those of other regions that are ground; 0 if there are none.
+/// Height of the step beside a cell: how far it lies below the next ones toward the laser, of other regions, and, if a
+/// step crosses it, above or below any next one of other regions of ground; 0 if there are none.
 template <Limits limits>
 float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s,
                                           bool crossed) const {
@@ -256,7 +256,7 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
     });
   });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
-    // A plane that nearly no cell answers for keeps its parameters; whether it lives is decided by its region.
+    // A plane with hardly any responsibility keeps its parameters; its region decides whether it lives.
     if (!planes_[l].alive() || moments[l].cells < 3.0f) continue;
     Plane anew = fit_plane(moments[l], dem.prior());
     anew.points_a_cell = planes_[l].points_a_cell;

@@ -1,6 +1,6 @@
-// Which regions become planes, and under which labels: the largest ones, each with the label that it overlaps most
-// with, so that a plane keeps its label while its region grows, is cut and merged. Of one call of
-// PlaneMixture::update(). Cost: K^3 for the matching.
+// Which regions become planes, and with which labels: the largest ones, each with the label that it overlaps most, so
+// that a plane keeps its label while its region grows, is cut and merged. Working memory of PlaneMixture::update().
+// Cost: K^3 for the matching.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@ class RegionRanking {
  public:
   using Regions = typename Segmentation<limits>::Work;
 
-  /// Ranks the largest regions, of min_cells at least. What it ranks must outlive it.
+  /// Ranks the largest regions of at least min_cells. `regions` must outlive it.
   RegionRanking(const Regions& regions, float min_cells, Counters& counters);
 
-  /// How many are planes.
+  /// Number of regions that become planes.
   std::size_t size() const { return size_; }
   const PlaneMoments& moments(std::size_t rank) const { return regions_.graph.moments(node_[rank]); }
-  /// Of a cell's region; no_label if that is no plane.
+  /// Rank of a cell's region; no_label if that becomes no plane.
   Label rank_of_cell(int slot) const {
     const Node node = regions_.node_of_cell[slot];
     return node == RegionGraph<limits>::none ? no_label : rank_of_node_[regions_.graph.root(node)];
   }
 
-  /// A cell of a region has borne a label.
+  /// Counts a cell of a region that has had a label.
   void count(Label rank, Label label) { ++overlap_[rank][label]; }
-  /// When all are counted. Greatest overlap first; regions without one take free labels.
+  /// Call when all are counted. Greatest overlap first; regions without any take free labels.
   void match();
 
   // After match().
@@ -46,7 +46,7 @@ class RegionRanking {
   }
   /// Has a region taken the label?
   bool taken(std::size_t label) const { return taken_[label]; }
-  /// One that none of its cells has borne?
+  /// Has a region taken the label that none of its cells had?
   bool born(std::size_t label) const { return born_[label]; }
 
  private:

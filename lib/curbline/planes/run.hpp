@@ -1,6 +1,6 @@
-// Runs: cells of one plane's region that follow each other on a row or column of the window, and how the laser sees
-// them. What lies in strips between two planes, or beside an obstacle, is told by these: ground.hpp. Cost: a look at
-// each cell of the window, along x and along y.
+// Runs: consecutive cells of one plane's region on a row or column of the window, and how the laser sees them. Used to
+// find strips between two planes, or beside an obstacle (ground.hpp). Cost: a pass over the window along x, and one
+// along y.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ namespace curbline {
 
 /// How the laser sees a row or column.
 struct Sight {
-  float eye_m, eye_z_m;  ///< where it is along it, from the window's lowest corner, and how high
-  float cell_m;          ///< of a cell, along it
+  float eye_m, eye_z_m;  ///< the laser's coordinate along it, from the window's lowest corner, and its height
+  float cell_m;          ///< length of a cell
   float end_m;           ///< Viewpoint::end_x_m, or end_y_m
 
   /// Along x (axis 0) or y (1).
@@ -30,7 +30,8 @@ struct Sight {
   }
 
   bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
-  /// To the near end of a run; of a robot that drives, as far as it has seen it from. 0 and less: the laser is above.
+  /// Distance to the near end of a run; on a robot that drives, the farthest from which it has been seen. At most 0 if
+  /// the laser is above the run.
   float away_m(int first, int last) const {
     const bool is_ahead = ahead(first);
     const float away_m =
@@ -38,20 +39,20 @@ struct Sight {
     const float from_end_m = is_ahead ? end_m - eye_m : eye_m;
     return end_m > 0.0f && away_m > 0.0f && away_m < from_end_m ? from_end_m : away_m;
   }
-  /// The same for an edge that lies across the grid, along a strip: as if the laser were where the edge's parallel
-  /// through it crosses the line, which is `aside_m` from the laser.
+  /// The same for an edge at an angle to the grid, along a strip: as if the laser were where the edge's parallel
+  /// through it crosses the row or column, which is `aside_m` from the laser.
   Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
     const float along = axis == 0 ? strip.pxx : strip.pyy;  // the strip's normal is (pxx, pxy), or (pxy, pyy)
     return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m, end_m};
   }
 };
 
-/// How far something falls from its end near the laser to the far one, and how far the rays there do.
+/// How far a run falls from its end near the laser to the far one, and how far the rays do there.
 struct Fall {
   float own_m = 0.0f, of_rays_m = 0.0f;
 };
 
-/// Cells of one plane that follow each other; of no plane, before the first and behind the last of a line.
+/// Consecutive cells of one plane; of no plane before the first and after the last of a row or column.
 struct Run {
   Label label = no_label;
   int first = 0, last = 0;
@@ -82,7 +83,7 @@ struct Run {
   int length() const { return last - first + 1; }
 };
 
-/// A run, and what lies before and after it on its row or column.
+/// A run, and the runs before and after it on its row or column.
 struct Strip {
   static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
 
@@ -94,9 +95,9 @@ struct Strip {
     return before.any() && next.any() && run.first - before.last <= widest_gap && next.first - run.last <= widest_gap &&
            ((from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to));
   }
-  /// Of one that carries a step: does that lead down as the laser sees it, and is the strip no wider than its shadow
-  /// (shadow.hpp), and a cell for what those at its ends have of the planes? Then how far it falls. Inlined, since
-  /// calls of it would cost the worst line of a Cortex-M7 20,000 instructions more (tools/budget).
+  /// For a strip that carries a step: if the step leads down as the laser sees it, and the strip is no wider than its
+  /// shadow (shadow.hpp) and a cell, as those at its ends hold some of the planes, how far the strip falls. Inlined:
+  /// calls would cost the worst line of a Cortex-M7 20,000 instructions (tools/budget).
   [[gnu::always_inline]] std::optional<Fall> fall_in_shadow(const Sight& sight) const {
     const bool ahead = sight.ahead(run.first);
     const float near_m = ahead ? before.last_height_m : next.first_height_m;
@@ -108,14 +109,14 @@ struct Strip {
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
   }
-  /// How far the run begins below where the one beside it ends that is nearer to the laser; 0 if there is none.
+  /// Height of the step down from the next run toward the laser to this one; 0 if there is none.
   float begins_below_m(const Sight& sight) const {
     if (sight.ahead(run.first)) return before.any() ? before.last_height_m - run.first_height_m : 0.0f;
     return next.any() ? next.first_height_m - run.last_height_m : 0.0f;
   }
-  /// Cells that hold something of both sides of an edge here: as long as the spot on the ground and the shadow of what
-  /// the run falls, and one more. If a step of more than that parts it from the run before it, it is not the fall of
-  /// the edge, and casts no shadow. `aside_m`: how far the line is from the laser.
+  /// Number of cells that hold something of both sides of an edge here: the length of the spot on the ground and of the
+  /// shadow of the run's own fall, and one more. If a higher step separates it from the run toward the laser, the run
+  /// is not the fall of that edge, and casts no shadow. `aside_m`: distance of the row or column from the laser.
   float blurred_cells(const Sight& sight, float aside_m) const {
     const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
@@ -126,7 +127,7 @@ struct Strip {
   }
 };
 
-/// Calls visit(strip, line) for each run of cells along x (axis 0) or along y (1), in the order of lines and cells.
+/// Calls visit(strip, line) for each run along x (axis 0) or y (1); `line` numbers the columns, or rows, in order.
 template <Limits limits, typename Visit>
 void for_each_run(const Dem<limits>& dem, int axis, const CellLabels<limits>& region_label, Visit&& visit) {
   for (int line = 0; line < dem.cells_along(1 - axis); ++line) {

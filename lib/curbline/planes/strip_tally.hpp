@@ -1,6 +1,6 @@
-// What the runs of a plane's cells (run.hpp) tell of what it is: how many of its cells lie in strips that carry a step,
-// in the shadow of one, beside a high obstacle, or where an edge is blurred. ground.hpp judges by it. Cost: that of the
-// runs.
+// Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
+// lie in strips that carry a step, in the shadow of one, beside a high obstacle, or where an edge is blurred. Cost:
+// that of the runs.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace curbline {
 
-/// Strips that a step down leaves in its shadow.
+/// Strips in the shadow of a step down.
 struct Shadowed {
   float cells = 0.0f, strips = 0.0f;
   Fall fall{};
@@ -33,21 +33,21 @@ struct Shadowed {
 };
 
 struct StripTally {
-  /// In cells: as many as a face of one and a half touches when it lies across the grid; and as long as the spot of a
-  /// beam is on the ground 6 m away, seen from 1.2 m above it.
+  /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a beam's spot on the
+  /// ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
 
   float cells = 0.0f;  ///< of the plane's region
   // Of strips that carry a step.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
-  // By the axis along which the strip was found, x or y.
+  // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
-  std::array<float, 2> blurred_cells{};  ///< as many as an edge would blur; counted of planes that drop off
+  std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
-  /// A strip between two others, which are no obstacles: a step up to one would be no kerb's. Its cells spread beyond
-  /// what noise makes by as much more than those of the quieter plane beside it.
+  /// Adds a strip between two others that are no obstacles (a step up onto one is no curb). Its cells' spread beyond
+  /// noise is that beyond the spread of the quieter plane beside it.
   void add(const Strip& strip) {
     const Run &before = strip.before, &run = strip.run, &next = strip.next;
     const float step = next.first_height_m - before.last_height_m;
@@ -61,8 +61,7 @@ struct StripTally {
 
   bool face() const {
     const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
-    // Heights that are spread evenly over a width of w cells have a standard deviation of step / (w sqrt(12)) within
-    // each.
+    // A step spread evenly over a width of w cells has a standard deviation of step / (w sqrt(12)) within each.
     return most(strip_cells) && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
   }
   bool veil(const Plane& plane) const {
@@ -81,17 +80,17 @@ struct StripTally {
   }
 };
 
-/// By plane.
+/// For each plane.
 template <Limits limits>
 using StripTallies = std::array<StripTally, limits.planes>;
 
-/// Does a plane fall away from the laser, and more steeply than a ramp on ground that leans?
+/// Does a plane fall away from the laser, more steeply than a ramp, relative to the ground's slope?
 inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& view) {
   return plane.steeper_than_ramp(lean) &&
          plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
 }
 
-/// Of all planes. Shadows fall as the laser saw the strips last.
+/// Statistics of all planes. Shadows are those for the place from which the laser last saw a strip.
 template <Limits limits>
 StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                                   const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
