@@ -16,7 +16,7 @@ void BendSums::add(float x_m, float y_m, float above_m) {
 float BendSums::likelier_bent(const Bend& bend, float variance_m2) const {
   if (!(cells_ > 0.0f)) return 0.0f;
   const float a = square(bend.dx), b = 2.0f * bend.dx * bend.dy, c = square(bend.dy);
-  const float squares = a * xx_ + b * xy_ + c * yy_;  // of the ways along the bend
+  const float squares = a * xx_ + b * xy_ + c * yy_;  // of distances along the bend
   const float fourth =
       a * a * x4_ + 2.0f * a * b * x3y_ + (2.0f * a * c + b * b) * x2y2_ + 2.0f * b * c * xy3_ + c * c * y4_;
   const float mean = squares / cells_;
@@ -26,7 +26,7 @@ float BendSums::likelier_bent(const Bend& bend, float variance_m2) const {
 }
 
 bool one_bend(const Plane& first, const BendSums& of_first, const Plane& second, const BendSums& of_second) {
-  constexpr float sure = 0.5f * gate;  // as the logarithm of a ratio
+  constexpr float sure = 0.5f * gate;  // three standard deviations, as a log likelihood ratio
   const Bend bend = Bend::between(first, second);
   const float one = of_first.likelier_bent(bend, first.fit_variance_m2);
   const float other = of_second.likelier_bent(bend, second.fit_variance_m2);

@@ -1,6 +1,6 @@
-// Roads are cambered, and evidence follows bent ground with two planes or three, however little it is bent. Do two
-// planes that meet follow one bent surface? If they do, the slope changes within each as it does from the one to the
-// other; where they meet at a crease it changes between them alone, and the cells of each lie evenly about it.
+// Do two planes that meet follow one bent surface? Roads are cambered, and evidence fits two or three planes to bent
+// ground, however little it is bent. On one bent surface the slope changes within each plane at the same rate as from
+// one to the other; at a crease it changes between them only, and the cells of each are flat about it.
 #pragma once
 
 #include "curbline/math.hpp"
@@ -8,12 +8,12 @@
 
 namespace curbline {
 
-/// How the ground is bent that two planes follow.
+/// The bend of the ground that two planes follow.
 struct Bend {
   float dx, dy;         ///< unit vector along which the slope changes
-  float curvature_1_m;  ///< by how much a metre; no number if they do not differ
+  float curvature_1_m;  ///< change of slope a metre; NaN if the slopes do not differ
 
-  /// From one to the other the slope changes by their difference, over the way between their centroids along it.
+  /// The difference of their slopes over the distance of their centroids, in the direction of that difference.
   static Bend between(const Plane& first, const Plane& second);
 };
 
@@ -24,15 +24,15 @@ inline Bend Bend::between(const Plane& first, const Plane& second) {
   return {x / angle, y / angle, square_of_angle / way_m};
 }
 
-/// How far cells lie off their plane, and what that says of a bend. Cost: 30 operations a cell, 50 a bend.
+/// Sums over a plane's cells that give the likelihood of any bend. Cost: 30 operations a cell, 50 a bend.
 class BendSums {
  public:
-  /// A cell, by its way from the plane's centroid.
+  /// Adds a cell, at a place from the plane's centroid, with its height above the plane.
   [[gnu::cold]] void add(float x_m, float y_m, float above_m);
 
-  /// By how much the ground is likelier bent so than even, logarithm of the ratio, each cell one observation of that
-  /// variance: residuals of a plane that follows a bend of k lie as k / 2 times the square of the way from its centroid
-  /// along the bend, less its mean.
+  /// Log likelihood ratio of the bend against flat ground, each cell one observation of variance_m2. Residuals of a
+  /// plane along a bend of curvature k are k / 2 times the square of the distance from its centroid along the bend,
+  /// less its mean.
   [[gnu::cold]] float likelier_bent(const Bend& bend, float variance_m2) const;
 
  private:
@@ -42,8 +42,8 @@ class BendSums {
   float xx_above_ = 0.0f, xy_above_ = 0.0f, yy_above_ = 0.0f;
 };
 
-/// Do two planes follow one bent surface, by their cells, each one observation? Both together are sure of it to three
-/// standard deviations, and neither says the contrary: one of them may hold more than one surface, and look bent.
+/// Do two planes follow one bent surface? Their cells must say so by three standard deviations together, and those of
+/// neither the contrary: one plane may hold more than one surface, and look bent.
 [[gnu::cold]] bool one_bend(const Plane& first, const BendSums& of_first, const Plane& second,
                             const BendSums& of_second);
 

@@ -1,7 +1,7 @@
 // Finds border points: where, along a row or column of the window, the ground changes from one plane to another. Cells
-// that lie on no plane of the ground, and those that hold something of both sides, are looked through; plane_gap.hpp
-// tells by them where the edge lies, and whether a step down hides what is between planes farther apart than the reach
-// of links. Edges beyond which no ground is seen: ground_end.hpp. Cost: a pass over the window, and that of the gaps.
+// on no plane of ground, and cells that mix both sides, are looked through; plane_gap.hpp locates the edge by them, and
+// decides whether a step down hides what is between planes farther apart than the reach of links. Edges with no ground
+// in view beyond: ground_end.hpp. Cost: a pass over the window, and that of the gaps.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class BorderFinder {
   BorderFinder(const CurbStages<limits>& stages, int link_reach)
       : stages_(stages), ends_(stages, link_reach), link_reach_(link_reach) {}
 
-  /// Fills `borders`, which are empty.
+  /// Fills `borders`, which must be empty.
   void find(Borders<limits>& borders, Counters& counters) const;
 
  private:
@@ -37,7 +37,7 @@ class BorderFinder {
   using Line = CellLine<limits>;
   using Gap = PlaneGap<limits>;
 
-  // Called: inlined twice it would not fit the flash's budget.
+  // Not inlined: twice inlined it would not fit the flash budget.
   template <typename Add>
   [[gnu::noinline]] void cross(const Gap& gap, Add&& add) const;
   Border border_of(const Gap& gap) const;
@@ -76,7 +76,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
   });
 }
 
-/// Calls add(border) for that in a gap, unless it is too wide, and for those where a face on one of its sides ends.
+/// Calls add(border) for the border in a gap, unless that is too wide, and for the end of a face on either side of it.
 template <Limits limits>
 template <typename Add>
 void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
@@ -105,8 +105,8 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   return border;
 }
 
-/// Of two cells after the one that a border lies in, along the axis (toward 1) or against it (-1). One that holds more
-/// than the side's plane may lie before them.
+/// By the two cells after the border's own, along the axis (toward 1) or against it (-1); one that holds more than the
+/// side's plane may be skipped.
 template <Limits limits>
 Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
   const Plane& plane = stages_.mixture.plane(label);

@@ -1,5 +1,5 @@
-// Border points between two planes on the rows and columns of the window (BorderFinder), and their chaining into
-// polylines. Working memory of one call of CurbTracer::trace().
+// Border points between two planes on the rows and columns of the window (BorderFinder), chained into polylines.
+// Working memory of one CurbTracer::trace().
 #pragma once
 
 #include <algorithm>
@@ -24,28 +24,28 @@ class Borders {
 
   struct Border {
     float x_m, y_m;                  ///< in the window's frame
-    float probability;               ///< that the cells on both sides lie on different planes
-    float half_gap_m;                ///< between the cells of the one and the other
-    float drop_m;                    ///< of a brink: to the lowest that is seen behind it; else 0
-    Beside beside_low, beside_high;  ///< of the sides of `low` and `high`
+    float probability;               ///< that the cells on both sides belong to different planes
+    float half_gap_m;                ///< half the distance between the cells of both planes
+    float drop_m;                    ///< of a brink: down to the lowest visible behind it; else 0
+    Beside beside_low, beside_high;  ///< on the sides of `low` and `high`
     Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;  ///< 0: found along x, 1: along y
-    std::int8_t sign;  ///< +1 if `high` lies in the positive direction of the axis
-    bool open : 1;     ///< the edge lies anywhere in the gap: something stands there, or hides it
+    std::int8_t sign;  ///< +1 if `high` is in the positive direction of the axis
+    bool open : 1;     ///< the edge may be anywhere in the gap: an obstacle stands there, or hides it
     bool chained : 1;
     std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
     Index next_in_cell;  ///< another border in the same cell
 
-    /// In a line, which it lies off in half gaps.
+    /// In the fit of a line: residuals are in half gaps.
     float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
-    /// The direction, of grid.hpp, in which the side of one of its planes lies.
+    /// The direction (grid.hpp) toward the side of one of its planes.
     std::size_t toward(Label label) const {
       return static_cast<std::size_t>(direction(axis, label == high ? sign : -sign));
     }
   };
 
-  /// Borders of a chain that follow each other. Those of one shadow err alike: all open ones together weigh as one
-  /// observation, unless there are no others.
+  /// Consecutive borders of a chain. Those of one shadow err alike: all open ones together weigh as one observation,
+  /// unless there are no others.
   class Part {
    public:
     struct Iterator {
@@ -70,7 +70,7 @@ class Borders {
     Iterator begin() const { return {all_, part_.data()}; }
     Iterator end() const { return {all_, part_.data() + part_.size()}; }
 
-    /// As how many observations one counts, and all of them.
+    /// Number of observations that a border counts for, and all of them.
     float share(const Border& border) const { return border.open ? open_share_ : 1.0f; }
     float observations() const { return observations_; }
 
@@ -80,7 +80,7 @@ class Borders {
     float open_share_ = 1.0f, observations_ = 0.0f;
   };
 
-  /// One on a row or column, with nothing but its place.
+  /// A border on a row or column, with only its place set.
   static Border on(const CellLine<limits>& line, float along_m) {
     Border border{};
     border.x_m = line.x_m(along_m);
@@ -99,12 +99,12 @@ class Borders {
   /// False if the store is full.
   bool add(const Dem<limits>& dem, Border border);
 
-  /// The polyline that goes through a border, from one of its ends: the nearest border of the same planes follows each,
-  /// within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About 50
-  /// look-ups a border; (2 reach + 1)^2 where no other lies within two cells.
+  /// Chains the polyline through a border, from one of its ends: each is followed by the nearest border of the same
+  /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About
+  /// 50 look-ups a border; (2 reach + 1)^2 where no other is within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
-  /// From at(first) to at(last).
+  /// The borders at(first) to at(last).
   Part part(int first, int last) const {
     const auto size = static_cast<std::size_t>(last - first) + 1;
     return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size));
@@ -115,7 +115,7 @@ class Borders {
 
   int walk(const Dem<limits>& dem, Index start, int reach);
   Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
-  /// Before the window's ends in the first cell, beyond them in the last.
+  /// A border beyond the window's ends belongs to the first or last cell.
   int cell_of(const Dem<limits>& dem, const Border& border) const {
     const auto within = [](float cells, int count) { return std::clamp(static_cast<int>(cells), 0, count - 1); };
     return dem.slot(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
@@ -123,7 +123,7 @@ class Borders {
 
   std::array<Border, limits.borders> border_;
   PerCell<Index, limits> in_cell_;
-  std::array<Index, limits.borders> chain_;  ///< of the polyline in hand, in order
+  std::array<Index, limits.borders> chain_;  ///< the current polyline, in order
   int size_;
 };
 

@@ -12,16 +12,16 @@
 
 namespace curbline {
 
-/// A column, along x (axis 0), or a row, along y (1). `along` counts its cells.
+/// A column, along x (axis 0), or a row, along y (1). `along` numbers its cells.
 template <Limits limits>
 struct CellLine {
   const Dem<limits>& dem;
-  int axis, across;  ///< which column, or row
+  int axis, across;  ///< number of the column, or row
 
   int cells() const { return dem.cells_along(axis); }
   int row(int along) const { return axis == 0 ? along : across; }
   int col(int along) const { return axis == 0 ? across : along; }
-  // This and above_m() are asked where borders are, in many places: inlined there they take 700 bytes of flash.
+  // This and above_m() are called from many places, for borders only: inlined they take 700 bytes of flash.
   [[gnu::noinline]] int slot(int along) const { return dem.slot(row(along), col(along)); }
   const Cell& cell(int along) const { return dem.cell(slot(along)); }
   /// Dem::next_valid() along the line (toward 1) or against it (-1).
@@ -33,12 +33,12 @@ struct CellLine {
   }
 
   float pitch_m() const { return dem.cell_m(axis); }
-  /// Of the cell's centroid from its middle, in cells along the line.
+  /// Offset of the cell's centroid from its middle, in cells along the line.
   float offset(const Cell& cell) const { return (axis == 0 ? cell.dx_m : cell.dy_m) / pitch_m(); }
-  /// Of a place on the middle of the line.
+  /// Coordinates of a place on the middle of the line.
   float x_m(float along_m) const { return axis == 0 ? along_m : across_m(); }
   float y_m(float along_m) const { return axis == 0 ? across_m() : along_m; }
-  /// 1 if a cell lies farther along the line than the laser, else -1.
+  /// Direction along the line that leads away from the laser at a cell: 1 or -1.
   int away(const Viewpoint& view, int along) const {
     return (static_cast<float>(along) + 0.5f) * pitch_m() > (axis == 0 ? view.x_m : view.y_m) ? 1 : -1;
   }
@@ -47,7 +47,7 @@ struct CellLine {
   float across_m() const { return (static_cast<float>(across) + 0.5f) * dem.cell_m(1 - axis); }
 };
 
-/// A cell of a line and its plane.
+/// A cell of a line and its label.
 struct LabelledCell {
   Label label = no_label;
   std::int16_t along = 0;

@@ -1,6 +1,5 @@
-// Which cells the edges of steps cross, as the curbs of the call before tell. They hold readings of both sides, though
-// where a step is low their heights do not show it. Cost: 30 operations for each row or column of cells that a curb
-// goes through.
+// The cells that steps cross, by the curbs of the last call. They hold readings of both sides, although, if the step is
+// low, their heights do not show it. Cost: 30 operations for each row or column of cells that a curb goes through.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +14,8 @@
 
 namespace curbline {
 
-/// Goes along a curb from (x0, y0) to (x1, y1), in cells of the window, x the axis along which it is longer:
-/// visit(x, y) for each cell that it crosses, x from 0 to `end_x` - 1, y of any value.
+/// Calls visit(x, y) for each cell crossed by a curb from (x0, y0) to (x1, y1), in cells of the window, x being the
+/// axis along which it is longer: x from 0 to end_x - 1, y unbounded.
 template <typename Visit>
 void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&& visit) {
   if (x0 > x1) std::swap(x0, x1), std::swap(y0, y1);
@@ -31,12 +30,12 @@ void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&&
   }
 }
 
-/// Of steps of which both sides are seen.
+/// For steps with both sides in view.
 template <Limits limits>
 CellSet<limits> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curbs) {
   CellSet<limits> crossed;
   const float cells_x = 1.0f / dem.cell_x_m(), cells_y = 1.0f / dem.cell_y_m();
-  const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // or the window has leapt away
+  const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // else the window has jumped away
   const auto insert = [&](int i, int j) {
     if (dem.contains(i, j)) crossed.insert(dem.slot(i, j));
   };

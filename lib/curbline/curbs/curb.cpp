@@ -9,7 +9,7 @@
 namespace curbline {
 namespace {
 
-/// Of a piece: how far a place lies along it from its first end, and aside, on its left, the far side.
+/// The coordinates of a place relative to a piece: along it, from its first end, and to its left, the far side.
 struct Line {
   explicit Line(const Curb& curb)
       : x0_m(curb.x0_m),

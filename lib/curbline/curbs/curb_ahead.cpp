@@ -10,10 +10,11 @@ struct At {
   float x_m, y_m;
 };
 
-/// The part of a segment where `distance` of its ends, which is linear along it, is at least 0. False if there is none.
+/// Clips a segment to where a distance, linear along it and given at both ends, is at least 0. False if nothing is
+/// left.
 bool keep_side(At& a, At& b, float distance_a, float distance_b) {
   if (!(distance_a >= 0.0f) && !(distance_b >= 0.0f)) return false;
-  const float part = distance_a / (distance_a - distance_b);  // of the way from a, where the ends are on either side
+  const float part = distance_a / (distance_a - distance_b);  // of the way from a, if the ends are on different sides
   const At crossing{a.x_m + part * (b.x_m - a.x_m), a.y_m + part * (b.y_m - a.y_m)};
   if (!(distance_a >= 0.0f)) a = crossing;
   if (!(distance_b >= 0.0f)) b = crossing;

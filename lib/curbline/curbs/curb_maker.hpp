@@ -1,6 +1,6 @@
-// Makes a curb of a straight part of a chain of borders: what kind it is, how high (step_height.hpp), where it lies and
-// how well that is known. Cost: 60 operations a border, eight cells beside each border of a step, and a pass over the
-// window where there is a deep drop.
+// Makes a curb of a straight part of a chain of borders: its kind, height (step_height.hpp), position and their
+// deviations. Cost: 60 operations a border, eight cells beside each border of a step, and a pass over the window where
+// there is a deep drop.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace curbline {
 
-/// For one call of CurbTracer::trace().
+/// Lives for one CurbTracer::trace().
 template <Limits limits>
 class CurbMaker {
  public:
@@ -30,11 +30,11 @@ class CurbMaker {
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
-  /// Which ends of its chain a part is at.
+  /// Whether a part is at the first and last end of its chain.
   struct Ends {
     bool first, last;
   };
-  /// None of the side of an obstacle, nor of a step that only one row or column shows and no ground behind.
+  /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
   std::optional<Curb> make(const Part& part, const Ends& at);
 
  private:
@@ -48,7 +48,7 @@ class CurbMaker {
 
   const CurbSettings& settings_;
   const CurbStages<limits>& stages_;
-  const Plane* nearest_ground_ = nullptr;  ///< until a deep drop asks for it
+  const Plane* nearest_ground_ = nullptr;  ///< found when a deep drop needs it
 };
 
 template <Limits limits>
@@ -60,7 +60,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   Curb curb = without_height(piece);
   curb.kind = kind_of(piece.planes.low, piece.planes.high, piece.line, step.drawn());
   const bool one_sided = piece.one_sided();
-  if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a row's or column's alone is no line
+  if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
   step.refine(part, is_step(curb), settings_.link_reach);
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
@@ -84,7 +84,7 @@ Curb CurbMaker<limits>::without_height(const Piece& piece) {
   return curb;
 }
 
-/// Of a piece's middle, across it.
+/// Variance of a piece's position, at its middle, across it.
 template <Limits limits>
 float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2) {
   if (!is_step(curb) || piece.one_sided()) return piece.borders_variance_m2;
@@ -92,7 +92,7 @@ float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb,
   return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
 }
 
-/// Is a step the side of an obstacle: higher than any, or the drop behind one, from where no robot gets to?
+/// Is a step the side of an obstacle: higher than any curb, or the drop behind an obstacle, where no robot gets to?
 template <Limits limits>
 bool CurbMaker<limits>::obstacle(const Curb& curb, const Piece& piece) {
   if (curb.height_m >= -settings_.max_step_m) return curb.height_m > settings_.max_step_m;
@@ -100,7 +100,7 @@ bool CurbMaker<limits>::obstacle(const Curb& curb, const Piece& piece) {
   return near.height_m(piece.x_m, piece.y_m) - nearest_ground().height_m(piece.x_m, piece.y_m) > settings_.max_step_m;
 }
 
-/// The plane that is borne nearest to the laser: the robot's own ground, as far as is seen.
+/// The plane of ground nearest to the laser: the robot's own ground, as far as visible.
 template <Limits limits>
 const Plane& CurbMaker<limits>::nearest_ground() {
   if (nearest_ground_ != nullptr) return *nearest_ground_;
@@ -118,7 +118,7 @@ const Plane& CurbMaker<limits>::nearest_ground() {
   return *nearest_ground_;
 }
 
-/// In the map frame, the near side to the right of the way from the first to the second.
+/// Sets the ends, in the map frame, with the near side to the right looking from the first to the second.
 template <Limits limits>
 void CurbMaker<limits>::set_ends(const Piece& piece, Curb& curb) const {
   const float x_m = stages_.dem.origin_x_m(), y_m = stages_.dem.origin_y_m();

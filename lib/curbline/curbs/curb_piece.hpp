@@ -1,6 +1,6 @@
-// A straight piece of a chain of borders (borders.hpp) before it is a curb: the line that they lie on, what they tell
-// on the mean, how far the line goes on beyond them, and from where what lies beside it was seen. Cost: 40 operations a
-// border, and of a robot that drives a look at the cells beside it.
+// A straight piece of a chain of borders (borders.hpp), before it is a curb: the line through them, means of what they
+// show, how far the line goes on beyond them, and from where its sides were seen. Cost: 40 operations a border, and on
+// a robot that drives a look at the cells beside it.
 #pragma once
 
 #include <algorithm>
@@ -18,90 +18,89 @@
 
 namespace curbline {
 
-/// The planes that a border parts. Where no ground is seen beyond it the near one stands for the other, too: no step
-/// but the drop, no known slope.
+/// The planes on both sides of a border. With no ground in view beyond, the near one stands for both: no step but the
+/// drop, no slope of its own.
 struct PlanePair {
   const Plane &low, &high;  ///< by number
 
-  /// Is the step between them one height from one place to another, (dx, dy) from it? From the middle of a piece to an
-  /// end it may change by no more than the repeatability of a range-finder.
+  /// Does the step between them keep its height over (dx, dy)? From the middle of a piece to an end it may change by no
+  /// more than the repeatability of a range-finder.
   bool even(float dx_m, float dy_m) const {
     constexpr float most_change_m = 0.02f;
     return magnitude(change_m(dx_m, dy_m)) <= most_change_m;
   }
-  /// By how much it changes.
+  /// By how much that height changes.
   float change_m(float dx_m, float dy_m) const {
     return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
   }
-  /// How much steeper the one is across a line: where that lies tells how far they differ there.
+  /// Difference of their slopes across a line: change of the step's height with the line's position.
   float slope_across(const LineFit::Segment& line) const {
     return (high.slope_x - low.slope_x) * line.normal_x + (high.slope_y - low.slope_y) * line.normal_y;
   }
 };
 
-/// Borders that lie on one line; means of what they tell.
+/// Borders on one line, and means over them.
 template <Limits limits>
 struct CurbPiece {
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
   using Stages = CurbStages<limits>;
 
-  /// How far borders lie off their line, in half gaps, is normal, of a variance that is inverse gamma before one is
-  /// seen: a0, and b0 as of what lies anywhere from -1 to 1. The prior is 2 b0, to which the sum of the squares is
-  /// added.
+  /// Residuals of borders from their line, in half gaps, are normal with an unknown variance, inverse gamma a priori:
+  /// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
   static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
 
-  const Border& first;  ///< all of them part the same planes
+  const Border& first;  ///< all have the same planes
   PlanePair planes;
   LineFit::Segment line{};
   float x_m = 0.0f, y_m = 0.0f;  ///< mean of the borders
   float drop_m = 0.0f;           ///< of a brink
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
-  float borders;                       ///< how many
-  float observations;                  ///< as how many they weigh, Borders::Part
+  float borders;                       ///< their number
+  float observations;                  ///< the number that they weigh as, Borders::Part
   float place_variance_m2 = 0.0f;      ///< of a border, across the line
-  float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, as far as borders err each on its own
-  float told_variance_m2 = 0.0f;       ///< the same of a step, whose cells tell where in the gap it lies
-  float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: between the cells' centres; of one cell
-  bool low_is_near = false;            ///< the robot stands on the side of the low-numbered plane
+  float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, if each border is anywhere in its gap
+  float told_variance_m2 = 0.0f;       ///< the same for a step, which the cells of the gap locate
+  float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: distance of the cells' centres, size of a cell
+  bool low_is_near = false;            ///< the robot is on the side of the low-numbered plane
   bool low_is_right = false;           ///< of the line, from its first end to its second
 
-  /// Fits a line to the borders and takes the mean of what they tell.
+  /// Fits the line to the borders and computes the means.
   CurbPiece(const Stages& stages, const Part& part);
 
   static PlanePair planes_of(const Stages& stages, const Border& border) {
     const Label beyond = border.high == no_label ? border.low : border.high;
     return {stages.mixture.plane(border.low), stages.mixture.plane(beyond)};
   }
-  /// Is no ground seen on the other side of `low`?
+  /// Is no ground in view on the other side of `low`?
   bool one_sided() const { return first.high == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
   float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
-  /// By how much its height changes from end to end, as its planes have it.
+  /// Change of its height from end to end, by its planes.
   float change_m() const { return planes.change_m(line.x1_m - line.x0_m, line.y1_m - line.y0_m); }
-  /// Of a plane's height in the middle.
+  /// Variance of a plane's height at the middle.
   float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
 
   enum class End : std::uint8_t { first, second };  ///< of its line
-  /// Where one of its sides is not seen no border tells of a line. From the end of a chain it goes on cell by cell, as
-  /// long as one side is that of its plane, the other no other plane's, and its height one; no farther than to the
-  /// middle of the widest gap that a chain bridges, nor than a quarter of its length, where the variance of where it
-  /// lies has doubled.
+  /// Continues the line beyond the end of its chain, where one side is hidden and so there are no borders: cell by
+  /// cell, as long as one side is of its plane, the other of no other plane, and the height stays even; at most to the
+  /// middle of the widest gap that a chain bridges, and by a quarter of the length, where the variance of its position
+  /// has doubled.
   void go_on(const Stages& stages, int link_reach, End end);
-  /// Mean square of how far heights shift the line of a step. Each cell of the gap, the ones on both sides too, tells
-  /// by its own height where in it the edge lies. If the step's is wrong by a share of it all are off by half of that
-  /// share, at most by half the gap; if a cell's own is, it alone is off by that share, at most by all of it.
+  /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
+  /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
+  /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
   float shifted_m2(float step_m, float height_variance_m2, float cell_variance_m2) const {
     const float each = 1.0f / square(step_m);
     const float all = height_variance_m2 * each, own = cell_variance_m2 * each;
     return square(0.5f * gap_m) * std::min(1.0f, all) + (gap_m + cell_m) * cell_m * std::min(1.0f, own) / observations;
   }
-  /// Does it look from the right of the line?
+  /// Is the viewpoint to the right of the line?
   bool has_right(const Viewpoint& view) const {
     return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
   }
-  /// From where the lower side of a piece was seen last: the mean of its cells next to the borders.
+  /// From where the lower side of a piece was last seen: mean over its cells next to the borders.
   static Viewpoint seen_from(const Stages& stages, const Part& part, int link_reach, Label lower);
 
  private:
@@ -128,7 +127,7 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
   float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
   for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
-  // Of a single border, or of two in one place, where surfaces meet at a cell that nobody has seen.
+  // For a single border, or two at one place, where surfaces meet at an unseen cell.
   if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
   low_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
   low_is_near = one_sided() || low_is_right == has_right(stages.view);
@@ -152,7 +151,7 @@ void CurbPiece<limits>::take_means(const Part& part) {
 template <Limits limits>
 void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit) {
   float told = 0.0f, open = 0.0f;
-  bool alike = true;  // do they err: each is open, or has no far plane
+  bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
     if (border.open) {
       open += part.share(border) / border.half_gap_m;
@@ -164,13 +163,14 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
     alike = alike && (border.open || one_sided());
   }
   const float n = observations;
-  // Of borders whose errors are alike: the variance expected, in half gaps, times the mean square of half a gap.
+  // The expected variance, in half gaps, times the mean square of half a gap.
   place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
   const float grown = fit.grown(middle_x_m(), middle_y_m());
-  // Each lies anywhere in its gap, on its own; those that err alike are as little known as one of them.
+  // Each is anywhere in its gap, independently; borders that err alike are known no better than one.
   borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight() * grown;
-  // Each cell of a gap tells how much of it lies before the edge: off by anything within it, on its own. Open ones lie
-  // anywhere in their gaps, all alike; so do others where cells are empty, in a shadow or between the same scan lines.
+  // Each cell of a gap shows how much of it is before the edge, with an independent error of anything within the cell.
+  // Open borders are anywhere in their gaps, all alike; so are others in empty cells, of a shadow or between two scan
+  // lines.
   told_variance_m2 = ((1.0f / 12) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
 }
 
@@ -184,7 +184,7 @@ void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
   }
 }
 
-/// What is seen of one side of a line, which should be of the plane `own`.
+/// What one side of a line shows at a place; its plane should be `own`.
 template <Limits limits>
 auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label own) -> Side {
   const Dem<limits>& dem = stages.dem;
@@ -221,7 +221,7 @@ void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
   }
 }
 
-/// The cell nearest to a border, on the side of the plane `own`, that bears it; -1 if none does.
+/// The cell of the plane `own` nearest to a border, on its side; -1 if there is none.
 template <Limits limits>
 int CurbPiece<limits>::cell_beside(const Stages& stages, const Border& border, int link_reach, Label own) {
   const Dem<limits>& dem = stages.dem;

@@ -1,4 +1,4 @@
-// What curbs are found in: the stages before, and what they say of a cell together.
+// The stages that curbs are found in, and questions about a cell that need several of them.
 #pragma once
 
 #include "curbline/grid.hpp"
@@ -20,26 +20,26 @@ struct CurbStages {
   const LabelField<limits>& field;
   const Viewpoint& view;
 
-  /// Does a cell bear a plane that a curb may have for a side? A label may outlive its plane by a line.
+  /// Does a cell belong to a plane that may be a side of a curb? (A label may outlive its plane by a line.)
   bool bears_ground(int slot) const {
     const Label label = field.label(slot);
     return label != no_label && mixture.on_ground(slot) && mixture.plane(label).alive() && !mixture.may_be_veil(label);
   }
-  /// May a cell that bears no ground, or lies beside what it bears, mix two sides? As it does that is of a veil, or of
-  /// a region too small for a plane, or of a plane that may be a veil.
+  /// May a cell without ground, or off its plane, be a mixture of two sides: of a veil, of a region too small for a
+  /// plane, or of a plane that may be a veil?
   bool is_veil(int slot) const {
     if (mixture.region_label(slot) == no_label) return true;
     const Label label = field.label(slot);
     return mixture.on_ground(slot) ? label != no_label && mixture.may_be_veil(label) : !mixture.covered(slot);
   }
-  /// Does a cell bear a plane, and do its heights spread no more than noise and the plane's slope (Dem::slope_m2())
-  /// make them? Then it holds nothing else.
+  /// Does a cell hold this plane and nothing else: do its heights spread by no more than noise and the plane's slope
+  /// (Dem::slope_m2())?
   [[gnu::noinline]] bool holds_alone(int slot, Label label, float slope_m2) const {
     const Cell& cell = dem.cell(slot);
     return cell.valid() && field.label(slot) == label && mixture.region_label(slot) != no_label &&
            mixture.on_ground(slot) && !dem.mixed(cell, slope_m2);
   }
-  /// Within three standard deviations.
+  /// Is a cell on a plane, within three standard deviations?
   [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const {  // as CellLine::slot()
     const float residual = dem.above_m(i, j, cell, plane);
     return residual * residual <= gate * (plane.variance_m2 + dem.height_variance_m2(cell));

@@ -1,9 +1,9 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
-// chained into polylines by the pair of planes they part (borders.hpp), and cut into straight pieces of one height, of
-// which curb_maker.hpp makes curbs, but for creases where the ground is bent (surfaces.hpp). Each keeps its number from
+// chained into polylines by their pair of planes (borders.hpp), and cut into straight pieces of even height, of which
+// curb_maker.hpp makes curbs, without creases where the ground is bent (surfaces.hpp). A curb keeps its number from
 // call to call. Cost: a pass over the window, another where there is a deep drop, 50 look-ups a border point, as many
-// again for one with an empty cell in its gap, 60 operations for each border of what is left of a chain and each of its
-// pieces, and 20 for each pair of curbs, and of one and one of the call before.
+// again for one with an empty cell in its gap, 60 operations for each border of a chain's rest and each of its pieces,
+// and 20 for each pair of curbs, of this call and of this and the last.
 #pragma once
 
 #include <algorithm>
@@ -43,20 +43,20 @@ class CurbTracer {
   /// Working memory of one trace().
   struct Work {
     Borders<limits> borders;
-    std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of three borders at least
+    std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of at least three borders
     std::array<Curb, limits.curbs> curb;
     std::array<bool, limits.curbs> told;  ///< told_by_longer()
     int curbs;
     typename Surfaces<limits>::Work surfaces;
   };
 
-  /// Finds all curbs of the window, in working memory that is the caller's.
+  /// Finds all curbs of the window, in working memory of the caller.
   void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
              const Viewpoint& view, Work& work, Counters& counters);
 
-  /// What the last trace() found. Valid until the next.
+  /// The curbs of the last trace(). Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
-  /// By which planes the last trace() told no crease.
+  /// The surfaces within which the last trace() left out creases.
   const Surfaces<limits>& surfaces() const { return surfaces_; }
 
  private:
@@ -106,8 +106,8 @@ void CurbTracer<limits>::tell_once(Work& work, float cell_m) {
   }
 }
 
-/// A curb is the one of the call before that it overlaps most, a step only a step, in the order in which they were
-/// found; others get new numbers.
+/// A curb takes the number of the last call's curb that it overlaps most, a step only that of a step, in the order in
+/// which they were found; the others get new numbers.
 template <Limits limits>
 void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   for (int n = 0; n < work.curbs; ++n) {
@@ -142,7 +142,8 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   curbs_ = work.curbs;
 }
 
-/// Splits the chain where it bends, halves what is straight until its height is one, and gives out the pieces in order.
+/// Splits the chain where it bends, halves straight parts until their height is even, and gives out the pieces in
+/// order.
 template <Limits limits>
 void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters) {
   int first = 0;
@@ -151,7 +152,7 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
     const Border& from = work.borders.at(first);
     return planes.even(to.x_m - from.x_m, to.y_m - from.y_m);
   };
-  std::size_t parts = 0;  // whose ends are known; the next one's last
+  std::size_t parts = 0;  // whose ends are known; the next one's end comes last
   work.ends[parts++] = length - 1;
   while (parts > 0) {
     const int last = work.ends[parts - 1], split = bend(work.borders.part(first, last));
@@ -169,11 +170,11 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
   }
 }
 
-/// The last border of the first of two lines that follow the others better than one does, -1 if one is enough: by the
-/// evidence of how far they lie off, in half gaps, normal noise of unknown variance, before it is seen with the weight
-/// of four as if each lay anywhere within its gap. All open borders are one observation together. Another line has two
-/// parameters and a place to begin, each of which costs half the logarithm of the number of borders (Schwarz 1978). Two
-/// borders always lie on a line: it takes three to follow one.
+/// The last border of the first of two lines, if two follow the borders better than one; else -1. Decided by evidence:
+/// residuals, in half gaps, are normal with an unknown variance, whose prior weighs as four borders anywhere within
+/// their gaps. All open borders together are one observation. A second line has two parameters and a place to begin,
+/// each of which costs half the logarithm of the number of borders (Schwarz 1978). Two borders always lie on a line: it
+/// takes three.
 template <Limits limits>
 int CurbTracer<limits>::bend(const Part& part) {
   LineFit before, after;

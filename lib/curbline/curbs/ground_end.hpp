@@ -1,9 +1,11 @@
-// Edges that are found although no ground is seen beyond, on a row or column of the window:
-//   - the end of a face: a strip that rises away from the laser as no ramp does. Had it gone on, the laser would see it
-//     as well as the face; what lies beyond is flatter than the rays.
-//   - a brink: where readings that mix an edge and what lies behind it (ground.hpp: veils), or are too few for a plane,
-//     or belong to what stands there, follow the ground, away from the laser, and lie below it. They fall as far as is
-//     seen of the step.
+// Edges found with no ground in view beyond, on a row or column of the window:
+//   - the end of a face: of a strip that rises away from the laser more steeply than a ramp. Had it gone on, the laser
+//   would
+//     see it as well as the face; what follows is flatter than the rays.
+//   - a brink: where the ground is followed, away from the laser, by lower readings that mix an edge with what lies
+//   behind it
+//     (veils, ground.hpp), are too few for a plane, or belong to an obstacle. They fall as far as is visible of the
+//     step.
 // Cost: a look at each cell of a face, a veil and an obstacle.
 #pragma once
 
@@ -27,15 +29,15 @@ class GroundEnds {
 
   GroundEnds(const CurbStages<limits>& stages, int link_reach) : stages_(stages), link_reach_(link_reach) {}
 
-  /// Of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it is no
-  /// face, or does not end in the window.
+  /// The end of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it
+  /// is no face, or does not end in the window.
   std::optional<Border> of_face(const Line& line, const LabelledCell& first, int toward) const;
-  /// Before a cell, if that is the first of a veil, as the laser sees it. What stands on the ground does not lie below
-  /// it: a cell of an obstacle that does, if it was seen over the edge, mixes what lies behind that, as a veil.
+  /// The brink before a cell, if that is the first of a veil, as the laser sees it. A cell of an obstacle counts as one
+  /// of a veil if it is below the ground and was seen over the edge: what stands on the ground is not below it.
   std::optional<Border> brink(const Line& line, int first_of_veil) const;
 
  private:
-  static constexpr float widest_face_m = 0.3f;  ///< of a kerb stone
+  static constexpr float widest_face_m = 0.3f;  ///< a curb stone
 
   Border border_behind(const Line& line, int last, int toward, float along_m) const;
 
@@ -43,8 +45,8 @@ class GroundEnds {
   const int link_reach_;
 };
 
-/// The points of the last cell reach as far beyond their centroid as they lie before it. Where the next one would have
-/// been is open to a cell.
+/// The points of the last cell are taken to reach as far beyond their centroid as before it; the uncertainty is that of
+/// the next cell, in which nothing was seen.
 template <Limits limits>
 auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, int toward) const
     -> std::optional<Border> {
@@ -53,7 +55,8 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
   const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
   if (rise <= steepest_ramp || line.away(stages_.view, first.along) != toward) return std::nullopt;
 
-  const int widest = static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);  // touched, when it lies across cells
+  const int widest =
+      static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);  // cells that it touches, wherever it begins in one
   int last = first.along;
   while (const int g = line.next_valid(last, toward, link_reach_)) {
     last += toward * g;
@@ -61,7 +64,7 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
       return std::nullopt;
   }
   const bool at_end = last == 0 || last == line.cells() - 1;
-  if (at_end) return std::nullopt;  // the window's, perhaps not the face's
+  if (at_end) return std::nullopt;  // of the window; the face may go on
 
   const float centroid = sign * line.offset(line.cell(last));
   const float edge = centroid < 0.0f ? 0.5f + 2.0f * centroid : 0.5f;  // from the cell's middle, in cells
@@ -70,7 +73,7 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
   return border;
 }
 
-/// The veil falls on to the far side of its last cell.
+/// The veil is extrapolated to the far side of its last cell.
 template <Limits limits>
 auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std::optional<Border> {
   const int toward = line.away(stages_.view, first_of_veil);
@@ -108,7 +111,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   return border;
 }
 
-/// `high` is no_label, and on the side of what is not seen, behind the last cell of a plane.
+/// A border behind the last cell of a plane, with no_label for `high`, on the unseen side.
 template <Limits limits>
 auto GroundEnds<limits>::border_behind(const Line& line, int last, int toward, float along_m) const -> Border {
   const Label label = stages_.field.label(line.slot(last));

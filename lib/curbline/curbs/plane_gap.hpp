@@ -1,6 +1,6 @@
-// A gap between two planes on a row or column of the window: from a cell that bears the one to the next that bears the
-// other. Whether a step down hides what a wide one lacks, where in it the edge lies, to a part of a cell, and how
-// likely there is one. Cost: a look at each cell of the gap, and along the ray to it where one is empty.
+// A gap between two planes on a row or column of the window: from a cell of one plane to the next cell of the other.
+// Whether a step down hides the rest of a wide gap, where in it the edge is, to a part of a cell, and the probability
+// of one. Cost: a look at each cell of the gap, and along the ray to it if one is empty.
 #pragma once
 
 #include <algorithm>
@@ -17,19 +17,19 @@
 
 namespace curbline {
 
-/// What a cell shows of a step that crosses it, along the way from the near side to the far one.
+/// What a cell shows of a step across it, from the near side to the far side.
 struct CrossedCell {
-  float far_share;  ///< of the step: 0 if the cell's mean height is that of the near plane, 1 if of the far one
+  float far_share;  ///< 0 if the cell's mean height is that of the near plane, 1 if that of the far one
   float centroid;   ///< of its points, in cells from its near side
 };
 
-/// How much of a cell lies before the middle of what parts the planes, in cells. With as many points a metre on both
-/// planes, each sum over the cells of a gap is exact for
-///   - a vertical face that shows any number of points: 1/2 - far_share + centroid is where it stands;
-///   - a sloped face as densely seen as the planes;
-///   - a gap without points, of which the cells on both sides hold a part: their centroids tell how much, and half of
-///     it is counted.
-/// A centroid is not bounded: what a few points lie off at random averages out.
+/// How much of a cell is before the middle of what parts the planes, in cells. With equal density of points on both
+/// planes, the sum over the cells of a gap is exact for
+///   - a vertical face with any number of points: 1/2 - far_share + centroid is its place;
+///   - a sloped face as dense as the planes;
+///   - a gap without points that reaches into the cells on both sides: their centroids show how far, and half of it
+///   counts.
+/// The centroid is not clamped: the random errors of a few points average out.
 float before_middle(const CrossedCell& cell);
 
 template <Limits limits>
@@ -41,28 +41,28 @@ class PlaneGap {
       : stages_(stages), line_(line), first_(first), second_(second) {}
 
   const Line& line() const { return line_; }
-  /// The cells beside it, the first one's place below the second's.
+  /// The cells on both sides, the first before the second along the line.
   const LabelledCell& first() const { return first_; }
   const LabelledCell& second() const { return second_; }
-  /// From the one to the other, in cells.
+  /// Distance of the two, in cells.
   int length() const { return second_.along - first_.along; }
 
-  /// Does a step down hide what a wide gap lacks?
-  [[gnu::noinline]] bool hidden() const;  // called: inlined twice it would not fit the flash's budget
-  /// Probability that the cells on both sides lie on one plane.
+  /// Does a step down hide the rest of a wide gap?
+  [[gnu::noinline]] bool hidden() const;  // twice inlined it would not fit the flash budget
+  /// Probability that the cells on both sides belong to one plane.
   float same_plane() const;
   struct Middle {
     float along_m;  ///< from the line's beginning
     bool open;      ///< Borders::Border::open
     int empty;      ///< cells without a point
   };
-  /// Of what parts the planes.
+  /// The middle of what parts the planes.
   Middle middle() const;
 
  private:
   static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
 
-  /// The cells beside it, as the laser sees them.
+  /// The cells on both sides, as the laser sees them.
   struct Sides {
     const LabelledCell &near, &far;
   };
@@ -77,8 +77,8 @@ class PlaneGap {
   const LabelledCell first_, second_;
 };
 
-/// Then nothing stands in it, and the ray to its far cell has passed over the plane that ends at its near one: where it
-/// met that plane, or a blur before, lie cells that bear it.
+/// If so, no obstacle stands in it, and the ray to its far cell grazes the near plane's edge: where the ray meets that
+/// plane, or up to a blur before, there are cells of it.
 template <Limits limits>
 bool PlaneGap<limits>::hidden() const {
   const Dem<limits>& dem = stages_.dem;
@@ -93,7 +93,7 @@ bool PlaneGap<limits>::hidden() const {
     if (stages_.mixture.obstructed(dem, line_.slot(along))) return false;
   }
   const float dx_m = dem.centroid_x_m(i, cell) - from.x_m, dy_m = dem.centroid_y_m(j, cell) - from.y_m;
-  const float share = above_m / (above_m + below_m);  // of the ray, up to the plane
+  const float share = above_m / (above_m + below_m);  // of the ray, down to the plane
   const float cells = square_root(square(dx_m / dem.cell_x_m()) + square(dy_m / dem.cell_y_m()));
   for (int back = 0; back <= widest_blur; ++back) {
     const float at = share - static_cast<float>(back) / cells;
@@ -115,10 +115,10 @@ float PlaneGap<limits>::same_plane() const {
   return same;
 }
 
-/// Where the middle of what parts the planes lies: of a face, or of what a step down hides. Halfway between the cells,
-/// unless the planes are three standard deviations or more apart: then where the cells tell. What stands on the ground,
-/// and what it hides, tells nothing. What cells tell is off by anything within each, on its own; in what stands there
-/// the edge lies anywhere: if that is the larger, or a cell is hidden, the border is open.
+/// The middle of what parts the planes: of a face, or of what a step down hides. Halfway between the cells, unless the
+/// planes are at least three standard deviations apart: then the cells of the gap locate it, except obstacles and what
+/// they hide. Each cell errs independently, by anything within it; within obstacles the edge may be anywhere: if that
+/// error is the larger one, or a cell is hidden, the border is open.
 template <Limits limits>
 auto PlaneGap<limits>::middle() const -> Middle {
   const float cell_m = line_.pitch_m();
@@ -151,8 +151,8 @@ auto PlaneGap<limits>::middle() const -> Middle {
   return {(static_cast<float>(first_.along) + before) * cell_m, open, empty};
 }
 
-/// Does something that stands on the ground hide a cell of a gap, from where the gap's far side was seen? On the way
-/// there a cell that bears no ground lies above the planes of both sides: the face of a step up lies between them.
+/// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is
+/// not ground is above the planes of both sides; the face of a step up is between them.
 template <Limits limits>
 bool PlaneGap<limits>::behind_obstacle(int along) const {
   const Dem<limits>& dem = stages_.dem;

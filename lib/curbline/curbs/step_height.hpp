@@ -1,5 +1,5 @@
-// How high the step at a piece of curb is, and how well that is known: by its planes, at the edge that casts a shadow,
-// and by the ground along it and beside it where that lies off them. Cost: eight cells beside each border.
+// The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
+// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border.
 #pragma once
 
 #include <algorithm>
@@ -27,25 +27,25 @@ class StepHeight {
   using Part = typename Borders<limits>::Part;
   using Piece = CurbPiece<limits>;
 
-  /// As its planes tell in the middle of a piece, which must outlive it.
+  /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
   StepHeight(const CurbStages<limits>& stages, Piece& piece) : stages_(stages), piece_(piece) {
     const auto [low, high] = piece.planes;
     const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
     height_m_ = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
   }
 
-  /// What tells whether it is a step: kind_of().
+  /// The border as kind_of() takes it, to decide whether it is a step.
   DrawnBorder drawn() const;
-  /// By all that tells it, of the part that the piece was made of. Moves the piece's line to the edge of a step that
-  /// casts a shadow. What is no step has no height, only a variance.
+  /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
+  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
   void refine(const Part& part, bool is_step, int link_reach);
-  /// The piece's place, which its height is asked for, is known to that variance.
+  /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
-  /// Of the plane with the high number above that with the low one, PlanePair.
+  /// Of the high-numbered plane above the low-numbered one (PlanePair).
   float height_m() const { return height_m_; }
   float variance_m2() const { return variance_m2_; }
-  /// How wide its shadow is; 0 if it casts none.
+  /// Width of its shadow; 0 if it casts none.
   float shadow_m() const { return shadow_m_; }
 
  private:
@@ -57,7 +57,7 @@ class StepHeight {
   struct Deviations {
     Deviation low, high;
   };
-  // Called: inlined three times it takes 320 bytes of flash more.
+  // Not inlined: three times inlined it takes 320 bytes of flash more.
   [[gnu::noinline]] Deviations deviations() const;
   float plane_variance_m2(const Plane& plane) const;
 
@@ -81,25 +81,25 @@ void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) 
   if (!is_step) height_m_ = 0.0f;
   if (is_step && !one_sided) leave_shadow(part, link_reach);
   const auto [low, high] = piece_.planes;
-  // The errors of a plane are common to the piece: they do not average out. Behind a brink as much again as is seen may
-  // be hidden, or less, evenly.
+  // A plane's error is common to the whole piece: it does not average out. Behind a brink up to as much again as is
+  // visible may be hidden, uniformly.
   variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
   if (is_step && !one_sided) follow_ground(part);
   if (is_step) follow_ground_beside();
-  // Rough ground hangs over its edge, anywhere within its roughness, evenly.
+  // Rough ground may begin anywhere within its roughness, uniformly.
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
 }
 
-/// Planes of different slope differ as much as the piece's place does, and along it from end to end: what was seen from
-/// several places, its sides each by itself as poses err, may be as high as anywhere on that.
+/// Where slopes differ, the height is as uncertain as the piece's position. If its sides were seen from several places,
+/// with different errors of poses, it may also be that of any other place along the piece.
 template <Limits limits>
 void StepHeight<limits>::doubt_place(float place_variance_m2) {
   variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;
   if (stages_.dem.seen_from_several()) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
 }
 
-/// A step hides what lies behind it from a laser on its upper side: on which the robot need not be any more. It is as
-/// high as its planes lie apart at the edge, where its line moves to.
+/// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
+/// distance of its planes at the edge, to which the line moves.
 template <Limits limits>
 void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
   const bool high_is_upper = height_m_ > 0.0f;
@@ -117,17 +117,17 @@ void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
   height_m_ += high_is_upper ? rise_m : -rise_m;
 }
 
-/// What a plane rises on the way to where nothing of it is seen: less than its slope makes, by the share that the
-/// square of that way has beside the mean square of how far its cells reach along it. A strip of two rows, of which one
-/// holds something of the other side, tells no slope to go by.
+/// Rise of a plane extrapolated to an unseen place: less than its slope says, by the square of the distance relative to
+/// the mean square extent of its cells in that direction. A strip of two rows, one of which holds something of the
+/// other side, has no reliable slope.
 template <Limits limits>
 float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) {
   const float beyond = plane.rise_variance_m2(dx_m, dy_m) * plane.cells / plane.fit_variance_m2;
   return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
 }
 
-/// As the cells of a side tell that lie a little farther from the borders of a piece, on those of rows and columns that
-/// lie more across it: each cell once.
+/// By the cells of a side a little farther from the borders, along rows or along columns, whichever are more across the
+/// piece, so that each cell counts once.
 template <Limits limits>
 GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) const {
   const Dem<limits>& dem = stages_.dem;
@@ -152,9 +152,9 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
   return GroundAlong::of(cells, above_m, plane);
 }
 
-/// A step is as high as the ground along it, where that lies off the planes. What the cells next to it lie off is then
-/// told from there. Where those tell on their own they are nearer: of a gutter three cells wide and the road beside it
-/// the mean would be told.
+/// Where the ground along the step deviates from the planes, the step's height is that of the ground; the cells next to
+/// the border then count from there. Where those decide on their own they come first: of a gutter three cells wide and
+/// the road beside it this would take the mean.
 template <Limits limits>
 void StepHeight<limits>::follow_ground(const Part& part) {
   const Deviations beside = deviations();
@@ -169,7 +169,8 @@ void StepHeight<limits>::follow_ground(const Part& part) {
   }
 }
 
-/// A step is as high as the ground beside it, where that lies off the planes, and as well known.
+/// Where the ground next to the border deviates from the planes, the step's height and variance are those of the
+/// ground.
 template <Limits limits>
 void StepHeight<limits>::follow_ground_beside() {
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
@@ -180,8 +181,8 @@ void StepHeight<limits>::follow_ground_beside() {
   }
 }
 
-/// How the ground lies off its planes beside the piece. Both sides begin at the near end of a shadow, in the middle of
-/// which the borders lie.
+/// Deviation of the ground from its planes beside the piece. Both sides begin at the near end of a shadow; the borders
+/// are in its middle.
 template <Limits limits>
 auto StepHeight<limits>::deviations() const -> Deviations {
   const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
@@ -191,10 +192,10 @@ auto StepHeight<limits>::deviations() const -> Deviations {
           deviation(piece_.beside_high, piece_.planes.high, up, beyond_cells, common_m2)};
 }
 
-/// Of a plane's height beside the piece. Its fit takes what cells share for the same wherever they lie: it is no less
-/// than how far and how often they were seen makes it. What scan lines err each errs on its own: if all the cells of
-/// one erred alike a plane of n cells would know as much as its lines, of which a square one holds sqrt(n). Of four
-/// cells and fewer the fit does not show what lines err.
+/// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it
+/// is at least that of cells as far away and seen in as few lines. Scan lines err independently: even if all cells of
+/// one erred alike, a plane of n cells would know as much as its lines, sqrt(n) in a square one, which bounds the
+/// factor. With four cells or fewer the fit does not show the error of lines, and there is no bound.
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
   const float reach_m2 = stages_.view.reach_m2(plane.x_m, plane.y_m, plane.scatter_m2, plane.points_a_cell);
