@@ -3,7 +3,7 @@
 namespace curbline {
 
 Transform make_transform(const Pose& pose) {
-  // Summed here, in one order: Eigen's norm of four numbers adds them in another one where it has vectors.
+  // Summed here in a fixed order: Eigen's norm of four numbers depends on the target's vector unit.
   const float norm = square_root(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
   const Eigen::Quaternionf q(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm);
   Transform T;

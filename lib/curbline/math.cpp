@@ -10,8 +10,8 @@ float square_root(float x) {
 
 float to_float(std::int64_t x) {
   const auto magnitude = x < 0 ? 0 - static_cast<std::uint64_t>(x) : static_cast<std::uint64_t>(x);
-  const int below = 32 - std::countl_zero(static_cast<std::uint32_t>(magnitude >> 32));  // bits that 32 do not hold
-  // Of what they hold the last bit says, too, whether there is anything below: it rounds as if all were there.
+  const int below = 32 - std::countl_zero(static_cast<std::uint32_t>(magnitude >> 32));  // bits beyond 32
+  // A sticky bit stands for those dropped below, so that it rounds as if all were there.
   const bool rest = (magnitude & ((std::uint64_t{1} << below) - 1)) != 0;
   const float rounded = static_cast<float>(static_cast<std::uint32_t>(magnitude >> below) | (rest ? 1u : 0u)) *
                         std::bit_cast<float>(static_cast<std::uint32_t>(below + 127) << 23);

@@ -13,7 +13,7 @@ bool within(float x, float low, float high) {
 bool positive(float x) {
   return is_finite(x) && x > 0.0f;
 }
-/// Of standard deviations: larger ones are a wrong unit.
+/// Standard deviations: larger ones are in a wrong unit.
 bool deviation_m(float x) {
   return within(x, 0.0f, 10.0f);
 }
@@ -37,7 +37,7 @@ bool good(const MountSettings& m) {
          bearing(m.roll_rad) && bearing(m.pitch_rad) && bearing(m.yaw_rad);
 }
 
-/// Of each part, by the name of its first setting that is not good; null if there is none.
+/// Name of the first bad setting of a part; null if there is none.
 using Bad = const char*;
 
 Bad first_bad(const WindowSettings& w, const Limits& limits) {

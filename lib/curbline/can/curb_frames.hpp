@@ -1,27 +1,26 @@
-// Curbs for the rest of the robot, as CAN frames: what a motor or brake controller needs of the curb ahead, without
-// JSON and without Linux. Written by the daemon or by firmware: after each scan line that was taken a CurbAhead, then a
-// CurbStatus; after one that was dropped (no tilt, say) a CurbStatus alone, since nothing new is known of the way.
+// Curbs for the rest of the robot, as CAN frames: what a motor or brake controller needs to know of the curb ahead,
+// without JSON and without Linux. The daemon or firmware sends, after each scan line taken, a CurbAhead, then a
+// CurbStatus; after a dropped one (no tilt, say) a CurbStatus alone, since nothing new is known about the way.
 // tools/robots/curb_ahead.dbc is their DBC.
 //
-// Both are standard frames of ids that CANopen (CiA 301) leaves free, and of the preset servos only an ODrive of node
-// 53 uses: see shares_ids(). All numbers are little endian, x ahead and y left of the base frame.
+// Both are standard frames, with ids that CANopen (CiA 301) leaves free and that, of the preset servos, only an ODrive
+// with node 53 uses: see shares_ids(). All numbers are little endian, in the base frame, x ahead and y left.
 //
-// CurbAhead, 0x6A0, 8 bytes, one for the nearest step on the way, or, without one, the nearest crease or edge of a
-// ramp:
+// CurbAhead, 0x6A0, 8 bytes: the nearest step on the way or, without one, the nearest crease or ramp edge:
 //   bits 0-15   distance_m     u16, 1 mm: x of the point of the curb that is nearest to the robot, 0 to 65.534 m
 //   bits 16-31  lateral_m      i16, 1 mm: y of that point, +-32.767 m
 //   bits 32-47  height_m       i16, 1 mm: far side less near side, above 0 is a step up
 //   bits 48-55  height_sd_m    u8, 1 mm; 255 is 0.255 m or more
 //   bits 56-57  kind           0 nothing ahead, 1 step up, 2 step down, 3 crease or edge of a ramp
 //   bits 58-63  probability    u6, 0.02, 0 to 1
-// CurbStatus, 0x6A1, 3 bytes, so that a receiver tells "no curb" from "nobody looks":
-//   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver that sees it
-//                              stand, or sees no CurbStatus, does not trust CurbAhead
+// CurbStatus, 0x6A1, 3 bytes, so that a receiver can tell "no curb" from "nobody looks":
+//   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver must not trust
+//                              CurbAhead while the counter stands still, or without CurbStatus
 //   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/source_watch.hpp
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //
-// Values out of range are clamped; NaN of a distance, place or height gives "nothing ahead". Pure, no state: may be
-// called from anywhere. About 200 steps a frame.
+// Values out of range are clamped; a NaN distance, position or height gives "nothing ahead". Functions without state:
+// may be called from anywhere. About 200 steps a frame.
 #pragma once
 
 #include <cstdint>
@@ -43,26 +42,26 @@ struct CurbStatus {
   std::uint32_t curbs = 0;
 };
 
-/// The frame for a curb, or, with nothing, for a way without one.
+/// The frame for a curb or, with nothing, for a clear way.
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);
 Frame curb_status_frame(const CurbStatus& status);
 
-/// Does a servo on the same bus send these ids, or a SYNC? Then it wants another id: two nodes that send one id destroy
-/// each other's frames. An ODrive, of which the signal is one frame, has 32 ids in a row.
+/// Does a servo on the same bus, or its SYNC, use these ids? Then it needs another id: two nodes that send the same id
+/// destroy each other's frames. An ODrive, whose signal is one of its frames, has 32 consecutive ids.
 bool shares_ids(const Signal& tilt, std::optional<std::uint16_t> sync_id = std::nullopt);
 
-/// The other way. False if the frame is another one or too short; `curb` is nothing if nothing is ahead.
+/// Reads the frame. False if it is another one or too short; `curb` is nothing if nothing is ahead.
 bool read_curb_ahead(const Frame& frame, std::optional<CurbAhead>& curb);
 bool read_curb_status(const Frame& frame, CurbStatus& status);
 
-/// A field of these frames, for those who describe them.
+/// A field of these frames, for their description as DBC.
 struct CurbField {
   const char* message;
   const char* name;
   const char* unit;
   const char* meaning;
   Signal signal;
-  double minimum, maximum;  ///< of what is sent
+  double minimum, maximum;  ///< of the values sent
 };
 
 /// All of them, in the order above; static storage.

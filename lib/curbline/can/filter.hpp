@@ -1,4 +1,4 @@
-// Which frames of a bus are wanted: what a port hands to the controller, or to the system. Plain data.
+// Which frames of a bus are wanted: what a port passes to the controller, or to the system. Plain data.
 #pragma once
 
 #include <cstdint>

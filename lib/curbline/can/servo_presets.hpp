@@ -2,8 +2,8 @@
 // the maker's manual or firmware, named at its function in servo_presets.cpp; tests/unit/can_servo_presets_test.cpp
 // holds frames to each. Constant data, no state: may be called from anywhere.
 //
-// Counts a turn, P_MAX and the sense of rotation depend on how a servo was set up: change scale and offset of what
-// these give. Tilt above 0 looks down.
+// Counts a turn, P_MAX and the sense of rotation depend on the servo's configuration: adapt scale and offset of the
+// result. Tilt above 0 looks down.
 #pragma once
 
 #include <cstdint>

@@ -60,8 +60,8 @@ void write_bits(const Bits& b, std::uint64_t raw, Frame& frame) {
   }
 }
 
-/// high 2^32 + low, rounded once. To convert 64 bits at once, a core of 32 would call soft-float, whatever its FPU,
-/// which brings its sums along: 800 bytes of flash.
+/// high 2^32 + low, rounded once. Converting 64 bits at once would link soft-float on a 32-bit core, whatever its FPU,
+/// with its additions: 800 bytes of flash.
 double joined(double high, std::uint64_t low) {
   return high * 0x1p32 + static_cast<double>(static_cast<std::uint32_t>(low));
 }

@@ -1,8 +1,8 @@
-// A number inside a CAN frame: what a servo reports its angle as. Pure bytes to numbers and back: no I/O, no state, no
+// A number inside a CAN frame, as which a servo reports its angle. Bytes to numbers and back: no I/O, no state, no
 // heap, no libm, the same bits on every platform. The first step on the way: frame -> angle -> tilt track.
 //
-// A Signal bears the words of a DBC file, so that a servo that is not among the presets (servo_presets.hpp) is
-// described, not coded:
+// A Signal has the terms of a DBC file, so that a servo that is not among the presets (servo_presets.hpp) needs a
+// description, not code:
 //   SG_ position : 16|32@1- (5.99e-06,0) "rad"  ->  {.start_bit = 16, .length = 32, .scale = 5.99e-06}
 #pragma once
 
@@ -15,8 +15,8 @@ namespace curbline::can {
 
 enum class ByteOrder : std::uint8_t { little, big };  ///< DBC @1 (Intel), @0 (Motorola)
 
-/// A frame may give the same bits to several signals in turn, and say in another number, the multiplexor, whose turn it
-/// is (DBC: `M` marks that number, `m3` a signal that is there while it is 3). Bits are numbered as in Signal.
+/// Several signals may use the same bits of a frame in turn; another number in it, the multiplexor, says which one is
+/// present (DBC: `M` marks that number, `m3` a signal that is present while it is 3). Bits are numbered as in Signal.
 struct Multiplexor {
   std::uint16_t start_bit = 0;
   std::uint8_t length = 8;  ///< bits, 1 to 64
@@ -43,17 +43,17 @@ struct Signal {
   std::uint8_t max_bytes = 64;  ///< a longer frame of the id is another one: a command to the servo, say
 };
 
-/// True if the bits lie in the 64 bytes of a frame, which may be as long as that by max_bytes, the id fits 11 or 29
-/// bits, scale and offset are finite, scale is not 0, and the multiplexor can have its value. The functions below want
-/// a valid signal: ask once, when it comes in.
+/// True if the bits lie within a frame of 64 bytes, and of max_bytes, the id fits 11 or 29 bits, scale and offset are
+/// finite, scale is not 0, and the multiplexor can have its value. The functions below need a valid signal: check it
+/// once, when it comes in.
 bool valid(const Signal& signal);
 
-/// Bytes that a frame with the signal has at least, 1 to 64; above 8 a length of CAN FD.
+/// Least number of bytes of a frame with the signal, 1 to 64; above 8 a length of CAN FD.
 int bytes_needed(const Signal& signal);
 
-/// Whether the frame is one of the signal's: a data frame of its id, of max_bytes at most, whose multiplexor, if it is
-/// long enough to tell, has the signal's value. What decode() makes nothing of although this is true is damaged. May be
-/// called from an interrupt.
+/// Whether the frame carries the signal: a data frame of its id, at most max_bytes long, whose multiplexor, if the
+/// frame is long enough for it, has the signal's value. A frame for which this is true but decode() gives nothing is
+/// damaged. May be called from an interrupt.
 bool carries(const Signal& signal, const Frame& frame);
 
 /// The value, or nothing if the frame is another one (see carries()), too short, or the value not finite. No state: may
@@ -62,8 +62,8 @@ std::optional<double> decode(const Signal& signal, const Frame& frame);
 
 /// Writes the value into the frame (id, length, multiplexor and bits; other bits stay, a longer frame keeps its
 /// length), rounded to the nearest count, halves away from 0, and clamped to the field's range; NaN becomes the lowest
-/// count, of a float as of a whole number. A signal beyond byte 8 makes the frame CAN FD. Bits of the id outside
-/// id_mask become those of signal.id. What simulators use.
+/// count, of a float as of an integer. A signal beyond byte 8 makes the frame CAN FD. Bits of the id outside id_mask
+/// become those of signal.id. For simulators.
 void encode(const Signal& signal, double value, Frame& frame);
 
 }  // namespace curbline::can

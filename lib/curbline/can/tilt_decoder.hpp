@@ -1,16 +1,14 @@
-// Frames of a bus in, tilt readings out: the step between a CAN port and Pipeline::add_tilt(). What is not the servo's
-// is passed over, what is damaged is dropped, and both are counted. One object of about 200 bytes, no heap, at most
-// 128 steps a frame.
+// Frames of a bus in, tilt readings out: the step between a CAN port and Pipeline::add_tilt(). Frames of others are
+// passed over, damaged ones dropped, and both are counted. About 200 bytes, no heap, at most 128 steps a frame.
 //
 // CANopen drives can sample their position on the SYNC frame and send it when the bus is free: then the angle is that
-// of the SYNC's time, not of its own arrival, which comes up to a millisecond later and jitters. A position whose SYNC
-// was not seen is dropped, since its time is unknown: one that comes with no SYNC since the one before, or later after
-// its SYNC than SYNCs are apart. How far they are is the median of the last five gaps, which a lost or repeated SYNC
-// does not move; before the second SYNC 5 ms are allowed. (CiA 301, SYNC object 0x1005; TPDO
-// transmission types 1 to 240.)
+// at the SYNC's time, not at its own arrival, which is up to a millisecond later and jitters. A position whose SYNC was
+// not seen is dropped, since its time is unknown: one with no SYNC since the last position, or later after its SYNC
+// than the period of SYNCs. That period is the median of the last five gaps, which a lost or repeated SYNC does not
+// move; before the second SYNC 5 ms are allowed. (CiA 301, SYNC object 0x1005; TPDO transmission types 1 to 240.)
 //
-// take() may be called from an interrupt or a receive thread, one of them; counters() from anywhere, beside take() too.
-// init() must not run beside either: before the interrupt is enabled, or with it masked.
+// take() may be called from one interrupt or one receive thread; counters() from anywhere, also during take(). init()
+// must not run at the same time as either: call it before the interrupt is enabled, or with it masked.
 #pragma once
 
 #include <array>
@@ -24,10 +22,10 @@
 
 namespace curbline::can {
 
-/// The SYNC frame's id unless a CANopen network was set up otherwise.
+/// The SYNC frame's id, unless a CANopen network is configured otherwise.
 inline constexpr std::uint16_t default_sync_id = 0x80;
 
-/// Every frame taken is in exactly one of the others. All wrap at 2^32.
+/// Every frame taken is counted in exactly one of the others. All wrap at 2^32.
 struct TiltDecoderCounters {
   std::uint32_t frames = 0;
   std::uint32_t readings = 0;      ///< given out
@@ -41,11 +39,11 @@ struct TiltDecoderCounters {
 
 class TiltDecoder {
  public:
-  /// Starts afresh. With sync_id (11 bits) positions are taken as sampled on that frame. False, and nothing is decoded
+  /// Starts afresh. With sync_id (11 bits), positions are taken as sampled on that frame. False, and nothing is decoded
   /// until the next init(), if the signal is not valid(), or the id is too large or the signal's own.
   bool init(const Signal& signal, std::optional<std::uint16_t> sync_id = std::nullopt);
 
-  /// The reading that this frame completes, if it does. Its time is the frame's or its SYNC's.
+  /// The reading in this frame, if it has one. Its time is the frame's, or its SYNC's.
   std::optional<TiltReading> take(const Frame& frame);
 
   /// A snapshot; each number is whole, and they may be a frame apart.

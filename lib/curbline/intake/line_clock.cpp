@@ -8,23 +8,23 @@
 namespace curbline {
 namespace {
 
-/// A laser 5 m away that nods at 1 rad/s moves by a millimetre meanwhile.
+/// Smaller delays count as none: ground 5 m away, nodding at 1 rad/s, moves by a millimetre meanwhile.
 constexpr float exact_ns = 250e3f;
-/// Slower is no scanner.
+/// A slower sensor is no scanner.
 constexpr float longest_turn_s = 10.0f;
-/// Of a turn: an estimate of how far a motor is off what the settings say.
+/// Share of a turn: an estimate of how far a motor deviates from the settings.
 constexpr float most_slower = 0.005f;
-/// Of a pause that is longer the turns cannot be counted: by then the motor may be off by a twelfth of one.
+/// In a longer pause turns cannot be counted: by then the motor may be off by a twelfth of one.
 constexpr std::int64_t most_turns = 16;
-/// Arrivals after which turns are told; after stamps that did not keep to them.
+/// Arrivals needed to know the turns: at first, and after stamps that did not keep to them.
 constexpr int enough_at_first = 8, enough_again = 32;
-/// Lines on end that are later than usual, by chance once in 9 million: the turns are others.
+/// Consecutive lines later than usual, by chance once in 9 million, after which the turns have changed.
 constexpr int most_late = 8;
-/// Times the mean delay: later than usual, one line in seven.
+/// Times the mean delay: later than usual is one line in seven.
 constexpr float usual = 2.0f;
-/// Times the mean delay: so late comes one line in 150, as seldom as one is lost.
+/// Times the mean delay: as late is one line in 150, as rare as a lost line.
 constexpr float seldom = 5.0f;
-/// Of a turn: the mean delay up to which turns are counted. Stamps that lie anywhere between turns have a half.
+/// Share of a turn: the largest mean delay with which turns are counted. Stamps anywhere between turns have a half.
 constexpr float most_mean = 0.45f;
 
 }  // namespace
@@ -59,7 +59,7 @@ std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
   return time_ns_ = time_ns;
 }
 
-/// From the newest arrival; 0 if the line is not to be added: it is the first of new ones, or earlier than any.
+/// Turns since the newest arrival; 0 if the line is not to be added: it starts the clock afresh, or comes too early.
 LineClock::Turns LineClock::turns_to(std::int64_t stamp_ns) {
   const std::int64_t since_ns = size_ > 0 ? stamp_ns - newest().stamp_ns : -1;
   if (since_ns < 0 || since_ns > most_turns * turn_ns_) {
@@ -74,13 +74,13 @@ LineClock::Turns LineClock::turns_to(std::int64_t stamp_ns) {
   if (waited_ > 0) --waited_;
   const float late = late_ns(stamp_ns, turns);
   if (late < -half) return {};
-  if (late < -usual * mean_late_ns_ - exact_ns) {  // earlier than any: what was held for a turn was late
+  if (late < -usual * mean_late_ns_ - exact_ns) {  // earlier than all: their turns were late
     restart(stamp_ns);
     return {};
   }
   const std::int64_t lost = floor_to_int((late + exact_ns) / turn());
   turn_late_ = lost > 0 ? turn_late_ + 1 : 0;
-  if (lost == 0 || none_lost) return {turns};  // after one that has waited others come in a bunch
+  if (lost == 0 || none_lost) return {turns};  // after a line that has waited, others come in a bunch
   const float rest = late - to_float(lost) * turn();
   const bool doubtful = (rest > exact_ns || waited_ > 0) && turns + lost != last_turns_;
   if (rest > usual * mean_late_ns_) return {turns, doubtful};
@@ -90,7 +90,8 @@ LineClock::Turns LineClock::turns_to(std::int64_t stamp_ns) {
   return {turns + lost, doubtful};
 }
 
-/// Does a line come too early for what was taken for lost before the newest? Then that was late by as much instead.
+/// Does a line come too early for the turns counted as lost before the newest? Then that one was late by as much
+/// instead.
 bool LineClock::take_back_lost(std::int64_t stamp_ns, std::int64_t turns) {
   const std::int64_t lost = lost_turns_;
   lost_turns_ = 0;
@@ -139,8 +140,8 @@ float LineClock::late_ns(std::int64_t stamp_ns, std::int64_t turns) const {
   return to_float(stamp_ns - newest().stamp_ns - turns * turn_ns_) + newest_late_ns_ - to_float(turns) * slower_ns_;
 }
 
-/// The line under all arrivals that is nearest to them on the mean: an edge of their lower hull, that on which the mean
-/// turn lies.
+/// Fits the straight line below all arrivals that is nearest to them on average: the edge of their lower convex hull
+/// under the mean turn.
 void LineClock::fit() {
   struct Place {
     float turn, late_ns;
@@ -167,7 +168,7 @@ void LineClock::fit() {
   const float most_ns = most_slower * to_float(turn_ns_);
   const float slower_ns = (b.late_ns - a.late_ns) / (b.turn - a.turn);
   slower_ns_ = std::clamp(slower_ns, -most_ns, most_ns);
-  float least_ns = 0.0f, sum_ns = 0.0f;  // above the line through the newest
+  float least_ns = 0.0f, sum_ns = 0.0f;  // height above the line through the newest
   for (int k = 0; k < size_; ++k) {
     const Place p = place(k);
     const float above_ns = p.late_ns - slower_ns_ * p.turn;
@@ -176,7 +177,7 @@ void LineClock::fit() {
   }
   newest_late_ns_ = -least_ns;
   mean_late_ns_ = std::max(sum_ns / to_float(size_) - least_ns, exact_ns);
-  // By chance they tell a turn to a fraction of that over the turns between them.
+  // By chance alone the fit deviates by a fraction of this.
   steady_ = to_float(newest().turn - arrival(0).turn) * magnitude(slower_ns - slower_ns_) <= mean_late_ns_;
 }
 
