@@ -175,7 +175,7 @@ void add_replay(CLI::App& app) {
   command->footer(
       "A live scanner that is switched off, or Ctrl-C, ends the scan as the end of a log does: what was mapped is "
       "written,\n"
-      "and the exit status is 0. On stderr it is told after how many scan lines a scanner closed the connection.\n\n"
+      "and the exit status is 0. stderr says after how many scan lines a scanner closed the connection.\n\n"
       "With can:IFACE, what the frames say, their order and their losses are the bus's. A bus carries no recorded "
       "times:\n"
       "each frame is given the time that the recording's own CAN log has for it (NAME.candump beside NAME.carmen, or\n"

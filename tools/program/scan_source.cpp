@@ -128,7 +128,7 @@ std::unique_ptr<ScanSource> open_scan_source(const std::string& scans, const Las
   ScannerLink link = scanner_link(scans, laser);
   if (log_time_ns && !link.has_stamps) {
     throw BadInput(scans +
-                   ": its telegrams bear no time that a log could be joined by; expected --can can:IFACE, or a robot "
+                   ": its telegrams have no time stamps to join a log by; expected --can can:IFACE, or a robot "
                    "without CAN and poses");
   }
   return std::make_unique<LiveSource>(scans, std::move(link), laser, log_time_ns);

@@ -73,8 +73,8 @@ void print_score_table(const Scored& here, const std::optional<Scored>& referenc
     rate("                 F1", &StepRates::f1);
   }
   for (const Row& row : of_curbs) print(row);
-  print_line("seen to first told of, median, s", detection.time_s.median, none, none, 1);
-  print_line("robot's distance then, median, m", detection.distance_m.median, none, none, 1);
+  print_line("time to detection, median, s", detection.time_s.median, none, none, 1);
+  print_line("distance at detection, median, m", detection.distance_m.median, none, none, 1);
 }
 
 }  // namespace curbline::tools

@@ -201,7 +201,7 @@ double duration_s(const RobotPath& path) {
 /// Of a robot that drives.
 RobotPath read_drive(TomlTable& table) {
   for (const char* standing : {"at", "yaw_deg"}) {
-    if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: the path tells it");
+    if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: a path implies it");
   }
   RobotPath path;
   path.waypoints = table.points("path", 2, any);
