@@ -1,5 +1,5 @@
-// The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; what is
-// your board's is in port.hpp, what is your robot's in robot.hpp.
+// The firmware of a robot: tilt frames and scan lines in, the curb ahead out, as CAN frames. Copy this folder; port.hpp
+// contains what depends on the board, robot.hpp what depends on the robot.
 #include <algorithm>
 #include <array>
 
@@ -16,15 +16,15 @@ namespace can = curbline::can;
 
 namespace {
 
-// All the memory there is.
+// All memory that the firmware uses.
 Port port;
 curbline::Pipeline<limits> pipeline;
-curbline::LineQueue<limits, queued_lines> waiting;  // whose last beams have no tilt or pose yet
+curbline::LineQueue<limits, queued_lines> waiting;  // lines whose last beams have no tilt or pose yet
 can::TiltDecoder decoder;
 curbline::SourceWatch watch;
 curbline::NewestTimes newest;
-curbline::Pose pose;            // the newest; of a robot that stands, the map's origin
-std::uint8_t curbs_told = 255;  // the first CurbAhead has 0
+curbline::Pose pose;            // the newest; for a stationary robot, the map's origin
+std::uint8_t curbs_told = 255;  // so that the first CurbAhead has 0
 
 void start() {
   const curbline::Settings settings = robot_settings();
@@ -57,8 +57,8 @@ void take_poses() {
   }
 }
 
-/// To the motors, after a scan line: the curb that the robot meets first, if the line was taken. They know by the
-/// counter whether it was.
+/// Informs the motors after a scan line: the curb that the robot meets first, if the line was accepted, then the
+/// status, whose counter shows whether it was.
 void tell(bool taken) {
   if (taken) {
     const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline.curbs(), pose, half_width_m));

@@ -10,13 +10,13 @@ extern std::uint32_t stack_end[];
 [[noreturn]] void reset();
 [[noreturn]] void unexpected();
 void dispatch();
-[[gnu::weak]] void on_interrupt(std::uint32_t irq);  // a program that enables interrupts has it
+[[gnu::weak]] void on_interrupt(std::uint32_t irq);  // defined by a program that enables interrupts
 }
 
 namespace {
 
 using Handler = void (*)();
-constexpr std::size_t interrupt_count = 150;  // of the largest controllers
+constexpr std::size_t interrupt_count = 150;  // as many as the largest controllers have
 
 struct Vectors {
   std::uint32_t* stack;
@@ -52,7 +52,7 @@ void unexpected() {
 void reset() {
   *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xFu << 20;  // CPACR: full access to CP10 and CP11, the FPU
   asm volatile("dsb\n isb" ::: "memory");
-  constexpr std::size_t own_frames = 128;  // of this function and the ones it calls
+  constexpr std::size_t own_frames = 128;  // of this function and those that it calls
   curbline::board::paint_stack(static_cast<const std::byte*>(__builtin_frame_address(0)) - own_frames);
   curbline::board::run_main();
 }

@@ -2,7 +2,7 @@
 
 namespace curbline {
 
-// The boards' pipeline, compiled once: what the budgets and the check of undefined symbols look at.
+// The boards' pipeline, compiled once, for the budgets and the check of undefined symbols.
 template class Pipeline<board::limits>;
 
 namespace board {

@@ -1,5 +1,5 @@
-// Runs a drive: records of drive_log.hpp through the pipeline, a result out after each scan line. The same code on a
-// desk and on every board, so that their results can be compared byte by byte. Nothing is allocated.
+// Runs a drive: passes the records of drive_log.hpp to the pipeline and writes a result after each scan line. The code
+// is the same on a desk and on every board, so that the results can be compared byte by byte. Nothing is allocated.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ inline constexpr Limits limits{};
 using drive_log::RecordHeader;
 using drive_log::RecordKind;
 
-/// How a drive ended. Anything but `done` names what was wrong with the stream.
+/// How a drive ended. Anything but `done` says what was wrong with the stream.
 enum class DriveEnd : std::uint8_t {
   done,
   cut_record,
@@ -34,16 +34,16 @@ enum class DriveEnd : std::uint8_t {
 };
 const char* to_string(DriveEnd end);
 
-/// A place that bytes come from and results go to; see port/README.md.
-/// read(span) fills the whole span or returns how many bytes it got before the end; write(span) is false on failure.
+/// Source of bytes and sink for results; see port/README.md. read(span) fills the whole span, or returns how many bytes
+/// it got before the end; write(span) returns false on failure.
 template <typename Stream>
 concept ByteStream = requires(Stream& stream, std::span<std::byte> in, std::span<const std::byte> out) {
   { stream.read(in) } -> std::same_as<std::size_t>;
   { stream.write(out) } -> std::same_as<bool>;
 };
 
-/// How the drive's CAN frames come to the pipeline. open() is told the servo's signal; carry() hands on what the frame
-/// has become on its way, by take(frame), none or several times. Both are false if the bus fails.
+/// How the drive's CAN frames reach the pipeline. open() gets the servo's signal. carry() transports a frame and calls
+/// take(frame) with what was received: never, once or several times. Both return false if the bus fails.
 template <typename Bus>
 concept FrameWay = requires(Bus& bus, const can::Signal& signal, const can::Frame& frame,
                             void (*take)(const can::Frame&)) {
@@ -51,7 +51,7 @@ concept FrameWay = requires(Bus& bus, const can::Signal& signal, const can::Fram
   { bus.carry(frame, take) } -> std::same_as<bool>;
 };
 
-/// As they are.
+/// Passes frames on unchanged.
 struct NoBus {
   bool open(const can::Signal&) { return true; }
   bool carry(const can::Frame& frame, auto&& take) { return take(frame), true; }
@@ -62,7 +62,7 @@ class Drive {
  public:
   Drive(Stream& stream, Pipeline<limits>& pipeline, Bus bus = {}) : stream_(stream), pipeline_(pipeline), bus_(bus) {}
 
-  /// Everything up to the end of the stream.
+  /// Runs to the end of the stream.
   DriveEnd run();
 
  private:
@@ -157,7 +157,7 @@ DriveEnd Drive<Stream, Bus>::take_line(std::size_t bytes) {
   return end_line(line, status) ? DriveEnd::done : DriveEnd::no_room_for_results;
 }
 
-/// Not inlined: tools/budget tells scan lines apart by calls of it.
+/// Not inlined: tools/budget separates scan lines by the calls of this function.
 template <ByteStream Stream, FrameWay Bus>
 [[gnu::noinline]] bool Drive<Stream, Bus>::end_line(const ScanLine& line, Status status) {
   const drive_log::Result<limits.curbs> result(line, status, pipeline_.counters(), pipeline_.curbs());

@@ -1,5 +1,5 @@
-// The firmware of a board that has its logs from the host: a drive through the pipeline, results back. Its command
-// line, of the emulator's -semihosting-config: PROGRAM DRIVE RESULTS.
+// The firmware of a board that reads its logs from the host: runs a drive through the pipeline and writes the results
+// back. Its command line comes from the emulator's -semihosting-config: PROGRAM DRIVE RESULTS.
 #include <cstdint>
 
 #include "drive.hpp"

@@ -1,4 +1,4 @@
-// The end of a program that an emulator or a debugger runs.
+// Ends a program that runs in an emulator or debugger.
 #include "runtime.hpp"
 #include "semihosting/semihosting.hpp"
 

@@ -5,7 +5,7 @@
 extern "C" {
 using Word = std::uint32_t;
 using Constructor = void (*)();
-extern Word stack_begin[], stack_end[], data_begin[], data_end[], bss_begin[], bss_end[];  // of the linker script
+extern Word stack_begin[], stack_end[], data_begin[], data_end[], bss_begin[], bss_end[];  // from the linker script
 extern const Word data_load[];
 extern const Constructor init_array_begin[], init_array_end[];
 }
@@ -16,7 +16,7 @@ namespace {
 constexpr Word paint = 0xC0DEC0DEu;
 }
 
-// volatile: the compiler would call memset and memcpy, whose own stack is part of what is painted.
+// volatile, because the compiler would otherwise call memset and memcpy, whose own stack is part of what is painted.
 
 void paint_stack(const void* below) {
   for (volatile Word* p = stack_begin; p < below; ++p) *p = paint;

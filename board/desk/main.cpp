@@ -1,4 +1,4 @@
-// The boards' program where there are files: on a desk, and under qemu-user. drive IN OUT runs a drive.
+// The boards' program on a platform with files: on a desk, and under qemu-user. drive IN OUT runs a drive.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>

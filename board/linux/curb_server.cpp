@@ -29,7 +29,7 @@ sockaddr_un unix_address(const std::string& path) {
   return address;
 }
 
-/// Whether a socket file is left over from a process that is no more.
+/// Whether this is a socket file left over from a process that has ended.
 bool is_left_over(const std::string& path) {
   struct stat file {};
   if (::lstat(path.c_str(), &file) != 0 || !S_ISSOCK(file.st_mode)) return false;
@@ -111,7 +111,7 @@ int CurbServer::accept_client() {
   }
   const int size = send_buffer_bytes, on = 1;
   ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
-  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // fails on a Unix socket, which needs it not
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // fails on a Unix socket, which does not need it
   *place = socket;
   ++connected_;
   ++counters_.accepted;
@@ -123,7 +123,7 @@ void CurbServer::send_to(int client, std::string_view line) {
   if (socket < 0) return;
   const ssize_t sent = ::send(socket, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent == static_cast<ssize_t>(line.size())) return;
-  if (sent >= 0 || errno == EAGAIN) ++counters_.too_slow;  // else it has gone by itself
+  if (sent >= 0 || errno == EAGAIN) ++counters_.too_slow;  // otherwise the client has closed the connection
   drop(client);
 }
 

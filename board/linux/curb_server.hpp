@@ -1,8 +1,8 @@
-// Lines of text for everybody who connects to a socket: what the daemon gives its curbs out by.
+// Sends lines of text to every client of a socket: the daemon's output of curbs.
 //
-// A client is never waited for. The kernel keeps up to send_buffer_bytes for each; one that is further behind is
-// dropped in the middle of a line, and may connect anew. What a client sends is not read. After open() nothing is
-// allocated. One context.
+// A client is never waited for. The kernel buffers up to send_buffer_bytes for each; a client that is further behind is
+// dropped in the middle of a line, and may reconnect. What a client sends is not read. After open() nothing is
+// allocated. To be used from one context.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 
 namespace curbline::daemon {
 
-/// Only grow.
+/// These only grow.
 struct ServerCounters {
   std::uint32_t accepted = 0;
-  std::uint32_t too_slow = 0;  ///< dropped
-  std::uint32_t refused = 0;   ///< more than max_clients
+  std::uint32_t too_slow = 0;  ///< clients dropped
+  std::uint32_t refused = 0;   ///< clients beyond max_clients
 };
 
 class CurbServer {
@@ -29,15 +29,15 @@ class CurbServer {
   CurbServer(const CurbServer&) = delete;
   CurbServer& operator=(const CurbServer&) = delete;
 
-  /// Listens at unix:PATH or tcp:HOST:PORT (port 0: any). A socket file that nobody listens to any more is replaced.
-  /// Throws BadInput.
+  /// Listens at unix:PATH or tcp:HOST:PORT (port 0: any). A socket file without a listener is replaced. Throws
+  /// BadInput.
   void open(const std::string& address);
 
-  /// The address with the port that was given.
+  /// The address, with the actual port.
   const std::string& address() const { return address_; }
-  int descriptor() const { return listener_; }  ///< for poll(2), POLLIN; then accept_client()
+  int descriptor() const { return listener_; }  ///< for poll(2), POLLIN; then call accept_client()
 
-  /// The next client that waits, for send_to(); -1 if there is none.
+  /// The next waiting client, for send_to(); -1 if there is none.
   int accept_client();
 
   void send_to(int client, std::string_view line);
@@ -51,10 +51,10 @@ class CurbServer {
   void listen_tcp(const std::string& host, std::uint16_t port);
   void drop(int client);
 
-  std::string address_, path_;  ///< path_: of the socket file, to be removed
+  std::string address_, path_;  ///< path_: the socket file, to be removed
   int listener_ = -1;
   int connected_ = 0;
-  std::array<int, max_clients> clients_{};  ///< descriptors, -1 where there is none
+  std::array<int, max_clients> clients_{};  ///< descriptors, -1 for a free place
   ServerCounters counters_{};
 };
 

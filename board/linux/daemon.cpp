@@ -20,13 +20,13 @@ using tools::BadInput;
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t status_period_ns = 1000 * ms, look_period_ns = 50 * ms;
-/// A line without tilt is of no use, but costs nothing: as long as a busy machine may hold a frame back.
+/// How long a busy machine may delay a frame. A waiting line costs nothing, and without tilt it is useless.
 constexpr float longest_wait_s = 1.0f;
-/// A servo or a localisation that a user should know of is silent for longer than a busy machine's hiccup.
+/// Longer than any delay of a busy machine: a source that is silent for longer is reported to the user.
 constexpr float least_stale_s = 0.5f;
-/// Of the way ahead, to each side: a robot of pavements and doors.
+/// Half width of the way ahead, for a robot that drives on pavements and through doors.
 constexpr float half_way_m = 0.4f;
-constexpr int most_batches = 16;  ///< of frames, before other things have their turn
+constexpr int most_batches = 16;  ///< of frames, before other work gets its turn
 
 int signal_descriptor() {
   sigset_t stop;
@@ -120,9 +120,10 @@ void Daemon::run() {
   give_status();
 }
 
-/// Until something is to do. False when a signal says stop.
+/// Waits for work. False on a signal to stop.
 bool Daemon::wait() {
-  const bool listens = has_bus_ && bus_.link() == socketcan::LinkState::up;  // else its descriptor is ready for ever
+  const bool listens =
+      has_bus_ && bus_.link() == socketcan::LinkState::up;  // if it is down, its descriptor is always ready
   std::array<pollfd, 5> ready{{{signals_, POLLIN, 0},
                                {server_.descriptor(), POLLIN, 0},
                                {inbox_.descriptor(), POLLIN, 0},
@@ -174,7 +175,7 @@ void Daemon::take_frame(can::Frame frame) {
   by_frame_ = false;
 }
 
-/// Log time less host time; nothing before it is known.
+/// Log time minus host time; empty until it is known.
 std::optional<std::int64_t> Daemon::log_offset_ns() const {
   return fixed_offset_ns_ ? fixed_offset_ns_ : clock_.offset_ns();
 }
@@ -189,7 +190,7 @@ void Daemon::take_log() {
   }
 }
 
-/// Those whose tilt and pose are there, as the pipeline has their times; those that have waited too long.
+/// Processes the lines whose tilt and pose the pipeline has, and those that have waited too long.
 void Daemon::take_lines() {
   for (;;) {
     bool covered = false;
@@ -210,7 +211,7 @@ void Daemon::take_line(const ScanLine& line) {
   if (can_out_) send_curbs(status == Status::ok);
 }
 
-/// To the clients, if they are others than before.
+/// Sends the curbs to the clients if they have changed.
 void Daemon::give_curbs(std::int64_t line_ns) {
   auto& buffer = curbs_given_.data() == curb_texts_[0].data() ? curb_texts_[1] : curb_texts_[0];
   std::uint32_t left_out = 0;
@@ -222,7 +223,8 @@ void Daemon::give_curbs(std::int64_t line_ns) {
   server_.send(text);
 }
 
-/// After a scan line: the curb ahead if the line was taken, and the status, by whose counter a receiver knows.
+/// Sends, after a scan line, the curb ahead if the line was accepted, then the status, whose counter shows a receiver
+/// whether it was.
 void Daemon::send_curbs(bool taken) {
   if (taken) {
     const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), poses_.newest(), half_way_m));
@@ -232,7 +234,7 @@ void Daemon::send_curbs(bool taken) {
   bus_.send(can::curb_status_frame({curbs_sent_, tilt_watch_.state(), curbs}));
 }
 
-/// What has happened, for the user; some times a second.
+/// Reports events to the user; runs several times a second.
 void Daemon::look_around() {
   const std::int64_t now_ns = scanner::steady_now_ns();
   if (now_ns < next_look_ns_) return;

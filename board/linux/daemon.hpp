@@ -4,9 +4,9 @@
 //   scanner's thread --> LineInbox -----+
 //   localisation --> PoseSource --------+
 //
-// One thread does all but read the scanner. It waits in poll(2); nothing in it waits for a client, a scanner or a bus.
-// Everything is taken from the heap while it is made; heap_trap.hpp counts that nothing is later. A scan line is in the
-// pipeline as soon as a tilt reading and a pose cover its last beam, or after longest_wait_s without.
+// One thread does everything except reading the scanner. It waits in poll(2), and never for a client, a scanner or a
+// bus. All memory is allocated during construction; heap_trap.hpp checks that none is allocated later. A scan line goes
+// into the pipeline as soon as a tilt reading and a pose cover its last beam, or after longest_wait_s without them.
 #pragma once
 
 #include <array>
@@ -36,23 +36,23 @@ namespace curbline::daemon {
 struct Options {
   std::string can;    ///< interface; empty for a robot with a fixed tilt
   std::string scans;  ///< a log, or a scanner: program/scanner_link.hpp
-  std::string poses;  ///< pose_source.hpp; empty for a robot that stands
+  std::string poses;  ///< pose_source.hpp; empty for a stationary robot
   std::string curbs;  ///< where clients connect: curb_server.hpp
   bool can_out = false;
 };
 
 class Daemon {
  public:
-  /// Opens everything. Blocks SIGTERM and SIGINT, which run() waits for. Throws BadInput.
+  /// Opens everything. Blocks SIGTERM and SIGINT, for which run() waits. Throws BadInput.
   Daemon(const tools::Robot& robot, const Options& options);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  /// Until SIGTERM or SIGINT, or the end of a log of scan lines.
+  /// Runs until SIGTERM or SIGINT, or to the end of a log of scan lines.
   void run();
 
-  /// The status line as it is now. Valid until the next call.
+  /// The current status line. Valid until the next call.
   std::string_view status();
 
  private:
@@ -88,30 +88,30 @@ class Daemon {
   can::TiltDecoder tilt_decoder_;
   can::TiltDecoderCounters tilt_counters_{};
   SourceWatch tilt_watch_;
-  std::string wanted_tilt_;  ///< the first frame, for the user
+  std::string wanted_tilt_;  ///< name of the frame that is waited for, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::int64_t newest_tilt_ns_ = NewestTimes::none;           ///< as the pipeline has it
   std::int64_t newest_frame_ns_ = 0;                          ///< when the kernel received it
-  std::int64_t newest_arrival_ns_ = SourceWatch::no_reading;  ///< when it came here, steady
-  bool by_frame_ = false;                                     ///< lines are taken because a frame came
+  std::int64_t newest_arrival_ns_ = SourceWatch::no_reading;  ///< when the daemon received it, steady clock
+  bool by_frame_ = false;                                     ///< the lines are being processed because a frame came
 
   PoseSource poses_;
   std::optional<ScanLog> log_;
-  std::optional<std::int64_t> fixed_offset_ns_;  ///< log time less host time, where no frame tells it
+  std::optional<std::int64_t> fixed_offset_ns_;  ///< log time minus host time, if there are no frames to derive it from
 
-  std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady
-  std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; the first CurbAhead has 0
+  std::int64_t started_ns_ = 0, next_status_ns_ = 0, next_look_ns_ = 0;  ///< steady clock
+  std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; 255 so that the first CurbAhead has 0
   std::uint64_t heap_calls_before_ = 0;
   std::uint32_t curbs_left_out_ = 0;
   LatencyHistogram latency_, work_;
   ScannerState scanner_state_;
   Troubles troubles_;
   std::string_view told_state_{};
-  std::array<std::array<char, 64 << 10>, 2> curb_texts_{};  ///< the line given out last, and the next
+  std::array<std::array<char, 64 << 10>, 2> curb_texts_{};  ///< the line sent last, and the next
   std::string_view curbs_given_{};
   std::array<char, 32 << 10> status_text_{};
-  std::unique_ptr<ScannerThread> scanner_;  ///< last: its thread uses the inbox
+  std::unique_ptr<ScannerThread> scanner_;  ///< last member, because its thread uses the inbox
 };
 
 }  // namespace curbline::daemon

@@ -35,7 +35,8 @@ bool curbline::daemon::heap_trapped() {
   return true;
 }
 
-// The C library's own, under the names it keeps for such as this. What they give, its free() takes back.
+// The C library's own functions, under the names that it provides for replacements of malloc. Its free() releases what
+// they allocate.
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t);

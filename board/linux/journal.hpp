@@ -1,5 +1,5 @@
-// What the daemon says to its user on standard error, where systemd's journal reads it: one line for each thing that
-// happens, in memory of fixed size, and the same trouble once as long as it goes on.
+// The daemon's messages to its user on standard error, which systemd's journal reads: one line per event, in memory of
+// fixed size, and a continuing trouble only once.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace curbline::daemon {
 
-/// A line made of words and whole numbers; what is longer than 400 bytes is cut.
+/// A line made of words and whole numbers, truncated to 400 bytes.
 class JournalLine {
  public:
   JournalLine& operator<<(std::string_view words) {
@@ -24,7 +24,7 @@ class JournalLine {
     return *this << std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data()));
   }
   std::string_view text() const { return {text_.data(), size_}; }
-  /// Writes it to standard error, unless that has no room: it is not waited for.
+  /// Writes it to standard error; dropped if there is no room, without waiting.
   void say();
 
  private:
@@ -39,7 +39,7 @@ void say(const Parts&... parts) {
   (line << ... << parts).say();
 }
 
-/// A kind of trouble that a counter tells: news when it begins, and again only after it has been absent for 10 s.
+/// A kind of trouble with a counter: it is news when it begins, and again only after 10 s without an occurrence.
 class Trouble {
  public:
   bool is_news(std::uint64_t count, std::int64_t now_ns) {

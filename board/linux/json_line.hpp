@@ -1,5 +1,5 @@
-// A JSON object on a line, written into memory of fixed size: no heap, no locale. What does not fit is left out from
-// the last mark on, so that a line is always whole JSON.
+// A JSON object on one line, written into memory of fixed size: no heap, no locale. What does not fit is left out from
+// the last mark on, so that a line is always complete JSON.
 //
 //   JsonLine json(buffer);
 //   json.open('{').key("tilt").text("ok").key("curbs").open('[') ... .close(']').close('}').end();
@@ -16,7 +16,7 @@ namespace curbline::daemon {
 
 class JsonLine {
  public:
-  /// The buffer holds the last 16 bytes back for the brackets and the line's end behind what was left out.
+  /// The last 16 bytes of the buffer are reserved for the brackets and the line's end after what was left out.
   explicit JsonLine(std::span<char> buffer) : buffer_(buffer) {}
 
   JsonLine& open(char bracket) {
@@ -30,7 +30,7 @@ class JsonLine {
     comma_ = true;
     return *this;
   }
-  /// Keys and texts are the program's own: nothing in them needs escaping.
+  /// Keys and texts are constants of the program that need no escaping.
   JsonLine& key(std::string_view name) {
     text(name);
     put(":");
@@ -50,14 +50,14 @@ class JsonLine {
     put(value ? "true" : "false");
     return *this;
   }
-  /// Metres, seconds, probabilities: rounded to a millionth, as curb files have them.
+  /// Metres, seconds, probabilities: rounded to a millionth, as in curb files.
   JsonLine& real(double value) {
     if (std::isfinite(value)) return number(std::round(value * 1e6) / 1e6);
     separate();
     put("null");
     return *this;
   }
-  /// Nanoseconds >= 0 as seconds with six decimals, cut.
+  /// Nanoseconds >= 0 as seconds with six decimals, truncated.
   JsonLine& seconds(std::int64_t time_ns) {
     number(time_ns / 1'000'000'000);
     char fraction[7] = {'.'};
@@ -67,7 +67,7 @@ class JsonLine {
     return *this;
   }
 
-  /// Where to cut if what comes next does not fit.
+  /// The position to truncate to if what follows does not fit.
   struct Mark {
     std::size_t size;
     bool comma;

@@ -1,5 +1,5 @@
-// How often something took how long: four buckets to each doubling from 1 us to 67 s, so that a bucket's ends are
-// within a quarter of each other. Fixed size, a few operations a sample. One context.
+// A histogram of durations: four buckets per doubling from 1 us to 67 s, so that the ends of a bucket differ by at most
+// a quarter. Fixed size, a few operations a sample. To be used from one context.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class LatencyHistogram {
   std::uint64_t mean_us() const { return samples_ == 0 ? 0 : sum_us_ / samples_; }
   std::uint64_t longest_us() const { return longest_us_; }
 
-  /// That many of a thousand samples took less than this; 0 without samples.
+  /// Upper bound of this many thousandths of the samples; 0 without samples.
   std::uint64_t quantile_us(std::uint64_t per_mille) const {
     const std::uint64_t wanted = (samples_ * per_mille + 999) / 1000;
     std::uint64_t seen = 0;
@@ -37,7 +37,7 @@ class LatencyHistogram {
   }
 
   std::uint64_t count(std::size_t bucket) const { return counts_[bucket]; }
-  /// The samples of a bucket took less than this, and at least the end of the bucket before.
+  /// The samples of a bucket are below this, and at or above the end of the previous bucket.
   static constexpr std::uint64_t end_us(std::size_t bucket) {
     if (bucket < 4) return bucket + 1;
     return (std::uint64_t{5} + bucket % 4) << (bucket / 4 - 1);

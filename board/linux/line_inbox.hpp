@@ -1,6 +1,6 @@
-// Where scan lines wait for their tilt and pose (curbline/intake/line_queue.hpp), between the context that reads the
-// scanner and the one that runs the pipeline. Neither waits for the other for longer than the copy of a line. About 750
-// kB, no heap.
+// Holds scan lines that wait for their tilt and pose (curbline/intake/line_queue.hpp), between the context that reads
+// the scanner and the one that runs the pipeline. Neither waits for the other for longer than it takes to copy a line.
+// About 750 kB, no heap.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace curbline::daemon {
 
-/// Room for the lines of a second and more, at any scanner's rate up to 64 Hz, of as many beams as any scanner here
+/// Room for more than a second of lines at any scanner's rate up to 64 Hz, with as many beams as any supported scanner
 /// has.
 inline constexpr Limits inbox_limits{.beams = tools::most_beams};
 inline constexpr int inbox_lines = 64;
@@ -30,13 +30,13 @@ class LineInbox {
   /// From the scanner's context. Makes descriptor() readable.
   void push(const ScanLine& line, std::int64_t now_ns);
 
-  /// From the pipeline's: see LineQueue::pop(). `covered`: its tilt and pose are there. The ranges are valid until
-  /// the next pop().
+  /// From the pipeline's context; see LineQueue::pop(). `covered`: the line's tilt and pose are known. The ranges are
+  /// valid until the next pop().
   std::optional<ScanLine> pop(const NewestTimes& newest, std::int64_t now_ns, float offset_s, bool& covered);
 
   bool empty() const;
   LineQueueCounters counters() const;
-  int descriptor() const { return event_; }  ///< for poll(2), POLLIN; then quiet()
+  int descriptor() const { return event_; }  ///< for poll(2), POLLIN; then call quiet()
   void quiet() const;
 
  private:

@@ -1,4 +1,4 @@
-// curblined: curbs while the robot runs. README.md beside it is its manual.
+// curblined: curbs on a running robot. README.md in this folder is its manual.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
       ->required();
   app.add_flag("--can-out", options.can_out, "the curb ahead as CAN frames too, those of `curbline dbc --curbs`")
       ->needs(can);
-  std::signal(SIGPIPE, SIG_IGN);  // whoever reads standard error may go; the daemon goes on
+  std::signal(SIGPIPE, SIG_IGN);  // the daemon continues if the reader of standard error closes it
   app.callback([&] {
     tools::Robot description = tools::read_robot(robot);
     if (!options.poses.empty()) description.pose.still = false;

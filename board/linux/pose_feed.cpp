@@ -20,7 +20,7 @@ PoseFeed::~PoseFeed() {
   close();
 }
 
-/// Standard input stays open, for it is not its own.
+/// Standard input stays open, because it belongs to the process.
 void PoseFeed::close() {
   if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
   descriptor_ = -1;
@@ -34,7 +34,7 @@ void PoseFeed::open(const std::string& source) {
     descriptor_ = STDIN_FILENO;
     return;
   }
-  // Its own writer too: a FIFO whose last writer has gone is at its end for ever.
+  // Opened for writing too: otherwise the FIFO would stay at its end after the last writer closes it.
   descriptor_ = ::open(source.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) throw BadInput(source + ": " + std::strerror(errno) + "; expected a FIFO to read and write");
 }
@@ -50,7 +50,7 @@ std::optional<Pose> PoseFeed::next() {
   }
 }
 
-/// Of what has been read. A line longer than the buffer is one that is damaged.
+/// The next line of what has been read. A line longer than the buffer is damaged.
 std::optional<std::string_view> PoseFeed::next_line() {
   const std::string_view read(buffer_.data() + begin_, end_ - begin_);
   const std::size_t length = read.find('\n');
@@ -67,9 +67,9 @@ std::optional<std::string_view> PoseFeed::next_line() {
   return std::string_view{};
 }
 
-/// Reads what is there. False if nothing is.
+/// Reads what is available. False if nothing is.
 bool PoseFeed::fill() {
-  pollfd ready{descriptor_, POLLIN, 0};  // standard input may block, and it is others' as well
+  pollfd ready{descriptor_, POLLIN, 0};  // because standard input, which is shared with other processes, may block
   if (descriptor_ < 0 || ::poll(&ready, 1, 0) <= 0) return false;
   std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
             buffer_.begin());
@@ -80,7 +80,7 @@ bool PoseFeed::fill() {
   if (got <= 0) {  // standard input has ended, or cannot be read
     close();
     if (end_ == 0) return false;
-    buffer_[end_++] = '\n';  // of its last line
+    buffer_[end_++] = '\n';  // the end of its last line
     return true;
   }
   end_ += static_cast<std::size_t>(got);

@@ -1,5 +1,5 @@
-// Poses of a robot that drives, T_map_base, as whoever localises it writes them: lines of a TUM trajectory, `time tx ty
-// tz qx qy qz qw`, through a FIFO or standard input. Nothing in it waits, nothing is taken from the heap.
+// Poses of a moving robot, T_map_base, as its localisation writes them: lines of a TUM trajectory, `time tx ty tz qx qy
+// qz qw`, through a FIFO or standard input. Nothing in it waits or allocates memory.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@ class PoseFeed {
   PoseFeed(const PoseFeed&) = delete;
   PoseFeed& operator=(const PoseFeed&) = delete;
 
-  /// A FIFO's path, whose writers may come and go, or "-". Throws BadInput.
+  /// The path of a FIFO, whose writers may connect and disconnect, or "-". Throws BadInput.
   void open(const std::string& source);
 
   /// For poll(2), POLLIN; -1 before open() and after the end of standard input.
   int descriptor() const { return descriptor_; }
 
-  /// The next of the poses that have come; nothing if that was the last. Empty lines and # comments are passed over.
+  /// The next received pose; nothing if there are no more. Empty lines and # comments are skipped.
   std::optional<Pose> next();
 
-  std::uint64_t damaged() const { return damaged_; }  ///< lines that are no pose, passed over
+  std::uint64_t damaged() const { return damaged_; }  ///< lines that are not poses, skipped
 
  private:
   bool fill();
@@ -38,8 +38,8 @@ class PoseFeed {
 
   int descriptor_ = -1;
   std::array<char, 4096> buffer_{};
-  std::size_t begin_ = 0, end_ = 0;  ///< what has been read and not yet given
-  bool skipping_ = false;            ///< the rest of a line for which there was no room
+  std::size_t begin_ = 0, end_ = 0;  ///< the bytes read and not yet returned
+  bool skipping_ = false;            ///< skipping the rest of a line that exceeds the buffer
   std::uint64_t damaged_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using tools::BadInput;
 
-constexpr int most_poses = 256;  ///< more than the feed keeps; before other things have their turn
+constexpr int most_poses = 256;  ///< more than the feed holds; then other work gets its turn
 
 bool is_fifo(const std::string& path) {
   std::error_code none;
@@ -29,7 +29,7 @@ std::vector<Pose> read_log(const std::string& path) {
 
 void PoseSource::open(const tools::Robot& robot, const std::string& source, bool of_log, float stale_after_s) {
   const bool live = source == "-" || is_fifo(source);
-  watch_.init(stale_after_s, robot.pose.still || !live);  // a log is there, whatever line comes
+  watch_.init(stale_after_s, robot.pose.still || !live);  // a log is complete, whatever line comes
   if (robot.pose.still) return;
   if (source.empty()) {
     throw BadInput(robot.file + ": the robot drives; expected --poses, or pose.still = true");

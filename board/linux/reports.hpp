@@ -1,4 +1,4 @@
-// The two kinds of JSON lines that the daemon gives out; README.md describes them to those who read them.
+// The two kinds of JSON lines that the daemon outputs; README.md describes them for those who read them.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@
 
 namespace curbline::daemon {
 
-/// Of a robot that drives.
+/// For a moving robot.
 struct PoseReport {
-  const SourceWatch* watch = nullptr;  ///< nullptr: it stands
-  std::string_view wanted{};           ///< from where they come, for the user
+  const SourceWatch* watch = nullptr;  ///< nullptr: the robot is stationary
+  std::string_view wanted{};           ///< where the poses come from, for the user
   std::uint64_t taken = 0, damaged = 0;
 };
 
-/// What a status line is made of. What is nullptr the robot has not.
+/// The contents of a status line. nullptr: the robot does not have this part.
 struct Report {
   std::int64_t time_ns = 0;
   double uptime_s = 0, scan_line_s = 0;
@@ -44,17 +44,17 @@ struct Report {
   ServerCounters server{};
   const LatencyHistogram* latency = nullptr;  ///< tilt frame to curbs
   const LatencyHistogram* work = nullptr;     ///< a scan line in the pipeline
-  std::uint64_t not_recorded = 0;             ///< tilt frames that the recording beside a log does not have
+  std::uint64_t not_recorded = 0;             ///< tilt frames that are not in the recording beside a log
   std::uint64_t heap_calls_before = 0, heap_calls_since = 0;
 };
 
-/// The worst that is the matter, in a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale
-/// or scanner_lost.
+/// The most serious problem, as a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale or
+/// scanner_lost.
 std::string_view state_of(const Report& status);
 
 std::string_view status_line(const Report& status, std::span<char> buffer);
 
-/// All curbs of the window after a scan line, in the order of the pipeline. `left_out` counts those that do not fit.
+/// All curbs of the window after a scan line, in the pipeline's order. `left_out` counts those that do not fit.
 std::string_view curbs_line(std::int64_t time_ns, std::span<const Curb> curbs, std::span<char> buffer,
                             std::uint32_t& left_out);
 

@@ -1,5 +1,5 @@
-// Scan lines of a CARMEN log, each when its last beam would be there. The log is read whole before the start (4.3 kB a
-// line of 1081 beams), so that nothing is allocated later and what is wrong with it is said at once.
+// Scan lines of a CARMEN log, each released at the time of its last beam. The log is read whole before the start (4.3
+// kB a line of 1081 beams), so that nothing is allocated later and its errors are reported at once.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ namespace curbline::daemon {
 
 class ScanLog {
  public:
-  /// Throws BadInput for what is wrong with the log, and for beams that are not those of the laser.
+  /// Throws BadInput for errors in the log, and if its number of beams is not that of the laser.
   ScanLog(const std::string& path, const LaserSettings& laser);
 
   bool ended() const { return next_ == lines_.size(); }
 
-  /// Times of the next line's first beam and of its last; of a log that has not ended.
+  /// Times of the next line's first and last beam; the log must not have ended.
   std::int64_t front_ns() const { return lines_[next_].time_ns; }
   std::int64_t due_ns() const;
 

@@ -1,5 +1,5 @@
-// A live scanner that is read by a thread of its own, since connecting waits: its lines go into the inbox. A scanner
-// that is lost is connected anew for as long as it takes.
+// A live scanner, read by its own thread because connecting blocks. Its lines go into the inbox. The thread reconnects
+// to a lost scanner for as long as it takes.
 #pragma once
 
 #include <atomic>
@@ -16,19 +16,19 @@
 namespace curbline::daemon {
 
 struct ScannerState {
-  std::string_view name{};     ///< as --scans has it; lives as long as the thread
-  bool connected = false;      ///< and has given a line since
-  int error = 0;               ///< errno of what last failed; 0: the scanner closed the connection
+  std::string_view name{};     ///< as given to --scans; lives as long as the thread
+  bool connected = false;      ///< and has sent a line since
+  int error = 0;               ///< errno of the last failure; 0: the scanner closed the connection
   std::string_view problem{};  ///< what the scanner refused or reported; static text
   std::uint64_t connections = 0;
-  std::uint64_t other_beams = 0;  ///< lines dropped: their beams are not those of the robot's laser
-  std::uint64_t damaged = 0;      ///< telegrams
+  std::uint64_t other_beams = 0;  ///< lines dropped because their number of beams is not that of the robot's laser
+  std::uint64_t damaged = 0;      ///< damaged telegrams
 };
 
 class ScannerThread {
  public:
   ScannerThread(std::string name, tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox);
-  /// Stops the scanner's stream and the thread; within the 2 s that an attempt to connect may take.
+  /// Stops the scanner's stream and the thread, within the 2 s that an attempt to connect may take.
   ~ScannerThread();
   ScannerThread(const ScannerThread&) = delete;
   ScannerThread& operator=(const ScannerThread&) = delete;

@@ -16,7 +16,7 @@ ServiceManager::ServiceManager() {
   if (length < 2 || length >= sizeof address_.sun_path) return;
   address_.sun_family = AF_UNIX;
   std::memcpy(address_.sun_path, path, length);
-  if (path[0] == '@') address_.sun_path[0] = '\0';  // an abstract name
+  if (path[0] == '@') address_.sun_path[0] = '\0';  // an abstract socket name
   address_size_ = static_cast<unsigned>(offsetof(sockaddr_un, sun_path) + length);
   socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 }

@@ -1,5 +1,5 @@
-// Tells systemd how the service does (Type=notify): a datagram to the socket that it names in the environment. Nothing
-// happens where it is not there. Source: sd_notify(3).
+// Reports the state of the service to systemd (Type=notify): a datagram to the socket named in the environment. Without
+// such a socket it does nothing. Source: sd_notify(3).
 #pragma once
 
 #include <sys/un.h>
@@ -15,7 +15,7 @@ class ServiceManager {
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
 
-  /// "READY=1", "WATCHDOG=1", "STOPPING=1", "STATUS=...". Does not wait, no heap.
+  /// "READY=1", "WATCHDOG=1", "STOPPING=1", "STATUS=...". Does not wait or allocate.
   void notify(std::string_view state) const;
 
  private:

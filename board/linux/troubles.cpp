@@ -7,7 +7,7 @@
 namespace curbline::daemon {
 namespace {
 
-/// What is said of a servo, or of a localisation, that reports or does not.
+/// The messages about a servo or a localisation that reports or is silent.
 struct Told {
   std::string_view missing, first, lost, recovered;
 };
@@ -53,7 +53,7 @@ void Troubles::tell_link(const socketcan::SocketCan& bus) {
 void Troubles::tell_scanner(const ScannerState& scanner) {
   if (scanner.connected == scanner_connected_) {
     if (scanner.connected || scanner_told_ || (scanner.error == 0 && scanner.problem.empty())) return;
-    scanner_told_ = true;  // it has not been there since the start
+    scanner_told_ = true;  // it has not been connected since the start
   }
   scanner_connected_ = scanner.connected;
   if (scanner.connected) return say("the scanner gives scan lines");

@@ -1,4 +1,4 @@
-// What goes wrong, and what is well again, to the journal: each thing when it begins, not while it goes on.
+// Writes faults and recoveries to the journal: each when it begins, not while it continues.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace curbline::daemon {
 
 class Troubles {
  public:
-  /// Compares with what was told. Call some times a second. `now_ns`: of any clock.
+  /// Compares with what was reported before. Call several times a second. `now_ns`: of any clock.
   void tell(const Report& status, SourceEvent tilt, SourceEvent poses, std::int64_t now_ns);
 
  private:

@@ -1,6 +1,7 @@
-// Tilt readings from a timer's interrupt while the pipeline reads. Two claims, a line each, and 1 at the end if one
-// does not hold: every snapshot of a hammered track is whole; a drive whose readings come by interrupt has the same
-// results, byte for byte, as one without. Words: PROGRAM DRIVE RESULTS.
+// Tilt readings written by a timer's interrupt while the pipeline reads. Prints one line for each of two claims and
+// ends with 1 if one does not hold: every snapshot of a track under constant writes is consistent; a drive whose
+// readings arrive by interrupt has the same results, byte for byte, as one without interrupts. Words: PROGRAM DRIVE
+// RESULTS.
 #include <atomic>
 
 #include "drive.hpp"
@@ -29,14 +30,14 @@ bool claim(const char* text, bool holds) {
   return holds;
 }
 
-/// A period that does not repeat, from 100 to 227 ticks of 40 ns: 250 to 570 instructions at 16 ns each.
+/// A varying period, from 100 to 227 ticks of 40 ns: 250 to 570 instructions at 16 ns each.
 std::uint32_t next_period() {
   static std::uint32_t state = 1;
   state = state * 1664525u + 1013904223u;
   return 100 + (state >> 25);
 }
 
-// A track alone. Both halves of a reading's time change from one to the next, so that a torn one shows.
+// A track alone. Both halves of a reading's time change from one reading to the next, so that a torn one is detected.
 namespace hammer {
 
 constexpr std::int64_t step_ns = 2'000'000'011;
@@ -55,8 +56,8 @@ void on_timer() {
   pushed.store(n + 1, std::memory_order_relaxed);
 }
 
-/// Whether all that can be in a snapshot is in it, as it was pushed: of the readings before it, but for the newest,
-/// those that no reading since, nor the one that may be under way, has replaced.
+/// Whether the snapshot contains every reading that it must, as it was pushed: of the readings before it all but the
+/// newest, except those that a later reading, possibly still being written, has replaced.
 bool whole(std::uint32_t before, std::uint32_t added) {
   for (std::uint32_t n = before + added + 1 - capacity; n + 1 < before; ++n) {
     const TiltAngle angle = snapshot.at(reading(n).time_ns);
@@ -89,12 +90,12 @@ bool run() {
 
 }  // namespace hammer
 
-// The servo of a drive, at six times its rate: between two of its frames the readings on the line between them.
+// The servo of a drive at six times its rate: between two of its frames, readings interpolated linearly.
 namespace servo {
 
 constexpr int parts = 6;
 TiltReading from, to;
-std::atomic<int> left{0};  ///< readings of the pair that are not in yet
+std::atomic<int> left{0};  ///< readings of the pair that have not been pushed yet
 
 void push_next() {
   const int part = left.load(std::memory_order_relaxed) - 1;
@@ -111,8 +112,8 @@ void on_timer() {
   by_interrupt.store(by_interrupt.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
-/// A pair is handed over once the one before is in: the last pair before a scan line comes in while the pipeline is at
-/// work.
+/// A pair is handed over once all readings of the previous pair are pushed, so the last pair before a scan line is
+/// pushed while the pipeline is at work.
 class Way {
  public:
   explicit Way(bool interrupts) : interrupts_(interrupts) {}
@@ -134,7 +135,7 @@ class Way {
   can::TiltDecoder decoder_{};
 };
 
-/// Results are summed up (FNV-1a) instead of kept.
+/// Keeps a hash of the results (FNV-1a) instead of the results.
 struct SummedFiles {
   std::uint64_t sum = 0xCBF29CE484222325u;
   std::uint32_t bytes = 0;

@@ -1,5 +1,5 @@
-// TIMER0 of the MPS2, whose interrupt on_interrupt() takes. Source: Arm, Cortex-M System Design Kit TRM (DDI 0479), APB
-// timer; Armv7-M Architecture Reference Manual, B3.4 (NVIC).
+// TIMER0 of the MPS2, whose interrupt on_interrupt() handles. Source: Arm, Cortex-M System Design Kit TRM (DDI 0479),
+// APB timer; Armv7-M Architecture Reference Manual, B3.4 (NVIC).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ inline volatile std::uint32_t& word(std::uintptr_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);
 }
 
-/// From now on, and after each call of on_interrupt(), in so many ticks of 40 ns.
+/// The next interrupt comes after this many ticks of 40 ns, and the following ones with this period: a write of the
+/// reload value also sets the current one.
 inline void set_period(std::uint32_t ticks) {
   word(base + 8) = ticks;
 }
@@ -30,7 +31,7 @@ inline void stop() {
   word(base) = 0;
 }
 
-/// What on_interrupt() does first.
+/// To be called first in on_interrupt().
 inline void acknowledge() {
   word(base + 12) = 1;
 }

@@ -1,6 +1,6 @@
 // A drive whose CAN frames go over the board's bus, each at its own time: CAN1 plays the servo, CAN0 the robot, and a
-// frame's time is that at which CAN0 had it. Results hold each frame as it was received, so that a desk can repeat, bit
-// for bit, what this board computed. Beside each frame goes one with another id, which must not come through. Words:
+// frame's time is that of its reception by CAN0. The results contain each frame as received, so that a desk can repeat
+// the board's computation bit for bit. With each frame goes one with another id, which must be filtered out. Words:
 // PROGRAM DRIVE RESULTS.
 #include "can_pair.hpp"
 #include "cycle_clock.hpp"
@@ -29,7 +29,8 @@ class Wire {
   bool carry(const can::Frame& frame, auto&& take) {
     if (!started_) clock_.start(frame.time_ns - before_first_ns);
     started_ = true;
-    clock_.skip();  // the pipeline's work and the host's files: this emulated core is no measure of their time
+    clock_
+        .skip();  // excludes the time of the pipeline and of the host's files, for which an emulated core is no measure
     while (clock_.now_ns() < frame.time_ns) {
     }
     can::Frame other = frame;
@@ -43,7 +44,7 @@ class Wire {
  private:
   static constexpr std::int64_t before_first_ns = 1'000'000, longest_ns = 1'000'000;
 
-  /// The one frame that is on its way.
+  /// Receives the one frame in transit.
   bool receive(auto&& take) {
     std::array<can::Frame, 4> frames;
     const std::int64_t until_ns = clock_.now_ns() + longest_ns;

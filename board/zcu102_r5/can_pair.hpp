@@ -1,5 +1,5 @@
-// The two CAN controllers of the Zynq UltraScale+. Source: UG1085, address map. The boot loader has given them a clock
-// of 100 MHz and pins.
+// The two CAN controllers of the Zynq UltraScale+. Source: UG1085, address map. The boot loader has set up their clock
+// of 100 MHz and their pins.
 #pragma once
 
 #include "xilinx_can/xilinx_can.hpp"

@@ -1,5 +1,5 @@
-// The driver on the board's two controllers, which share a bus. Prints a line a claim; ends with 1 if one does not
-// hold.
+// Tests the driver on the board's two controllers, which share a bus. Prints one line per claim; ends with 1 if one
+// does not hold.
 #include <array>
 
 #include "can_pair.hpp"
@@ -37,7 +37,7 @@ bool open(std::span<const Filter> filters) {
   return sender.open(can_settings, {}) == Status::ok && receiver.open(can_settings, filters) == Status::ok;
 }
 
-/// How many frames come within so many looks, the last of them in `last`.
+/// Polls the receiver 1000 times and returns how many frames came, the last of them in `last`.
 int drain(can::Frame& last) {
   std::array<can::Frame, 8> frames;
   int count = 0;

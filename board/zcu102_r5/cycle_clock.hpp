@@ -1,12 +1,12 @@
-// A clock made of the core's cycle counter. Source: Armv7-A and -R Architecture Reference Manual, B4.1.112 (PMCCNTR and
-// its like).
+// A clock based on the core's cycle counter. Source: Armv7-A and -R Architecture Reference Manual, B4.1.112 (PMCCNTR
+// and related registers).
 #pragma once
 
 #include <cstdint>
 
 namespace curbline::board {
 
-/// Ask it at least every 4 s, when the counter wraps.
+/// Must be read at least every 4 s, the period at which the counter wraps.
 class CycleClock {
  public:
   void start(std::int64_t now_ns) {
@@ -24,7 +24,7 @@ class CycleClock {
     return now_ns_;
   }
 
-  /// The time since the clock was last asked has not passed.
+  /// Ignores the time since the clock was last read.
   void skip() { last_ = cycles(); }
 
  private:

@@ -9,7 +9,7 @@
 vectors:
   b reset
   b unexpected  // undefined instruction
-  b unexpected  // supervisor call: semihosting's are taken by the emulator before they come here
+  b unexpected  // supervisor call: the emulator handles those of semihosting before they get here
   b unexpected  // prefetch abort
   b unexpected  // data abort
   b unexpected
@@ -33,7 +33,7 @@ reset:
   bl start
   b .
 
-  // Any mode: takes the whole stack again, since nothing returns.
+  // From any mode: reuses the whole stack, since nothing returns.
 unexpected:
   ldr sp, =stack_end
   bl unexpected_exception

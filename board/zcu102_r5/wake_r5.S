@@ -1,5 +1,5 @@
-// What the first Cortex-A53 runs: it starts the first R5 at address 0 and sleeps. Only the emulator needs it; on a real ZCU102 the
-// first-stage boot loader starts the R5. Source: Arm, Power State Coordination Interface (DEN 0022), CPU_ON.
+// Runs on the first Cortex-A53: starts the first R5 at address 0 and sleeps. Only the emulator needs it; on a real
+// ZCU102 the first-stage boot loader starts the R5. Source: Arm, Power State Coordination Interface (DEN 0022), CPU_ON.
   .text
   .global _start
 _start:
