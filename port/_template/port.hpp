@@ -1,6 +1,6 @@
-// Copy this folder, and write in port.cpp what your board has. Until then everything answers "nothing has come". What a
-// port promises is in port/README.md; the numbers behind "now" and every stamp are nanoseconds of one clock that only
-// goes forward.
+// Copy this folder and fill in port.cpp for your board. Until then every call returns "nothing has come".
+// port/README.md says what a port promises. "Now" and all stamps are nanoseconds of the same clock, which only goes
+// forward.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 #include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 
-/// What a robot's firmware needs of its board. All calls come from one context; none waits.
+/// What a robot's firmware needs from its board. All calls come from one context; none waits.
 class Port {
  public:
-  /// Starts the clock, the bus (a filter that lets `tilt` through) and the scanner. False if one of them does not.
+  /// Starts the clock, the bus (with a filter that passes `tilt`) and the scanner. False if one of them fails.
   bool open(const curbline::can::Signal& tilt);
 
   std::int64_t now_ns();
 
-  /// Fills `out` from its start with the frames of the bus, oldest first, each with the time at which it came in, and
-  /// returns how many. Up to a millisecond of delay in that time is as good as a servo's own.
+  /// Fills `out` from its start with the frames received from the bus, oldest first, each with its time of reception,
+  /// and returns their number. A delay of up to a millisecond in that time is no worse than the servo's own.
   int receive(std::span<curbline::can::Frame> out);
 
-  /// A scan line that is complete. Its time is that of its first beam; its ranges stay until the next call.
+  /// A complete scan line. Its time is that of its first beam; its ranges are valid until the next call.
   std::optional<curbline::ScanLine> scan_line();
 
-  /// A pose of the robot. Never one, if settings say that it stands still.
+  /// A pose of the robot. Always nothing if the settings say that the robot is stationary.
   std::optional<curbline::Pose> pose();
 
-  /// Queues a frame for the rest of the robot. False if there is no room.
+  /// Queues a frame to be sent to the rest of the robot. False if there is no room.
   bool send(const curbline::can::Frame& frame);
 
-  /// Called after each pass of the main loop: where a board sleeps until the next interrupt, and feeds its watchdog.
+  /// Called after each pass of the main loop: lets the board sleep until the next interrupt, and feeds the watchdog.
   void rest();
 
-  /// The robot cannot start: `why` to wherever the board can say it. Never returns.
+  /// Called if the robot cannot start: reports `why` wherever the board can. Never returns.
   [[noreturn]] void stop(const char* why);
 };

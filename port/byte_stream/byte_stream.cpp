@@ -16,7 +16,7 @@
 namespace curbline::port {
 namespace {
 
-/// Below 0 when it is over.
+/// Negative when the time is over.
 Milliseconds left_until(std::chrono::steady_clock::time_point give_up) {
   return std::chrono::duration_cast<Milliseconds>(give_up - std::chrono::steady_clock::now());
 }
@@ -124,7 +124,7 @@ ByteStream::Read ByteStream::read(std::span<std::uint8_t> bytes, std::size_t& co
     return Read::bytes;
   }
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Read::nothing;
-  return Read::closed;  // 0 is the end of a TCP stream; EIO that of a pty whose other side is gone
+  return Read::closed;  // 0 is the end of a TCP stream; EIO that of a pty whose other side has closed
 }
 
 bool ByteStream::write(std::span<const std::uint8_t> bytes, Milliseconds patience) {

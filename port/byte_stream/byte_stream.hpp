@@ -1,7 +1,7 @@
-// Bytes over TCP or a serial line, on POSIX. Made once for an address (which looks up the host's name and may
-// allocate); after that nothing is allocated, and a lost connection is opened anew by connect(). No call waits longer
-// than the time it is given, but tcp() and close() as they say. Not thread-safe; not for interrupts. A serial line is
-// set raw: 8 bits, no parity, no flow control.
+// Bytes over TCP or a serial line, on POSIX. An object is created for an address, which looks up the host's name and
+// may allocate; after that nothing is allocated, and connect() reopens a lost connection. No call waits longer than the
+// time that it is given, with the exceptions documented at tcp() and close(). Not thread-safe; not for interrupts. A
+// serial line is set to raw mode: 8 bits, no parity, no flow control.
 #pragma once
 
 #include <netdb.h>
@@ -19,8 +19,8 @@ using Milliseconds = std::chrono::milliseconds;
 
 class ByteStream {
  public:
-  /// A TCP server. A name may have several addresses, as localhost has ::1 and 127.0.0.1. Nothing if it cannot be
-  /// looked up; `error` then says why. The look-up waits as long as the system's resolver is set to.
+  /// A TCP server. A name may have several addresses; localhost has ::1 and 127.0.0.1. Nothing if the look-up fails;
+  /// `error` then gives the reason. The look-up takes as long as the system's resolver is configured to wait.
   static std::optional<ByteStream> tcp(const std::string& host, std::uint16_t port, std::string& error);
 
   /// A serial device or pty.
@@ -30,28 +30,28 @@ class ByteStream {
   ByteStream& operator=(ByteStream&& other) noexcept;
   ~ByteStream() { close(); }
 
-  /// Opens, or opens anew: the first address that answers, in the order of the look-up. One that does not is given up
-  /// when its share is over, an equal part of the time that is left. 0, or the errno of what failed, of the last
+  /// Opens or reopens: connects to the first address that answers, in the order of the look-up. Each address gets an
+  /// equal share of the remaining time, after which it is given up. Returns 0, or the errno of the failure of the last
   /// address.
   int connect(Milliseconds patience);
   bool is_open() const { return fd_ >= 0; }
 
-  /// What was written to a serial line leaves first; Linux waits for that, up to 30 s where it cannot. TCP does not
-  /// wait.
+  /// On a serial line, written bytes are sent first; Linux waits for that, up to 30 s if they cannot be sent. TCP does
+  /// not wait.
   void close();
 
-  /// Bits a second of a serial line: 9600, 19200, 38400, 57600, 115200 or 500000; any other is EINVAL. 0, or an errno.
-  /// Nothing for TCP. Does not wait for bytes that are still to leave, and would garble them: call it when they have
-  /// been answered.
+  /// Bits a second of a serial line: 9600, 19200, 38400, 57600, 115200 or 500000; others return EINVAL. Returns 0 or an
+  /// errno. No effect on TCP. Does not wait for unsent bytes and would garble them: call it only after they have been
+  /// answered.
   int set_baud(int baud);
 
   enum class Read : unsigned char { bytes, nothing, closed };
 
-  /// Waits for bytes; `count` tells how many came. A signal ends the wait with nothing. Closed: by the other side, or
+  /// Waits for bytes; `count` is their number. A signal ends the wait without bytes. Closed: by the other side, or
   /// broken.
   Read read(std::span<std::uint8_t> bytes, std::size_t& count, Milliseconds patience);
 
-  /// Writes all of it, or closes and gives false.
+  /// Writes everything, or closes and returns false.
   bool write(std::span<const std::uint8_t> bytes, Milliseconds patience);
 
   int fd() const { return fd_; }  ///< for poll(); -1 if closed
@@ -67,7 +67,7 @@ class ByteStream {
   int connect_serial();
 
   int fd_ = -1;
-  std::string path_;  ///< of a serial line; empty: TCP
+  std::string path_;  ///< path of a serial line; empty: TCP
   std::unique_ptr<addrinfo, FreeAddresses> addresses_;
 };
 

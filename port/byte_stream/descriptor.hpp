@@ -1,4 +1,4 @@
-// What a byte stream and the simulated scanner, which is its other side, ask of a file descriptor.
+// Helpers for file descriptors, used by the byte stream and by the simulated scanner at its other end.
 #pragma once
 
 #include <poll.h>
@@ -10,13 +10,13 @@
 
 namespace curbline::port {
 
-/// True when the descriptor is ready in time. False: not, or a signal came.
+/// True if the descriptor is ready in time; false if not, or if a signal came.
 inline bool wait_for(int fd, short events, std::chrono::milliseconds patience) {
   pollfd poll_fd{fd, events, 0};
   return ::poll(&poll_fd, 1, static_cast<int>(std::max<std::int64_t>(patience.count(), 0))) == 1;
 }
 
-/// Of a serial line; B0 if it is none of ByteStream::set_baud().
+/// The speed of a serial line; B0 if it is not one that ByteStream::set_baud() accepts.
 constexpr speed_t speed_of(int baud) {
   switch (baud) {
     case 9'600:

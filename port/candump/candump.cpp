@@ -13,7 +13,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Value of a hexadecimal digit, -1 if it is none.
+/// Value of a hexadecimal digit, -1 for another character.
 int hex_value(char c) {
   if (is_digit(c)) return c - '0';
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
@@ -21,7 +21,7 @@ int hex_value(char c) {
   return -1;
 }
 
-/// Cuts `text` after its first blank-free word and the one blank behind it; gives the word.
+/// Removes the first blank-free word and the one blank after it from `text`; returns the word.
 std::string_view take_word(std::string_view& text) {
   const std::size_t end = std::min(text.find(' '), text.size());
   const std::string_view word = text.substr(0, end);
@@ -29,7 +29,7 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-// The parsers below return an error, empty if all is well.
+// The parsers below return an error, empty on success.
 
 std::string_view parse_id(std::string_view digits, can::Frame& frame) {
   if (digits.size() != 3 && digits.size() != 8) return "bad id; expected 3 or 8 hexadecimal digits before #";
@@ -65,7 +65,7 @@ std::string_view parse_data(std::string_view digits, can::Frame& frame) {
   return {};
 }
 
-/// What follows "R".
+/// Parses what follows "R".
 std::string_view parse_remote(std::string_view length, can::Frame& frame) {
   frame.remote = true;
   if (length.empty()) return {};
@@ -74,7 +74,8 @@ std::string_view parse_remote(std::string_view length, can::Frame& frame) {
   return {};
 }
 
-/// Cuts off the length code that a classic frame of 8 bytes bears on the bus if it is above 8, "_9" to "_F".
+/// Removes the length code, "_9" to "_F", that is appended to a classic frame of 8 bytes if its code on the bus is
+/// above 8.
 void cut_length_code(std::string_view& text) {
   if (text.size() < 2 || text[text.size() - 2] != '_' || hex_value(text.back()) <= 8) return;
   const std::string_view frame = text.substr(0, text.size() - 2);
@@ -97,7 +98,7 @@ std::string_view parse_frame(std::string_view text, can::Frame& frame) {
   return parse_data(text, frame);
 }
 
-/// Without -L candump writes for the screen: "  can0  181   [6]  37 06", with -t behind a time.
+/// Without -L, candump writes a format for the screen: "  can0  181   [6]  37 06", with -t preceded by a time.
 bool is_for_the_screen(std::string_view line) {
   const std::size_t length = line.find('[');
   return length != std::string_view::npos && line.find('#') == std::string_view::npos && line.size() > length + 1 &&

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint16_t first_range = 16;
 
-/// Big-endian numbers from the front; past the end it gives 0 and is not good().
+/// Reads big-endian numbers from the front; past the end it returns 0, and good() is false.
 class Numbers {
  public:
   explicit Numbers(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

@@ -59,7 +59,7 @@ bool Session::take(std::span<const std::uint8_t>& bytes, const scanner::Now& now
   }
 }
 
-/// CoLa A frames its text by one 0x02 and 0x03.
+/// CoLa A frames its text with single 0x02 and 0x03 characters.
 void Session::look_for_cola_a(std::span<const std::uint8_t> bytes) {
   if (bytes.size() >= 2 && bytes[0] == 0x02 && bytes[1] == 's') {
     problem_ = "the scanner answers in CoLa A (text); expected CoLa B (binary), which is set in SOPAS ET";
@@ -112,7 +112,7 @@ bool Session::take_time(const ScanData& data, const scanner::Now& now) {
   const auto device_ns = stamps_.unwrap(data.start_us);
   if (!device_ns) {
     ++counters_.stamps_back;
-    if (stamps_.lost()) restart(now);  // it has started anew behind a line that stayed up
+    if (stamps_.lost()) restart(now);  // the scanner has restarted while the connection stayed up
     return false;
   }
   const std::int64_t duration_ns =

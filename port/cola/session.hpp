@@ -1,10 +1,10 @@
-// A SICK LMS151 (or another LMS1xx) as scan lines, over CoLa B: "sEN LMDscandata 1" asks for every scan, and is
-// repeated until the scanner confirms it. Nothing of its configuration is changed: resolution and field are those that
-// were set in it, and stand in every telegram. Port 2112 must be set to CoLa B (binary); a scanner that answers in CoLa
-// A is a problem() that says so.
+// Turns a SICK LMS151 (or another LMS1xx) into scan lines, over CoLa B: "sEN LMDscandata 1" requests every scan, and is
+// repeated until the scanner confirms it. The scanner's configuration is not changed: resolution and field of view are
+// as set in it and are contained in every telegram. Port 2112 must be set to CoLa B (binary); if a scanner answers in
+// CoLa A, problem() says so.
 //
-// Time: a telegram bears the scan's start and its own transmission, microseconds of one counter of 32 bits. The
-// transmission is compared with the arrival (a lower envelope), so that the length of a scan does not matter. Source:
+// Time: a telegram contains the scan's start and its own transmission, in microseconds of one 32-bit counter. The
+// transmission is compared with the arrival (a lower envelope), so that the duration of a scan does not matter. Source:
 // SICK 8014631.
 #pragma once
 
@@ -42,7 +42,7 @@ class Session final : public scanner::Session {
   scanner::Counters counters_{};
   TelegramBuffer telegrams_;
   bool confirmed_ = false, due_ = true;
-  std::int64_t sent_ns_ = 0;  ///< steady
+  std::int64_t sent_ns_ = 0;  ///< steady clock
   scanner::StampCounter stamps_{32, 1'000};
   scanner::DeviceClock clock_{0};
   std::array<float, most_beams> ranges_m_{};

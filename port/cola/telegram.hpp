@@ -1,4 +1,4 @@
-// Telegrams of SICK's CoLa B: four bytes 0x02, a length of four bytes (big-endian, as every number here), the content,
+// Telegrams of SICK's CoLa B: four bytes 0x02, a length of four bytes (big-endian, as all numbers here), the content,
 // and the XOR of the content. The content begins with a command of three letters, a blank and a name: "sEN
 // LMDscandata". Pure, reentrant. Source: SICK, Telegram Listing for LMS1xx, 8014631, chapter on framing. Checked with
 // the telegrams printed there and in 8023198.
@@ -12,7 +12,7 @@
 
 namespace curbline::cola {
 
-/// The largest that a scanner sends: five channels of 1141 values of 16 bits, and what surrounds them.
+/// The largest telegram that a scanner sends: five channels of 1141 16-bit values, and the surrounding fields.
 inline constexpr std::size_t most_bytes = 12 * 1024;
 
 struct Format {
@@ -33,8 +33,8 @@ inline std::span<const std::uint8_t> content_of(std::span<const std::uint8_t> te
 /// True if the content begins with these letters.
 bool begins(std::span<const std::uint8_t> content, std::string_view letters);
 
-/// Frames the content that lies at `telegram[Format::header]` and on, `size` bytes of it. There must be room for
-/// header, content and sum.
+/// Frames the `size` bytes of content that start at `telegram[Format::header]`. There must be room for header, content
+/// and checksum.
 void frame(std::span<std::uint8_t> telegram, std::size_t size);
 
 }  // namespace curbline::cola

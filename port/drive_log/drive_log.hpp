@@ -1,8 +1,9 @@
-// A drive as a stream of bytes: what a board is fed, and what it gives back. In: the settings, then CAN frames, poses
-// and scan lines in the order in which a robot's computer has them (tools/drive_streams makes it of logs). Out: a
-// result a scan line, and from a board with a bus the frames as it received them. Records are the library's own structs
-// as they lie in memory: the same on every little-endian machine whose long long and double are aligned to 8 bytes, as
-// all that this project knows are. A stream lives between programs of one build; it is no format to keep.
+// A drive as a stream of bytes: the input and output of a board's test. In: the settings, then CAN frames, poses and
+// scan lines in the order in which a robot's computer receives them (tools/drive_streams makes it from logs). Out: a
+// result per scan line and, from a board with a bus, the frames as it received them. Records are the library's own
+// structs as they lie in memory: identical on every little-endian machine that aligns long long and double to 8 bytes,
+// as all platforms of this project do. A stream is exchanged between programs of one build; it is not a format for
+// storage.
 #pragma once
 
 #include <array>
@@ -25,7 +26,7 @@ namespace curbline::drive_log {
 
 enum class RecordKind : std::uint32_t { setup = 1, can_frame, pose, scan_line, result };
 
-/// Before every record; `bytes` follow.
+/// Precedes every record; `bytes` bytes follow.
 struct RecordHeader {
   RecordKind kind;
   std::uint32_t bytes;
@@ -38,7 +39,7 @@ struct Setup {
   std::optional<std::uint16_t> tilt_sync_id{};
 };
 
-/// The head of a scan line; the ranges follow as floats, NaN where nothing returned.
+/// The head of a scan line; the ranges follow as floats, NaN for no return.
 struct ScanLineHead {
   std::int64_t time_ns = 0;
 };
@@ -47,11 +48,11 @@ static_assert(std::is_trivially_copyable_v<Setup> && std::is_trivially_copyable_
               std::is_trivially_copyable_v<Pose>);
 static_assert(sizeof(can::Frame) == 88 && sizeof(Pose) == 40 && alignof(can::Signal) == 8);
 
-/// What the pipeline says after a scan line, byte for byte: header, time, status, counters, how many curbs, curbs.
+/// The pipeline's results after a scan line, byte for byte: header, time, status, counters, number of curbs, curbs.
 template <int max_curbs>
 class Result {
  public:
-  // Offsets from the end of the header, for readers.
+  // Offsets from the end of the header, for programs that read results.
   static constexpr std::size_t curbs_at = 12 + sizeof(Counters) + 4;
   static constexpr std::size_t curb_bytes = 9 * sizeof(float) + 4 * sizeof(std::uint16_t);
 

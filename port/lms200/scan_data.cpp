@@ -6,7 +6,7 @@ namespace curbline::lms200 {
 namespace {
 
 constexpr std::uint16_t count_mask = 0x03FF, partial_flag = 0x2000;
-constexpr int error_numbers = 9;  // 8183 to 8191 of 13 bits
+constexpr int error_numbers = 9;  // 8183 to 8191 with 13 bits
 
 std::uint16_t u16(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);

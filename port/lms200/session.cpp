@@ -8,19 +8,19 @@ namespace {
 
 constexpr std::int64_t patience_ns = 500'000'000;
 constexpr std::array<int, 4> bauds{500'000, 38'400, 9'600, 19'200};
-constexpr std::size_t as_brought = 1;  // of them
+constexpr std::size_t as_brought = 1;  // index of the rate to which the scanner is switched
 constexpr int tries_a_baud = 2;
 constexpr std::array<std::uint8_t, 8> stop_command{stx, 0, 2, 0, 0x20, 0x25, 0x35, 0x08};
 
-// Commands, and what they are answered by.
+// Commands and their replies.
 constexpr std::uint8_t mode = 0x20, configuration = 0x74, set_variant = 0x3B;
 constexpr std::uint8_t continuous = 0x24, request = 0x25, at_38400 = 0x40;
 constexpr std::uint8_t mode_reply = 0xA0, configuration_reply = 0xF4, variant_reply = 0xBB, scan = 0xB0,
                        power_on = 0x90;
 constexpr std::size_t measuring_mode_at = 6;  // in the reply to 74h
 
-/// Bits of the range, by measuring mode: 8 m, 16 m and 32 m in millimetres, and 15, which is 32 m without flags. 0: no
-/// ranges.
+/// Bits of the range for each measuring mode: 8 m, 16 m and 32 m in millimetres, and mode 15, which is 32 m without
+/// flags. 0: no ranges.
 int range_bits_of(std::uint8_t measuring_mode) {
   if (measuring_mode <= 2) return 13;
   if (measuring_mode <= 4) return 14;
@@ -56,7 +56,7 @@ std::span<const std::uint8_t> Session::to_send(const scanner::Now& now) {
   if (!due_) {
     if (now.steady_ns - sent_ns_ < patience_ns) return {};
     ++counters_.resent;
-    if (++tries_ == tries_a_baud) {  // nobody answers: at another speed, perhaps
+    if (++tries_ == tries_a_baud) {  // no answer: try the next speed
       baud_ = (baud_ + 1) % bauds.size();
       go_to(Step::find);
     }
@@ -97,14 +97,14 @@ bool Session::take(std::span<const std::uint8_t>& bytes, const scanner::Now& now
 
 bool Session::take_content(std::span<const std::uint8_t> content, const scanner::Now& now) {
   const std::uint8_t status = content.back();
-  if ((status & 7) >= 3) {  // 0 well, 1 and 2 information and warning, 3 and 4 error
+  if ((status & 7) >= 3) {  // 0: ok, 1 and 2: information and warning, 3 and 4: error
     ++counters_.device_errors;
     problem_ = "the scanner reports an error in its status byte";
   }
   switch (content[0]) {
     case scan:
       return step_ == Step::measuring && take_scan(content, now);
-    case power_on:  // it was switched off and on, and waits for commands
+    case power_on:  // it was power-cycled and waits for commands
       clock_.restart();
       go_to(Step::find);
       return false;

@@ -1,10 +1,12 @@
-// A SICK LMS200 (LMS2xx) on a serial line as scan lines. It is looked for at 500000, 38400, 9600 (as it is after
-// power-on) and 19200 baud, brought to 38400 from the lower two, asked for its measuring mode (74h), set to the field
-// and step of the robot's description (3Bh), and started (20h 24h). Nothing is written into its EEPROM.
+// Turns a SICK LMS200 (LMS2xx) on a serial line into scan lines. The session looks for the scanner at 500000, 38400,
+// 9600 (its rate after power-on) and 19200 baud, switches it to 38400 from the lower two, requests its measuring mode
+// (74h), sets field of view and step to those of the robot's description (3Bh), and starts it (20h 24h). It does not
+// write the EEPROM.
 //
-// Its telegrams bear no time: a line's follows from its arrival and the turns of the mirror (turn_clock.hpp), less the
-// time on the wire and the part of a turn that its field takes, to a few milliseconds. At 38400 baud the line carries 9
-// of the 75 scans a second that the scanner takes; 500000 baud, RS-422, carries all. Source: SICK 8007954.
+// The telegrams have no time stamps: a line's time is derived from its arrival and the turns of the mirror
+// (turn_clock.hpp), minus the transmission time and the part of a turn that its field of view takes, to within a few
+// milliseconds. At 38400 baud the line carries 9 of the scanner's 75 scans a second; 500000 baud, RS-422, carries all.
+// Source: SICK 8007954.
 #pragma once
 
 #include <array>
@@ -18,8 +20,8 @@ namespace curbline::lms200 {
 
 class Session final : public scanner::Session {
  public:
-  /// `beams` of the robot's laser. The scanner is set to that number if it has a field and step for it, else left as it
-  /// is.
+  /// `beams` is that of the robot's laser. The scanner is set to that number if it has a matching field and step;
+  /// otherwise it is left as it is.
   explicit Session(std::size_t beams) : telegrams_(counters_), variant_(variant_of(beams)) {}
 
   void restart(const scanner::Now& now) override;
@@ -49,12 +51,12 @@ class Session final : public scanner::Session {
   Step step_ = Step::find;
   bool due_ = true;
   int tries_ = 0;
-  std::size_t baud_ = 0;      ///< index of those it is looked for at
-  std::int64_t sent_ns_ = 0;  ///< steady
+  std::size_t baud_ = 0;      ///< index of the rate that is being tried
+  std::int64_t sent_ns_ = 0;  ///< steady clock
   std::array<std::uint8_t, 16> command_{};
   int range_bits_ = 13;
   TurnClock clock_{};
-  std::uint64_t lost_before_ = 0;  ///< telegrams, when the last line came
+  std::uint64_t lost_before_ = 0;  ///< number of lost telegrams when the last line came
   std::array<float, most_beams> ranges_m_{};
   scanner::Line line_{};
   std::string_view problem_{};

@@ -1,7 +1,7 @@
-// Telegrams of SICK's LMS2xx on a serial line: 0x02, address (0 to the scanner; 0x80 and its own from it), length u16,
-// then so many bytes (command, data and, from the scanner, its status), then a CRC u16 over all of them. Numbers are
-// little-endian. The scanner acknowledges a telegram by 0x06 before its reply, or refuses it by 0x15. Pure, reentrant.
-// Source: SICK, Telegrams for Configuring and Operating the LMS 2xx, 8007954, chapters 3 and 4.
+// Telegrams of SICK's LMS2xx on a serial line: 0x02, address (0 to the scanner; from the scanner, 0x80 plus its own),
+// length u16, that many bytes (command, data and, from the scanner, its status), then a CRC u16 over all of them.
+// Numbers are little-endian. Before its reply the scanner acknowledges a telegram with 0x06, or refuses it with 0x15.
+// Pure, reentrant. Source: SICK, Telegrams for Configuring and Operating the LMS 2xx, 8007954, chapters 3 and 4.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace curbline::lms200 {
 
-/// The longest telegram, as chapter 3 has it.
+/// The longest telegram, by chapter 3.
 inline constexpr std::size_t most_bytes = 812;
 
-/// What surrounds the content.
+/// Bytes around the content.
 inline constexpr std::size_t header_bytes = 4, crc_bytes = 2, frame_bytes = header_bytes + crc_bytes;
 
 inline constexpr std::uint8_t stx = 0x02, acknowledged = 0x06, not_acknowledged = 0x15, from_scanner = 0x80;
 
-/// Sum of a telegram without its last two bytes. SICK's own: the register is shifted by one bit a byte (polynomial
-/// 0x8005) and takes in the byte and the one before it.
+/// CRC of a telegram without its last two bytes. SICK's own variant: for each byte, the register is shifted by one bit
+/// (polynomial 0x8005) and combined with this byte and the previous one.
 constexpr std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
   unsigned crc = 0;
   std::uint8_t before = 0;
@@ -32,7 +32,7 @@ constexpr std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(crc);
 }
 
-/// Telegrams whose address has the bits of `address`.
+/// Telegrams in the direction that `address` gives: 0 to the scanner, 0x80 from it.
 template <std::uint8_t address>
 struct Format {
   static constexpr std::size_t header = header_bytes;

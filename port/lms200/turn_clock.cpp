@@ -19,7 +19,7 @@ std::int64_t TurnClock::sent_ns(std::int64_t arrival_ns, std::int64_t turns) {
   offset_.add(arrival_ns - turns_ * turn_ns, arrival_ns);
   std::int64_t time_ns = offset_.value_ns() + turns_ * turn_ns;
   if (last_ns_ != INT64_MIN)
-    time_ns = std::max(time_ns, last_ns_ + turn_ns / 2);  // an envelope that falls moves lines back
+    time_ns = std::max(time_ns, last_ns_ + turn_ns / 2);  // a falling envelope would move lines back
   last_ns_ = time_ns;
   return time_ns;
 }

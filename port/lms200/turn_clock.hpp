@@ -1,7 +1,7 @@
-// The time of scan lines that bear none, from their arrival and the mirror's steady turning. Lines come a whole number
-// of turns after each other; the count of turns is a clock, which the lower envelope of the arrivals ties to the host's
-// steady one (device_clock.hpp says why that). Bytes that wait in a driver, and are then read at once, so do not shift
-// the lines. Pure; O(1) a line.
+// Times of scan lines without time stamps, from their arrival and the steady turning of the mirror. Lines are a whole
+// number of turns apart; the count of turns is a clock, which the lower envelope of the arrivals ties to the host's
+// steady clock (device_clock.hpp gives the reason). Lines that are held back in a driver and then read together are
+// therefore not shifted. Pure; O(1) a line.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ class TurnClock {
  public:
   void restart();
 
-  /// When the last byte of a line left the scanner. `turns` after the line before, or more if it is late by more than
-  /// eight such lines: then some were lost. Times go up.
+  /// The time at which the last byte of a line left the scanner. The line comes `turns` after the previous one, or more
+  /// if it is late by more than eight such lines: then lines were lost. Times increase.
   std::int64_t sent_ns(std::int64_t arrival_ns, std::int64_t turns);
 
  private:

@@ -1,13 +1,13 @@
-// The scanner's clock to the host's. A scanner stamps its lines with a counter of its own, which starts at power-on,
-// wraps around and drifts; tilt frames bear the host's time. No I/O, heap or clock is used here: times come as
-// arguments, nanoseconds. O(1) a call; not for interrupts.
+// Converts the scanner's clock to the host's. A scanner stamps its lines with its own counter, which starts at
+// power-on, wraps around and drifts; tilt frames have the host's time. No I/O, heap or clock is used here: times are
+// arguments, in nanoseconds. O(1) a call; not for interrupts.
 //
-// It is the host's steady clock that the scanner's is compared with; Now::to_host() (session.hpp) then gives a line the
-// time to which the host's clock is set. A host's clock that is set forward looks like a line that is late, and until
-// the line after it nothing tells the one from the other; a steady clock is not set.
+// The scanner's clock is compared with the host's steady clock; Now::to_host() (session.hpp) then converts a line's
+// time to the host's adjustable clock. The alternative, a comparison with the adjustable clock, fails when that clock
+// is set forward: until the next line, this cannot be distinguished from a late line. A steady clock is never set.
 //
-// What travels only ever comes late, so the lowest of (arrival - device time) is the nearest to the offset of the
-// clocks: a lower envelope. It is taken over the last 5 to 10 s, which a drift of 50 ppm moves by half a millisecond.
+// Transmission can only delay, so the smallest (arrival - device time) is the closest to the offset of the clocks: a
+// lower envelope. It is taken over the last 5 to 10 s, in which a drift of 50 ppm moves it by half a millisecond.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace curbline::scanner {
 
-/// A counter that wraps around, as a number that does not: 24 bits of milliseconds (SCIP 2.0) wrap after 4.7 h, 32 bits
-/// of microseconds (CoLa) after 72 min. A silence may last up to half of that.
+/// Extends a counter that wraps around to one that does not: 24 bits of milliseconds (SCIP 2.0) wrap after 4.7 h, 32
+/// bits of microseconds (CoLa) after 72 min. A silence may last up to half of that.
 class StampCounter {
  public:
   StampCounter(int bits, std::int64_t tick_ns) : mask_((std::uint64_t{1} << bits) - 1), tick_ns_(tick_ns) {}
@@ -26,14 +26,15 @@ class StampCounter {
     back_ = 0;
   }
 
-  /// Nanoseconds of the counter, the first as it is read. Nothing for a stamp that goes back.
+  /// Nanoseconds of the counter, starting with the value first read. Nothing for a stamp that goes back.
   std::optional<std::int64_t> unwrap(std::uint32_t stamp);
 
-  /// True when three in a row went back: the scanner has started anew, and so should the counter and the clock.
+  /// True after three consecutive stamps that went back: the scanner has restarted, so counter and clock should be
+  /// restarted too.
   bool lost() const { return back_ >= 3; }
 
-  /// A counter that is known to be the time of a log, modulo its width: the time nearest to `near_ns` that `device_ns`
-  /// can mean.
+  /// For a counter that is known to be the time of a log modulo its width: the time nearest to `near_ns` that
+  /// `device_ns` can mean.
   std::int64_t nearest_ns(std::int64_t device_ns, std::int64_t near_ns) const;
 
  private:
@@ -43,7 +44,7 @@ class StampCounter {
   int back_ = 0;
 };
 
-/// Lowest value of the last one to two windows. Times never go back.
+/// The lowest value of the last one to two windows. Times never go back.
 class LowerEnvelope {
  public:
   explicit LowerEnvelope(std::int64_t window_ns) : window_ns_(window_ns) {}
@@ -62,24 +63,25 @@ class LowerEnvelope {
 
 class DeviceClock {
  public:
-  /// `delay_ns`: from a line's stamp to its arrival at the least, for a scanner that never gives an anchor.
+  /// `delay_ns`: the smallest delay from a line's stamp to its arrival, for a scanner that never gives an anchor.
   explicit DeviceClock(std::int64_t delay_ns) : delay_ns_(delay_ns) {}
 
   void restart();
 
-  /// A moment that the scanner told as it was: the reply to a question of the time, the time of transmission.
+  /// A time that the scanner reported as it was: in the reply to a time request, or as a time of transmission.
   void anchor(std::int64_t device_ns, std::int64_t steady_ns) { anchors_.add(steady_ns - device_ns, steady_ns); }
 
-  /// A line's stamp and arrival. Their delay is not known, but constant: lines after the first 5 s follow the drift.
+  /// A line's stamp and arrival. Their delay is unknown but constant: after the first 5 s, lines are used to follow the
+  /// drift.
   void follow(std::int64_t device_ns, std::int64_t arrival_ns);
 
-  /// Steady time of a moment of the scanner. Call anchor() or follow() before.
+  /// Converts a scanner time to steady time. Call anchor() or follow() before.
   std::int64_t to_steady(std::int64_t device_ns) const;
 
  private:
   std::int64_t delay_ns_;
   LowerEnvelope anchors_{5'000'000'000}, lines_{5'000'000'000};
-  std::int64_t first_lines_ns_ = 0;  ///< envelope of the lines' first window
+  std::int64_t first_lines_ns_ = 0;  ///< the envelope of the lines in their first window
 };
 
 }  // namespace curbline::scanner

@@ -32,7 +32,7 @@ std::int64_t steady_now_ns() {
 Now host_now() {
   Now now;
   std::int64_t least_ns = INT64_MAX;
-  for (int i = 0; i < 2; ++i) {  // interrupted between the clocks once, hardly twice in a row
+  for (int i = 0; i < 2; ++i) {  // an interruption between the clock readings is unlikely twice in a row
     const std::int64_t before_ns = steady_now_ns(), host_ns = read_clock(CLOCK_REALTIME);
     const std::int64_t took_ns = steady_now_ns() - before_ns;
     if (took_ns >= least_ns) continue;
@@ -85,12 +85,12 @@ LiveScanner::Event LiveScanner::read(port::Milliseconds patience) {
       left_ = std::span(buffer_).first(count);
       more_ = true;
     } else if (rest > look_again && steady_now_ns() - now_ns < nanoseconds(look_again) / 2) {
-      return Event::nothing;  // a signal cut the wait short
+      return Event::nothing;  // a signal ended the wait early
     }
   }
 }
 
-/// Speed first: the command must leave at the one the session has chosen.
+/// Sets the speed first: the command must be sent at the speed that the session has chosen.
 std::optional<LiveScanner::Event> LiveScanner::send_what_is_due() {
   const auto command = session_.to_send(host_now());
   if (session_.baud() != baud_) {

@@ -1,5 +1,5 @@
-// A scanner on the wire: a session (the protocol) over a byte stream, with the host's clocks. What replay and the
-// daemon read scan lines from. Nothing is allocated after it is made. One thread; not for interrupts.
+// A connected scanner: a session (the protocol) over a byte stream, with the host's clocks. replay and the daemon read
+// scan lines from it. Nothing is allocated after construction. One thread; not for interrupts.
 //
 //   scip2::Session session;
 //   LiveScanner scanner(session, std::move(stream), {.reconnect = true});
@@ -15,22 +15,22 @@
 
 namespace curbline::scanner {
 
-/// For one attempt to connect.
+/// Time limit of one attempt to connect.
 inline constexpr port::Milliseconds connect_patience{2'000};
 
 struct LiveOptions {
-  bool reconnect = true;                ///< false: a connection that ends is the end
-  port::Milliseconds retry_after{500};  ///< from one attempt to connect to the next, at the least
-  port::Milliseconds silence{3'000};    ///< without a line: the scanner is taken as lost, and connected anew
+  bool reconnect = true;                ///< false: the end of a connection is final
+  port::Milliseconds retry_after{500};  ///< at least this long between attempts to connect
+  port::Milliseconds silence{3'000};    ///< without a line: the scanner is taken to be lost and is reconnected
 };
 
 class LiveScanner {
  public:
   enum class Event : unsigned char {
     line,     ///< session.line() is new
-    nothing,  ///< not within the time given, or a signal came
-    lost,  ///< the connection ended, could not be made, or the scanner is silent. Told once until a line comes again;
-           ///< read() goes on. Where a connection that ended is the end, told each time
+    nothing,  ///< no line within the time limit, or a signal came
+    lost,     ///< the connection ended, could not be made, or the scanner is silent. Reported once until the next line
+              ///< comes; read() retries. Without reconnection, reported by every call
   };
 
   /// `session` must outlive it.
@@ -39,20 +39,24 @@ class LiveScanner {
   LiveScanner(const LiveScanner&) = delete;
   LiveScanner& operator=(const LiveScanner&) = delete;
 
-  /// Stops the scanner's stream, for which it waits half a second at most, and closes (ByteStream::close()).
+  /// Stops the scanner's stream, waiting half a second at most, and closes (ByteStream::close()).
   ~LiveScanner();
 
-  /// Connects now: waits `connect_patience` at most. 0, or the errno of what failed. read() does it by itself where it
-  /// may reconnect.
+  /// Connects now, waiting `connect_patience` at most. Returns 0, or the errno of the failure. If it may reconnect,
+  /// read() does this by itself.
   int open();
 
-  /// Waits `patience` at most; where it has to connect, `connect_patience` instead. Each command that the connection
-  /// does not take at once adds half a second at most. A serial line that is lost is closed, which may wait too.
+  /// Waits `patience` at most, or `connect_patience` if it has to connect. Each command that the connection does not
+  /// accept at once adds half a second at most. A lost serial line is closed, which may wait too.
   Event read(port::Milliseconds patience);
 
   bool is_open() const { return stream_.is_open(); }
-  std::uint64_t connections() const { return connections_; }  ///< made so far: one more than restarts survived
-  int last_error() const { return last_error_; }  ///< errno of the last attempt that failed, 0: the other side closed
+  std::uint64_t connections() const {
+    return connections_;
+  }  ///< connections made so far: one more than the restarts survived
+  int last_error() const {
+    return last_error_;
+  }  ///< errno of the last failed attempt, 0: the other side closed the connection
 
  private:
   Event reopen(port::Milliseconds patience);
@@ -64,20 +68,20 @@ class LiveScanner {
   port::ByteStream stream_;
   LiveOptions options_;
   std::array<std::uint8_t, 4096> buffer_{};
-  std::span<const std::uint8_t> left_{};                 ///< of buffer_, not yet read by the session
+  std::span<const std::uint8_t> left_{};                 ///< part of buffer_ that the session has not read yet
   bool more_ = false;                                    ///< the session may hold another line
-  bool told_lost_ = false;                               ///< and no line since
-  std::int64_t last_line_ns_ = 0, next_attempt_ns_ = 0;  ///< steady
+  bool told_lost_ = false;                               ///< and no line came since
+  std::int64_t last_line_ns_ = 0, next_attempt_ns_ = 0;  ///< steady clock
   Now received_{};
   std::uint64_t connections_ = 0;
   int last_error_ = 0;
   int baud_ = 0;
 };
 
-/// The host's clocks now: CLOCK_REALTIME, which stamps CAN frames too, and CLOCK_MONOTONIC.
+/// The current time of the host's clocks: CLOCK_REALTIME, which also stamps CAN frames, and CLOCK_MONOTONIC.
 Now host_now();
 
-/// CLOCK_MONOTONIC alone.
+/// CLOCK_MONOTONIC only.
 std::int64_t steady_now_ns();
 
 }  // namespace curbline::scanner

@@ -1,13 +1,13 @@
-// Whole telegrams from a stream of bytes that may be damaged. `Format` knows the header, the size and the check of a
-// telegram. Where a check fails only the first byte is given up, so that a telegram behind one that was cut is found
-// among the bytes held. Static memory; one copy of each byte; a check again for each header that lies within a damaged
-// telegram.
+// Extracts complete telegrams from a stream of bytes that may be damaged. `Format` defines the header, the size and the
+// checksum of a telegram. If a check fails, only the first byte is discarded, so that a telegram that follows a
+// truncated one is found among the bytes held. Static memory; each byte is copied once; the check is repeated for each
+// header found within a damaged telegram.
 //
 //   struct Format {
-//     static constexpr std::size_t header;                            bytes that tell the size
-//     static std::size_t size_of(std::span<const std::uint8_t>);      of the telegram with this header, 0: this is none
+//     static constexpr std::size_t header;                            bytes needed to determine the size
+//     static std::size_t size_of(std::span<const std::uint8_t>);      of the telegram with this header, 0: not a header
 //     static bool plausible(std::span<const std::uint8_t>);           its size is one that the device sends
-//     static bool check(std::span<const std::uint8_t>);               sum of the whole telegram
+//     static bool check(std::span<const std::uint8_t>);               checksum of the whole telegram
 //     static bool filler(std::uint8_t);                               may lie between telegrams
 //   };
 #pragma once
@@ -29,7 +29,8 @@ class TelegramBuffer {
 
   void restart() { begin_ = end_ = damaged_end_ = 0; }
 
-  /// The next telegram, valid until the next call; empty when all bytes were used. Takes the bytes used from the front.
+  /// The next telegram, valid until the next call; empty when all bytes were used. Removes the bytes used from the
+  /// front.
   std::span<const std::uint8_t> take(std::span<const std::uint8_t>& bytes) {
     while (true) {
       if (const auto telegram = next(); !telegram.empty()) return telegram;
@@ -63,7 +64,7 @@ class TelegramBuffer {
         skip();
         continue;
       }
-      counters_.cut += begin_ < damaged_end_;  // it began before the damaged one should have ended
+      counters_.cut += begin_ < damaged_end_;  // it began before the damaged telegram should have ended
       damaged_end_ = 0;
       begin_ += size;
       return held.first(size);
@@ -76,7 +77,7 @@ class TelegramBuffer {
     ++begin_;
   }
 
-  /// Telegrams end before `capacity`, so there always is room for what is left of one.
+  /// A telegram fits into `capacity`, so there is always room for the rest of one.
   void make_room() {
     if (begin_ == 0) return;
     std::copy(held_.begin() + static_cast<std::ptrdiff_t>(begin_), held_.begin() + static_cast<std::ptrdiff_t>(end_),

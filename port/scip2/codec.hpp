@@ -1,6 +1,6 @@
-// Numbers in the characters of SCIP 2.0, and its sums: six bits a character, from '0' (0x30) to 'o' (0x6F), the highest
-// first. Source: Hokuyo, Communication Protocol Specification for SCIP2.0, C-42-03320B, chapters 6 (encoding) and 7
-// (sum). Pure, reentrant.
+// Encoding of numbers as characters in SCIP 2.0, and its checksums: six bits a character, from '0' (0x30) to 'o'
+// (0x6F), most significant first. Source: Hokuyo, Communication Protocol Specification for SCIP2.0, C-42-03320B,
+// chapters 6 (encoding) and 7 (sum). Pure, reentrant.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace curbline::scip2 {
 
-/// Sum of a string: the low six bits, as a character.
+/// Checksum of a string: the low six bits of its sum, as a character.
 constexpr char sum_of(std::string_view text) {
   unsigned sum = 0;
   for (const char c : text) sum += static_cast<unsigned char>(c);
   return static_cast<char>((sum & 0x3F) + 0x30);
 }
 
-/// True if the last character is the sum of those before it.
+/// True if the last character is the checksum of those before it.
 constexpr bool sum_is_right(std::string_view line) {
   return line.size() >= 2 && line.back() == sum_of(line.substr(0, line.size() - 1));
 }
 
-/// Number of 2, 3 or 4 characters; characters outside the code give a number too: check the sum first.
+/// A number of 2, 3 or 4 characters. Characters outside the code also give a number: check the checksum first.
 constexpr std::uint32_t decode(std::string_view characters) {
   std::uint32_t value = 0;
   for (const char c : characters)

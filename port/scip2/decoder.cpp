@@ -18,7 +18,8 @@ bool is_scan_echo(std::string_view line) {
          all_digits(line.substr(2, scan_echo_size - 2));
 }
 
-/// Those of the code. A flip of one of the upper two bits leaves the sum as it is, and the character outside.
+/// Whether all characters belong to the code. Flipping one of a character's two highest bits does not change the
+/// checksum, but takes the character out of the code.
 bool all_encoded(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= 'o'; });
 }
@@ -27,7 +28,7 @@ bool is_status(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z'); });
 }
 
-/// "DMIN:23;7": the semicolon before a sum does not count.
+/// "DMIN:23;7": the semicolon before a checksum may be excluded from it.
 bool body_sum_is_right(std::string_view line) {
   const bool has_semicolon = line.size() >= 3 && line[line.size() - 2] == ';';
   return sum_is_right(line) || (has_semicolon && sum_of(line.substr(0, line.size() - 2)) == line.back());
@@ -60,7 +61,8 @@ Decoder::Event Decoder::take(std::span<const std::uint8_t>& bytes) {
       continue;
     }
     std::string_view line(line_.data(), line_size_);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);  // commands may end in CR LF, and are echoed
+    if (!line.empty() && line.back() == '\r')
+      line.remove_suffix(1);  // commands may end in CR LF, and the echo does too
     Event event = Event::none;
     if (too_long_) {
       drop(counters_.wrong_length, line);
@@ -77,7 +79,7 @@ Decoder::Event Decoder::take(std::span<const std::uint8_t>& bytes) {
 Decoder::Event Decoder::take_line(std::string_view line) {
   if (line.empty()) return end_reply();
   switch (state_) {
-    case State::echo:  // behind the stump of another echo, if that was cut
+    case State::echo:  // may follow the start of another echo that was truncated
       if (begin_scan_echo(line)) {
         counters_.cut += echo_size_ < line.size();
       } else {
@@ -133,7 +135,7 @@ void Decoder::take_status(std::string_view line) {
   }
 }
 
-/// The stamp's line, then those of the ranges.
+/// First the line of the stamp, then those of the ranges.
 void Decoder::take_ranges(std::string_view characters) {
   if (state_ == State::stamp) {
     if (characters.size() != 4) return drop(counters_.wrong_length, {});
@@ -154,8 +156,8 @@ void Decoder::take_body(std::string_view line) {
   text_[text_size_++] = '\n';
 }
 
-/// Gives the reply up until an empty line ends it; but if it was cut, the damaged line may end in the echo of the next
-/// scan.
+/// Drops the reply up to the empty line that ends it. If it was truncated, the damaged line may end in the echo of the
+/// next scan.
 void Decoder::drop(std::uint64_t& counter, std::string_view line) {
   ++counter;
   counters_.bytes_skipped += line.size() + 1;

@@ -1,7 +1,7 @@
-// The replies of a SCIP 2.0 scanner from its bytes. A reply is the echo of the command, a status of two characters and
-// its sum, lines of at most 64 characters and a sum, and an empty line. Replies to MD and MS with status 99 are scan
-// lines: a time stamp of four characters (24 bits of milliseconds), then ranges in millimetres of three (MD) or two
-// (MS) characters, which run on across the lines.
+// Decodes the replies of a SCIP 2.0 scanner from its bytes. A reply consists of the echo of the command, a status of
+// two characters with its checksum, lines of at most 64 characters with a checksum, and an empty line. Replies to MD
+// and MS with status 99 are scan lines: a time stamp of four characters (24 bits of milliseconds), then ranges in
+// millimetres of three (MD) or two (MS) characters, which may be split across lines.
 //
 //   MD0000108000000   echo: steps 0 to 1080, no clusters, every scan, without end
 //   99b               status, sum
@@ -9,7 +9,7 @@
 //   ...               64 characters, sum
 //                     empty: the end
 //
-// 10 KiB, of which the ranges take 6; a Session has 16. O(1) a byte. Source: Hokuyo C-42-03320B, chapters 7 to 9.
+// 10 KiB, of which the ranges take 6; a Session takes 16. O(1) a byte. Source: Hokuyo C-42-03320B, chapters 7 to 9.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace curbline::scip2 {
 
-inline constexpr int most_steps = 1441;  ///< a whole turn of a UTM-30LX
+inline constexpr int most_steps = 1441;  ///< a full turn of a UTM-30LX
 
 struct Scan {
   std::uint32_t stamp_ms = 0;  ///< 24 bits
@@ -29,11 +29,11 @@ struct Scan {
   std::span<const std::uint32_t> ranges_mm;  ///< below the scanner's DMIN: an error code
 };
 
-/// Any other reply. Its sums are right.
+/// Any other reply. Its checksums are valid.
 struct Reply {
   std::string_view echo;
   std::string_view status;  ///< two characters
-  std::string_view body;    ///< its lines without their sums, each ended by '\n'
+  std::string_view body;    ///< its lines without their checksums, each ended by '\n'
 };
 
 class Decoder {
@@ -44,7 +44,7 @@ class Decoder {
 
   void restart();
 
-  /// Reads to the end of the next reply and takes the bytes used from the front; none: all were used.
+  /// Reads to the end of the next reply and removes the bytes used from the front; none: all were used.
   Event take(std::span<const std::uint8_t>& bytes);
 
   const Scan& scan() const { return scan_; }     ///< valid until the next take()
@@ -72,7 +72,7 @@ class Decoder {
   std::array<char, 64> echo_{};
   std::size_t echo_size_ = 0;
   std::array<char, 2> status_{};
-  std::array<char, 3 * most_steps> text_{};  ///< of ranges, or of a reply's body
+  std::array<char, 3 * most_steps> text_{};  ///< the ranges, or the body of a reply
   std::size_t text_size_ = 0;
   std::array<std::uint32_t, most_steps> ranges_mm_{};
   Scan scan_{};

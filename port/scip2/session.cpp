@@ -14,7 +14,7 @@ constexpr std::int64_t patience_ns = 500'000'000;
 constexpr int clock_questions = 8;
 constexpr std::array<std::uint8_t, 3> stop_command{'Q', 'T', '\n'};
 
-/// The number behind "NAME:" in a reply's body; -1 if there is none.
+/// The number after "NAME:" in a reply's body; -1 if there is none.
 int field(std::string_view body, std::string_view name) {
   const std::size_t at = body.find(name);
   if (at == std::string_view::npos) return -1;
@@ -92,12 +92,13 @@ bool Session::take(std::span<const std::uint8_t>& bytes, const scanner::Now& now
 void Session::take_reply(const Reply& reply, const scanner::Now& now) {
   if (step_ == Step::measuring) return end_of_stream(reply);
   const bool good = reply.status == "00";
-  if (due_ || reply.echo != command()) return;  // of an older command
+  if (due_ || reply.echo != command()) return;  // the reply to an older command
   switch (step_) {
     case Step::stop:
-      go_to(reply.status == "0E" ? Step::clock_off : Step::scip2);  // 0E: it was left adjusting its clock
+      go_to(reply.status == "0E" ? Step::clock_off
+                                 : Step::scip2);  // 0E: it was left in the mode of adjusting its clock
       break;
-    case Step::scip2:  // a scanner that speaks nothing else may refuse
+    case Step::scip2:  // a scanner that only speaks SCIP 2.0 may refuse this
       go_to(Step::parameters);
       break;
     case Step::parameters:
@@ -126,7 +127,7 @@ void Session::take_reply(const Reply& reply, const scanner::Now& now) {
   }
 }
 
-/// It ends with a status other than 99: a fault of the scanner.
+/// A stream that ends with a status other than 99: a fault of the scanner.
 void Session::end_of_stream(const Reply& reply) {
   if (reply.echo != command()) {
     ++counters_.malformed;
@@ -176,7 +177,7 @@ bool Session::take_scan(const Scan& scan, const scanner::Now& now) {
   const auto device_ns = stamps_.unwrap(scan.stamp_ms);
   if (!device_ns) {
     ++counters_.stamps_back;
-    if (stamps_.lost()) restart(now);  // it has started anew behind a line that stayed up
+    if (stamps_.lost()) restart(now);  // the scanner has restarted while the connection stayed up
     return false;
   }
   clock_.follow(*device_ns, now.steady_ns);

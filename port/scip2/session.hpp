@@ -1,12 +1,12 @@
-// A Hokuyo UTM-30LX (or another scanner of SCIP 2.0) as scan lines. It is set up by QT (stop), SCIP2.0, PP (its steps
-// and ranges), TM (its clock), BM (laser on) and MD (every scan, all steps, three characters a range: two end at 4.095
-// m), and asked again when it does not answer within half a second.
+// Turns a Hokuyo UTM-30LX (or another SCIP 2.0 scanner) into scan lines. It is set up with QT (stop), SCIP2.0, PP (its
+// steps and ranges), TM (its clock), BM (laser on) and MD (every scan, all steps, three characters a range: two end at
+// 4.095 m). A command is repeated if it is not answered within half a second.
 //
-// Time: the stamp is that of step 0, in whole milliseconds, 24 bits; a line bears the time of its first step, which
-// comes AMIN steps of the turn later (a UTM-30LX has AMIN 0). The scanner's clock is compared with the host's by eight
-// questions TM1 before measuring (the least delayed counts; right to the millisecond of the stamp and the way there),
-// and lines follow the drift after that. Sources: Hokuyo C-42-03320B; UTM-30LX specification C-42-3615; that the stamp
-// is that of step 0 is how the driver urg_stamped reads it.
+// Time: the stamp is that of step 0, in whole milliseconds, 24 bits; a line has the time of its first step, which comes
+// AMIN steps of the turn later (a UTM-30LX has AMIN 0). Before measuring, eight TM1 requests compare the scanner's
+// clock with the host's (the one with the smallest delay counts; accurate to the millisecond of the stamp and the
+// transmission delay); after that, lines are used to follow the drift. Sources: Hokuyo C-42-03320B; UTM-30LX
+// specification C-42-3615; that the stamp is that of step 0 follows the driver urg_stamped.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@ namespace curbline::scip2 {
 
 inline constexpr int tcp_port = 10940;
 
-/// What PP says.
+/// The contents of the reply to PP.
 struct Parameters {
-  int dmin_mm = 0, dmax_mm = 0;  ///< ranges outside are no returns
+  int dmin_mm = 0, dmax_mm = 0;  ///< ranges outside mean no return
   int steps_a_turn = 0;          ///< ARES
   int first_step = 0, last_step = 0, front_step = 0;
   int turns_a_minute = 0;  ///< SCAN
 
-  /// From step 0 to the first.
+  /// From step 0 to the first step.
   std::int64_t since_step_0_ns() const {
     return std::int64_t{60'000'000'000} * first_step / (std::int64_t{turns_a_minute} * steps_a_turn);
   }
@@ -72,7 +72,7 @@ class Session final : public scanner::Session {
   Decoder decoder_;
   Step step_ = Step::stop;
   bool due_ = true;
-  std::int64_t sent_ns_ = 0;  ///< steady
+  std::int64_t sent_ns_ = 0;  ///< steady clock
   std::array<char, 24> command_{};
   std::size_t command_size_ = 0;
   int clock_asked_ = 0;

@@ -16,7 +16,7 @@ enum class Operation : std::uint32_t {
 enum class OpenMode : std::uint32_t { read_binary = 1, write_binary = 5 };
 using Word = std::uint32_t;
 
-/// Arguments lie in memory, in words; write0 alone takes the address of its text.
+/// Arguments are words in memory; only write0 takes the address of its text.
 int call(Operation operation, const void* arguments) {
   register Word r0 asm("r0") = static_cast<Word>(operation);
   register const void* r1 asm("r1") = arguments;

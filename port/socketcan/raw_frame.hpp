@@ -1,4 +1,4 @@
-// The kernel's frames to ours and back; part of socketcan.cpp.
+// Converts the kernel's frames to ours and back; part of socketcan.cpp.
 #pragma once
 
 #include <linux/can.h>
@@ -23,7 +23,7 @@ inline can::Frame to_frame(const canfd_frame& from, bool fd, std::int64_t time_n
   return out;
 }
 
-/// Whether a bus carries it.
+/// Whether a bus can carry the frame.
 inline bool sound(const can::Frame& frame) {
   if (frame.error || frame.id > (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK)) return false;
   return frame.fd ? !frame.remote && can::fd_length(frame.length) == frame.length : frame.length <= CAN_MAX_DLEN;

@@ -131,7 +131,7 @@ void SocketCan::close() {
 }
 
 bool SocketCan::set_options() {
-  // A classic interface, or a kernel older than CAN FD, refuses frames with more than 8 bytes when they are sent.
+  // A classic interface, or a kernel older than CAN FD, refuses frames with more than 8 bytes on sending.
   set_option(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1);
   if (!set_option(socket_, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer_bytes)) {
     set_option(socket_, SOL_SOCKET, SO_RCVBUF, receive_buffer_bytes);
@@ -141,7 +141,7 @@ bool SocketCan::set_options() {
          set_option(socket_, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set_option(socket_, SOL_SOCKET, SO_RXQ_OVFL, 1);
 }
 
-/// Also again: an interface that goes takes the socket's filters with it.
+/// Also called for a rebind: an interface that is removed takes the socket's filters with it.
 bool SocketCan::bind_to_interface() {
   const auto bytes = static_cast<socklen_t>(filter_count_ * sizeof(can_filter));
   if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(), bytes) != 0) return false;
@@ -154,7 +154,7 @@ bool SocketCan::bind_to_interface() {
   address.can_ifindex = index_;
   if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return false;
   if (interface_up()) return true;
-  int notice = 0;  // binding leaves word that the interface is down: known, and nothing that has happened since
+  int notice = 0;  // binding leaves an error if the interface is down; it is known already, so it is cleared
   socklen_t size = sizeof notice;
   return ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &notice, &size) == 0 && (notice == 0 || notice == ENETDOWN);
 }
@@ -188,7 +188,7 @@ int SocketCan::receive(std::span<can::Frame> out, int timeout_ms) {
   }
 }
 
-/// In batches, until nothing more is there or `out` is full; error messages take no place, so the number of batches is
+/// Reads in batches until nothing is left or `out` is full. Error messages take no place, so the number of batches is
 /// bounded.
 int SocketCan::drain(std::span<can::Frame> out) {
   std::size_t taken = 0;
@@ -211,7 +211,7 @@ int SocketCan::drain(std::span<can::Frame> out) {
 
 bool SocketCan::take(const mmsghdr& header, const Message& message, can::Frame& out) {
   std::int64_t time_ns = 0;
-  auto* const control = const_cast<msghdr*>(&header.msg_hdr);  // CMSG_NXTHDR wants it so
+  auto* const control = const_cast<msghdr*>(&header.msg_hdr);  // required by CMSG_NXTHDR
   for (cmsghdr* c = CMSG_FIRSTHDR(control); c != nullptr; c = CMSG_NXTHDR(control, c)) {
     if (c->cmsg_level != SOL_SOCKET) continue;
     if (c->cmsg_type == SO_TIMESTAMPNS) {
@@ -260,7 +260,7 @@ void SocketCan::take_error_message(const canfd_frame& frame) {
   }
 }
 
-/// The kernel tells when an interface goes, not when it comes.
+/// The kernel reports when an interface goes, not when it comes.
 void SocketCan::follow_link() {
   if (link_ == LinkState::gone && !bind_to_interface()) return;
   if (interface_up()) {
@@ -274,7 +274,7 @@ void SocketCan::set_link(LinkState state) {
   if (state == link_) return;
   if (state == LinkState::up) {
     ++counters_.times_back;
-    bus_ = BusState::active;  // setting an interface up starts its controller anew
+    bus_ = BusState::active;  // setting an interface up restarts its controller
   }
   if (state == LinkState::down && link_ == LinkState::up) ++counters_.times_down;
   if (state == LinkState::gone) ++counters_.times_gone;

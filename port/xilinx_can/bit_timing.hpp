@@ -14,9 +14,9 @@ struct BitTiming {
   int jump = 1;  ///< quanta by which a bit may be stretched or cut to follow the sender
 };
 
-/// The timing that gives exactly this rate and samples nearest to 7/8 of the bit, where CiA 301 wants it; of several,
-/// the one with the most quanta. Nothing if the clock cannot be divided so: prescaler to 256, segments to 16 and 8, at
-/// least 8 quanta a bit.
+/// The timing that gives exactly this rate and samples nearest to 7/8 of the bit, as CiA 301 recommends; of several,
+/// the one with the most quanta. Nothing if the clock cannot be divided within these limits: prescaler to 256, segments
+/// to 16 and 8, at least 8 quanta a bit.
 constexpr std::optional<BitTiming> bit_timing(std::int64_t clock_hz, std::int64_t bits_s) {
   if (clock_hz <= 0 || bits_s <= 0) return std::nullopt;
   std::optional<BitTiming> best;
@@ -27,7 +27,7 @@ constexpr std::optional<BitTiming> bit_timing(std::int64_t clock_hz, std::int64_
     if (quanta < 8 || quanta > 25) continue;
     const std::int64_t before = std::clamp<std::int64_t>((7 * quanta + 4) / 8, quanta - 8, 17);
     const std::int64_t error = std::max(8 * before - 7 * quanta, 7 * quanta - 8 * before);  // in eighths of a quantum
-    if (best && error * best_quanta >= best_error * quanta) continue;                       // as a share of the bit
+    if (best && error * best_quanta >= best_error * quanta) continue;                       // relative to the bit
     const int segment2 = static_cast<int>(quanta - before);
     best = BitTiming{prescaler, static_cast<int>(before) - 1, segment2, std::min(segment2, 4)};
     best_error = error;

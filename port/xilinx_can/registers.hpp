@@ -1,6 +1,5 @@
-// Registers of the CAN controller in Zynq-7000 and Zynq UltraScale+, and what lies in them. Source: AMD, Zynq
-// UltraScale+ Device Register Reference (UG1087), module CAN; the ids' layout: Technical Reference Manual (UG1085), CAN
-// controller.
+// Registers of the CAN controller in Zynq-7000 and Zynq UltraScale+, and their contents. Source: AMD, Zynq UltraScale+
+// Device Register Reference (UG1087), module CAN; the ids' layout: Technical Reference Manual (UG1085), CAN controller.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@ enum class Register : std::uint32_t {
   mode = 0x04,
   prescaler = 0x08,
   bit_timing = 0x0C,
-  error_status = 0x14,  ///< cleared by ones
+  error_status = 0x14,  ///< cleared by writing ones
   status = 0x18,
   interrupt_status = 0x1C,
   interrupt_enable = 0x20,
@@ -25,7 +24,7 @@ enum class Register : std::uint32_t {
   tx_length = 0x34,
   tx_data1 = 0x38,
   tx_data2 = 0x3C,
-  rx_id = 0x50,  ///< reading all four takes a frame out of the FIFO
+  rx_id = 0x50,  ///< reading all four removes a frame from the FIFO
   rx_length = 0x54,
   rx_data1 = 0x58,
   rx_data2 = 0x5C,
@@ -47,21 +46,21 @@ constexpr std::uint32_t overflow = 1u << 6, not_empty = 1u << 7, error = 1u << 8
 constexpr std::uint32_t substitute_remote = 1u << 20, extended = 1u << 19, remote = 1u << 0;
 }  // namespace bits
 
-/// An id as registers have it: the upper 11 bits at the top, then for 29 bits the lower 18.
+/// An id as in the registers: the upper 11 bits at the top, followed by the lower 18 of an id of 29 bits.
 constexpr std::uint32_t id_word(std::uint32_t id, bool extended, bool remote) {
   if (!extended) return (id & 0x7FFu) << 21 | (remote ? bits::substitute_remote : 0u);
   return (id >> 18 & 0x7FFu) << 21 | bits::substitute_remote | bits::extended | (id & 0x3FFFFu) << 1 |
          (remote ? bits::remote : 0u);
 }
 
-/// Four bytes of a frame, the first on top.
+/// Four bytes of a frame, the first in the most significant byte.
 constexpr std::uint32_t data_word(const can::Frame& frame, std::size_t first) {
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < 4; ++i) word = word << 8 | frame.data[first + i];
   return word;
 }
 
-/// The four words that the FIFO has of a frame.
+/// Converts the four words of a frame in the FIFO.
 constexpr can::Frame frame_of(const std::array<std::uint32_t, 4>& words, std::int64_t time_ns) {
   can::Frame frame;
   frame.time_ns = time_ns;
@@ -76,7 +75,7 @@ constexpr can::Frame frame_of(const std::array<std::uint32_t, 4>& words, std::in
   return frame;
 }
 
-/// Where they are in memory.
+/// Registers in memory.
 class MemoryRegisters {
  public:
   explicit MemoryRegisters(std::uintptr_t base) : base_(base) {}

@@ -1,26 +1,26 @@
-// A CAN controller of a Zynq-7000 or Zynq UltraScale+ without an operating system: bus -> XilinxCan -> can::TiltDecoder
-// -> TiltTrack.
+// Driver for a CAN controller of a Zynq-7000 or Zynq UltraScale+ without an operating system: bus -> XilinxCan ->
+// can::TiltDecoder -> TiltTrack.
 //
-//   XilinxCan bus{MemoryRegisters{0xFF060000}};                   // CAN0; its clock and pins are the boot loader's
+//   XilinxCan bus{MemoryRegisters{0xFF060000}};                   // CAN0; the boot loader sets up its clock and pins
 //   const std::array filters{filter_of(signal)};
 //   if (bus.open({.clock_hz = 100'000'000}, filters) != Status::ok) ...
 //   std::array<can::Frame, 8> frames;
 //   const int n = bus.receive(frames, now_ns);
 //
-// Poll receive(), faster than the servo reports; or call it from the controller's interrupt, whose line is up while a
-// frame waits, and receive({}, now_ns) from the main loop a few times a second besides, which takes no frame and ends
-// bus-off. A frame's time is that which receive() was given, on the caller's clock, and of frames of one time TiltTrack
-// takes the first. The controller's own stamp is not used: 16 bits of a clock that no laser shares. The FIFO holds 64
-// frames, 3 ms of a full bus at 1 Mbit/s.
+// Poll receive() faster than the servo reports. Or call it from the controller's interrupt, which is raised while a
+// frame waits; then also call receive({}, now_ns) from the main loop a few times a second, which takes no frame and
+// ends bus-off. A frame's time is the one passed to receive(), on the caller's clock; of several frames with the same
+// time TiltTrack takes the first. The controller's own stamp is not used: 16 bits of a clock that no laser shares. The
+// FIFO holds 64 frames, 3 ms of a full bus at 1 Mbit/s.
 //
-// No call may interrupt another of the same object. With receive() in the interrupt, whatever the main loop calls, it
-// calls on the same core and with that interrupt masked: by something that the compiler moves no memory access across,
-// such as CMSIS's __disable_irq(). From two cores or threads: a lock is the caller's.
+// No call may interrupt another on the same object. With receive() in the interrupt, the main loop makes all its calls
+// on the same core and with that interrupt masked, in a way across which the compiler moves no memory access, such as
+// CMSIS's __disable_irq(). With two cores or threads, the caller must provide a lock.
 //
-// What goes wrong on a bus is counted and survived: an overflow, broken frames, bus-off (the controller is reset and
-// set up anew after Settings::restart_after_ns). open(), self_test() and a receive() that ends bus-off wait for the
-// controller, for each of up to three modes 100,000 reads of a register at most, some 10 ms; nothing else waits. No
-// heap. Registers is MemoryRegisters, or what a test has instead. Source: UG1085 and UG1087, see registers.hpp.
+// Faults on a bus are counted and survived: an overflow, broken frames, bus-off (the controller is reset and set up
+// again after Settings::restart_after_ns). open(), self_test() and a receive() that ends bus-off wait for the
+// controller: for each of up to three modes, 100,000 reads of a register at most, some 10 ms. Nothing else waits. No
+// heap. Registers is MemoryRegisters, or a test's replacement. Source: UG1085 and UG1087, see registers.hpp.
 #pragma once
 
 #include <algorithm>
@@ -38,12 +38,12 @@ namespace curbline::xilinx_can {
 
 enum class Status : std::uint8_t {
   ok,
-  bad_bit_rate,      ///< the clock cannot be divided to it
+  bad_bit_rate,      ///< the clock cannot be divided down to it
   too_many_filters,  ///< more than max_filters
   no_answer,         ///< the controller does not change its mode: no clock, or another device
   self_test_failed,  ///< what came back is not what was sent
-  queue_full,        ///< nothing can be sent yet: no other node acknowledges, or the bus is full
-  bad_frame,         ///< none of a classic bus
+  queue_full,        ///< nothing can be sent yet: no other node acknowledges, or the bus is busy
+  bad_frame,         ///< not a frame of a classic bus
   bus_off,           ///< nothing can be sent until the controller has been restarted
   not_open,
 };
@@ -51,18 +51,19 @@ enum class Status : std::uint8_t {
 struct Settings {
   std::int64_t clock_hz = 0;  ///< of the controller, CAN_REF_CLK
   std::int64_t bits_s = 500'000;
-  std::int64_t restart_after_ns = 100'000'000;  ///< bus-off lasts so long; at 0 a broken bus would never be left alone
+  std::int64_t restart_after_ns =
+      100'000'000;  ///< duration of bus-off; with 0 a broken bus would be disturbed without pause
 };
 
 using can::Filter, can::filter_of;
 
 enum class BusState : std::uint8_t { closed, active, warning, passive, off };
 
-/// Everything only grows, and begins anew at 2^32. A healthy bus sees nothing but `frames` and `sent`.
+/// These only grow, and wrap around at 2^32. On a healthy bus only `frames` and `sent` do.
 struct Counters {
   std::uint32_t frames = 0, sent = 0, not_sent = 0;
-  std::uint32_t overflows = 0;   ///< times that the FIFO was found to have lost frames
-  std::uint32_t bus_errors = 0;  ///< times that broken frames, or ones nobody acknowledged, were found
+  std::uint32_t overflows = 0;   ///< how often the FIFO was found to have lost frames
+  std::uint32_t bus_errors = 0;  ///< how often broken or unacknowledged frames were found
   std::uint32_t times_bus_off = 0, restarts = 0;
 };
 
@@ -73,27 +74,27 @@ class XilinxCan {
 
   explicit XilinxCan(Registers registers) : registers_(registers) {}
 
-  /// Sets the controller up and joins the bus. Without a filter every frame comes in. May be called again. If it fails
-  /// the controller is closed: in reset, off the bus, its interrupt off.
+  /// Sets the controller up and joins the bus. Without a filter every frame is received. May be called again. On
+  /// failure the controller is closed: in reset, off the bus, its interrupt off.
   Status open(const Settings& settings, std::span<const Filter> filters);
 
-  /// Sends frames of both kinds to itself, off the bus, and looks at what comes back. Then the controller is closed, as
-  /// after an open() that failed.
+  /// Sends frames of both kinds to itself, off the bus, and compares what comes back. Afterwards the controller is
+  /// closed, as after a failed open().
   Status self_test(const Settings& settings);
 
-  /// Fills `out` from its start with the frames that have come, oldest first, and returns how many; what has no room
-  /// stays for the next call. Follows the bus's state, which counts errors and ends bus-off.
+  /// Fills `out` from its start with the received frames, oldest first, and returns their number; frames without room
+  /// stay for the next call. Also follows the state of the bus: counts errors and ends bus-off.
   int receive(std::span<can::Frame> out, std::int64_t now_ns);
 
   /// Queues a frame; does not wait.
   Status send(const can::Frame& frame);
 
   BusState bus() const { return bus_; }
-  Counters counters() const { return counters_; }  ///< a copy, to be looked at with the interrupt on again
+  Counters counters() const { return counters_; }  ///< a copy, so that it can be read after the interrupt is unmasked
   Registers& registers() { return registers_; }
 
  private:
-  static constexpr int patience = 100'000;  ///< reads
+  static constexpr int patience = 100'000;  ///< in reads of a register
 
   void reset() { registers_.write(Register::software_reset, bits::reset); }
   void close();
@@ -129,14 +130,15 @@ Status XilinxCan<Registers>::open(const Settings& settings, std::span<const Filt
   return start(0);
 }
 
-/// In reset no interrupt is enabled. One of a closed bus would come for ever: receive() no longer takes what raised it.
+/// In reset no interrupt is enabled. The interrupt of a closed bus would never end, because receive() no longer removes
+/// its cause.
 template <typename Registers>
 void XilinxCan<Registers>::close() {
   bus_ = BusState::closed;
   reset();
 }
 
-/// From reset into `mode`, or back to reset.
+/// Enters `mode` from reset; on failure, returns to reset.
 template <typename Registers>
 Status XilinxCan<Registers>::start(std::uint32_t mode) {
   if (!set_up(mode)) {
@@ -171,7 +173,7 @@ bool XilinxCan<Registers>::wait(std::uint32_t status_mask, std::uint32_t wanted)
   return false;
 }
 
-/// A filter may be written only while it is off and the controller does not use it.
+/// A filter may be written only while it is off and not in use by the controller.
 template <typename Registers>
 bool XilinxCan<Registers>::set_filters() {
   registers_.write(Register::filter_enable, 0);
@@ -179,7 +181,7 @@ bool XilinxCan<Registers>::set_filters() {
   for (std::size_t i = 0; i < filter_count_; ++i) {
     const Filter& f = filters_[i];
     const std::uint32_t kind =
-        bits::extended | (f.extended ? bits::remote : bits::substitute_remote);  // compared beside the id
+        bits::extended | (f.extended ? bits::remote : bits::substitute_remote);  // compared in addition to the id
     const std::uint32_t mask = (id_word(f.mask, f.extended, false) & ~bits::substitute_remote) | kind;
     const auto offset = static_cast<std::uint32_t>(8 * i);
     registers_.write(Register{static_cast<std::uint32_t>(Register::filter_mask1) + offset}, mask);
@@ -205,7 +207,7 @@ int XilinxCan<Registers>::receive(std::span<can::Frame> out, std::int64_t now_ns
 
 template <typename Registers>
 bool XilinxCan<Registers>::take(can::Frame& frame, std::int64_t now_ns) {
-  // The flag stays after the last frame; cleared, it is set again while the FIFO holds one.
+  // The flag stays set after the last frame; if cleared, it is set again while the FIFO holds a frame.
   registers_.write(Register::interrupt_clear, bits::not_empty);
   if ((registers_.read(Register::interrupt_status) & bits::not_empty) == 0) return false;
   std::array<std::uint32_t, 4> words;
@@ -287,7 +289,7 @@ Status XilinxCan<Registers>::self_test(const Settings& settings) {
   return status;
 }
 
-/// Whether the controller hears what it says.
+/// Whether the controller receives what it sends.
 template <typename Registers>
 Status XilinxCan<Registers>::echo(const can::Frame& frame) {
   if (const Status status = send(frame); status != Status::ok) return status;
