@@ -122,8 +122,7 @@ void Daemon::run() {
 
 /// Waits for work. False on a signal to stop.
 bool Daemon::wait() {
-  const bool listens =
-      has_bus_ && bus_.link() == socketcan::LinkState::up;  // if it is down, its descriptor is always ready
+  const bool listens = has_bus_ && bus_.link() == socketcan::LinkState::up;  // if down, its descriptor is always ready
   std::array<pollfd, 5> ready{{{signals_, POLLIN, 0},
                                {server_.descriptor(), POLLIN, 0},
                                {inbox_.descriptor(), POLLIN, 0},

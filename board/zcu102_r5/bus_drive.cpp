@@ -29,8 +29,7 @@ class Wire {
   bool carry(const can::Frame& frame, auto&& take) {
     if (!started_) clock_.start(frame.time_ns - before_first_ns);
     started_ = true;
-    clock_
-        .skip();  // excludes the time of the pipeline and of the host's files, for which an emulated core is no measure
+    clock_.skip();  // excludes the pipeline and the host's files: an emulated core is no measure of their time
     while (clock_.now_ns() < frame.time_ns) {
     }
     can::Frame other = frame;

@@ -30,8 +30,7 @@ void LowerEnvelope::add(std::int64_t value_ns, std::int64_t now_ns) {
   if (empty()) window_start_ns_ = now_ns;
   const std::int64_t since_ns = now_ns - window_start_ns_;
   if (since_ns >= window_ns_) {
-    before_ =
-        since_ns < 2 * window_ns_ ? now_ : value_ns;  // no value in a whole window: the previous one is out of date
+    before_ = since_ns < 2 * window_ns_ ? now_ : value_ns;  // a whole window without values: now_ is out of date
     now_ = none;
     window_start_ns_ = now_ns;
   }

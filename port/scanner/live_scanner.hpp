@@ -51,12 +51,8 @@ class LiveScanner {
   Event read(port::Milliseconds patience);
 
   bool is_open() const { return stream_.is_open(); }
-  std::uint64_t connections() const {
-    return connections_;
-  }  ///< connections made so far: one more than the restarts survived
-  int last_error() const {
-    return last_error_;
-  }  ///< errno of the last failed attempt, 0: the other side closed the connection
+  std::uint64_t connections() const { return connections_; }  ///< made so far: one more than restarts survived
+  int last_error() const { return last_error_; }  ///< errno of the last failed attempt, 0: closed by the other side
 
  private:
   Event reopen(port::Milliseconds patience);

@@ -61,8 +61,7 @@ Decoder::Event Decoder::take(std::span<const std::uint8_t>& bytes) {
       continue;
     }
     std::string_view line(line_.data(), line_size_);
-    if (!line.empty() && line.back() == '\r')
-      line.remove_suffix(1);  // commands may end in CR LF, and the echo does too
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);  // commands may end in CR LF, and so their echoes
     Event event = Event::none;
     if (too_long_) {
       drop(counters_.wrong_length, line);

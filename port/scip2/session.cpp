@@ -95,8 +95,7 @@ void Session::take_reply(const Reply& reply, const scanner::Now& now) {
   if (due_ || reply.echo != command()) return;  // the reply to an older command
   switch (step_) {
     case Step::stop:
-      go_to(reply.status == "0E" ? Step::clock_off
-                                 : Step::scip2);  // 0E: it was left in the mode of adjusting its clock
+      go_to(reply.status == "0E" ? Step::clock_off : Step::scip2);  // 0E: it was left in clock adjustment
       break;
     case Step::scip2:  // a scanner that only speaks SCIP 2.0 may refuse this
       go_to(Step::parameters);

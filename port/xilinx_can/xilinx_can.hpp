@@ -51,8 +51,7 @@ enum class Status : std::uint8_t {
 struct Settings {
   std::int64_t clock_hz = 0;  ///< of the controller, CAN_REF_CLK
   std::int64_t bits_s = 500'000;
-  std::int64_t restart_after_ns =
-      100'000'000;  ///< duration of bus-off; with 0 a broken bus would be disturbed without pause
+  std::int64_t restart_after_ns = 100'000'000;  ///< duration of bus-off; 0 would disturb a broken bus without pause
 };
 
 using can::Filter, can::filter_of;
