@@ -13,17 +13,17 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double band_tolerance_m = 0.1, match_tolerance_m = 0.15;
 constexpr std::array<double, 4> tolerances_m{0.05, 0.1, 0.15, 0.3};
 constexpr double reach_m = tolerances_m.back() + spacing_m;
-constexpr double least_m = 0.01;  // of a true step: where it has run out there is none to be found
+constexpr double least_m = 0.01;  // of a true step: below this there is nothing to be found
 constexpr double low_m = 0.02, high_m = 0.04;
 
-/// A place on a found step, with the true step that is nearest.
+/// A place on a found step, compared with the nearest true step.
 struct FoundSample {
   double height_m = 0;
   double distance_m = std::numeric_limits<double>::infinity();
-  double height_error_m = nan;  ///< found less true
+  double height_error_m = nan;  ///< found minus true
 };
 
-/// Nearest of the truth's samples to any place, by looking along their 5 cm only.
+/// Finds the nearest of the truth's samples, each of which covers 5 cm along its step.
 class Nearest {
  public:
   Nearest(const std::vector<TruthSample>& samples, const std::optional<Point2>& robot)
@@ -62,7 +62,7 @@ std::vector<FoundSample> found_samples(const Found& found, const Nearest& neares
   return out;
 }
 
-/// A sample that is visible, with the found step that is nearest.
+/// A visible sample, with the nearest found step.
 struct TruthDistance {
   std::size_t curb;
   double height_m, distance_m, found_height_m;
@@ -97,7 +97,7 @@ double share_within(const std::vector<Sample>& samples, double tolerance_m, Coun
   return all > 0 ? static_cast<double>(near) / all : nan;
 }
 
-/// Errors in standard deviations, weighted.
+/// Weighted errors in units of their standard deviations.
 class NormalisedErrors {
  public:
   void add(double error, double weight) {

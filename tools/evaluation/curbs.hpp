@@ -1,4 +1,4 @@
-// How well curbs agree with the truth, by samples every 5 cm along both.
+// Agreement of curbs with the truth, by samples every 5 cm along both.
 #pragma once
 
 #include <functional>
@@ -15,15 +15,15 @@ struct Segment {
 
 Segment line_of(const MapCurb& curb);
 
-/// From sample to sample, at the most.
+/// Largest distance between samples.
 inline constexpr double spacing_m = 0.05;
 
 struct SegmentSample {
   Point2 at;
-  double share;  ///< of the segment: 0 at its start, 1 at its end
+  double share;  ///< position within the segment: 0 at its start, 1 at its end
 };
 
-/// In the middles of parts of one length.
+/// At the centres of parts of equal length.
 std::vector<SegmentSample> samples_of(const Segment& segment);
 
 double distance_m(double x_m, double y_m, const Segment& segment);
@@ -32,8 +32,8 @@ struct Rates {
   double precision = 0, recall = 0, f1 = 0;
 };
 
-/// Share of the found samples that lie within the tolerance of a true line, and of the true samples within it of a
-/// found one; only samples for which counts(x, y) is true.
+/// The share of the found samples within the tolerance of a true line, and of the true samples within the tolerance of
+/// a found one; only samples for which counts(x, y) is true.
 Rates curb_rates(std::span<const MapCurb> found, std::span<const Segment> truth, double tolerance_m,
                  const std::function<bool(double, double)>& counts);
 

@@ -18,12 +18,12 @@ namespace curbline::tools {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t least_cells = 8;   ///< of a plane whose slope is worth comparing
-constexpr double most_places = 1 << 24;  ///< seen or not, 64 windows of the largest
+constexpr std::size_t least_cells = 8;   ///< minimum for a plane whose slope is compared
+constexpr double most_places = 1 << 24;  ///< seen or not: as many as 64 of the largest windows have
 
 using Cells = std::vector<const LabelledCell*>;
 
-/// The places of cells along one axis: the file of labels does not say how far apart they are.
+/// The positions of cells along one axis: the file of labels does not state their spacing.
 struct Axis {
   double low_m = 0, pitch_m = 1;
   double count = 1;
@@ -41,7 +41,7 @@ Axis axis_of(const std::vector<LabelledCell>& cells, double LabelledCell::*axis)
   return {at.front(), steps > 0 ? whole_m / steps : 1, steps + 1};
 }
 
-/// The line of labels.csv, below its header, that lies farthest from the middle one of the rows.
+/// The line of labels.csv, below its header, that is farthest from the median of the rows.
 long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*axis) {
   std::vector<double> at;
   for (const LabelledCell& cell : cells) at.push_back(cell.*axis);
@@ -71,7 +71,7 @@ std::size_t place_of(const LabelledCell& cell, const Grid& grid) {
                  static_cast<int>((cell.y_m - grid.y0_m) / grid.dy_m));
 }
 
-/// Numbers all that is connected with cell (i, j) and lies on its plane.
+/// Numbers all cells that are connected with cell (i, j) and belong to its plane.
 void flood(const Grid& grid, const std::vector<int>& planes, int i, int j, int number, std::vector<int>& parts) {
   std::vector<std::pair<int, int>> open{{i, j}};
   const int plane = planes[grid.at(i, j)];
@@ -101,13 +101,13 @@ std::vector<int> parts_of(const Grid& grid, const Truth& truth) {
   return parts;
 }
 
-/// NaN where there is nothing to be measured.
+/// NaN if there is nothing to measure.
 struct VMeasures {
   double ground = nan, readings = nan;
 };
 
-/// Against the connected parts of the true planes, as regions drawn by hand are: two pavements of one height on either
-/// side of a road are two. What hides the ground, a shadow or what stands on it, does not part it.
+/// Compared with the connected parts of the true planes, like regions drawn by hand: two pavements of one height on
+/// either side of a road are two parts. What hides the ground, a shadow or an object on it, does not separate parts.
 VMeasures v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
   if (cells.empty()) return {};
   const Grid grid = grid_of(cells);
@@ -141,7 +141,7 @@ int plane_of_most(const Cells& cells, const Truth& truth) {
   return std::max_element(count.begin(), count.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
 }
 
-/// A plane about the middle of its cells.
+/// A plane, parametrised about the centroid of its cells.
 struct Fit {
   double x_m = 0, y_m = 0, z_m = 0, sx = 0, sy = 0;
   double height_m(Point2 p) const { return z_m + sx * (p.x - x_m) + sy * (p.y - y_m); }
@@ -169,9 +169,9 @@ Fit least_squares(const Cells& cells) {
   return out;
 }
 
-/// Of the cells that lie within three standard deviations of it, as the median tells them: those that a step crosses
-/// bear the label of one of its sides and hold both. Half of the cells remain at least. Ends when as many remain as
-/// before, or after ten passes.
+/// Fits the cells within three standard deviations, estimated by the median, of the plane: a cell crossed by a step has
+/// the label of one side but contains both. At least half of the cells remain. Ends when the number of cells no longer
+/// changes, or after ten passes.
 Fit fit(const Cells& cells) {
   Fit out = least_squares(cells);
   Cells near = cells;
@@ -189,7 +189,7 @@ Fit fit(const Cells& cells) {
   return out;
 }
 
-/// In the middle of the fit.
+/// At the centroid of the fit.
 double angle_rad(const Fit& a, const SurfacePlane& b) {
   const Point2 slope = b.slope({a.x_m, a.y_m});
   const Eigen::Vector3d n(-a.sx, -a.sy, 1), m(-slope.x, -slope.y, 1);

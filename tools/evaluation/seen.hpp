@@ -1,4 +1,5 @@
-// Where the robot saw the ground: within a cell of 10 cm of a valid one. What it never saw is neither missed nor false.
+// Where the robot saw the ground: within one 10 cm cell of a valid cell. Curbs elsewhere count neither as missed nor as
+// false.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The program's commands. Each adds itself to the command line and runs when it is chosen.
+// The program's commands. Each adds itself to the command line and runs when it is selected.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// Scores against truth: the two things that `curbline evaluate` does.
+// Scores against truth: the two modes of `curbline evaluate`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,20 +10,20 @@
 namespace curbline::tools {
 
 struct EvaluateOptions {
-  std::string dir;                  ///< that simulate wrote
-  std::optional<MapMethod> method;  ///< without: labels.csv and curbs.csv of DIR if both are there, else curbline
-  std::string picture;              ///< file; empty: none
+  std::string dir;                  ///< written by simulate
+  std::optional<MapMethod> method;  ///< if empty: labels.csv and curbs.csv of DIR if both are there, otherwise curbline
+  std::string picture;              ///< file; empty: no picture
 };
 
-/// Replays the logs of DIR and scores labels, planes and curbs against truth.json; beside them what crf-em makes of the
-/// same sweep (where the robot stood and the window has at most 6400 cells) and the paper's figure, where it has one.
-/// Prints a table; returns the figures. evaluation/scores.hpp says what each is.
+/// Replays the logs of DIR and scores labels, planes and curbs against truth.json. For comparison it adds the scores of
+/// crf-em on the same sweep (if the robot stood and the window has at most 6400 cells) and the paper's figure, if there
+/// is one. Prints a table; returns the figures, which evaluation/scores.hpp explains.
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print);
 
-/// The paper's own tables on a folder of clouds with hand-drawn regions (scan-NN.xyz, scan-NN.gt): V by cloud in x, y
-/// in [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference;
-/// for curbline also from the raw streams (scan-NN.carmen, scan-NN.candump), where all are there, one after the other
-/// through one pipeline with the robot that ships as clausius.toml.
+/// The paper's tables on a folder of clouds with hand-drawn regions (scan-NN.xyz, scan-NN.gt): V of each cloud in x, y
+/// in [0, 4] m and the RMSE of prediction between the clouds scan-03 to scan-12, for curbline and for the reference. If
+/// all raw streams are there (scan-NN.carmen, scan-NN.candump), also for curbline on these: one after the other through
+/// one pipeline with the robot that ships as clausius.toml.
 nlohmann::json evaluate_paper(const std::string& data, bool print);
 
 }  // namespace curbline::tools

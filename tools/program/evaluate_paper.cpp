@@ -76,7 +76,7 @@ MeanSd mean_sd(const std::vector<double>& values) {
   return out;
 }
 
-/// Of all clouds, or of those from one place.
+/// Over all clouds, or over those from one place.
 MeanSd mean_v(const std::vector<PaperCloud>& clouds, double PaperCloud::*v, bool all) {
   std::vector<double> values;
   for (const PaperCloud& cloud : clouds) {
@@ -85,7 +85,7 @@ MeanSd mean_v(const std::vector<PaperCloud>& clouds, double PaperCloud::*v, bool
   return mean_sd(values);
 }
 
-/// Mean over training clouds of the mean over the others; NaN if there are no two.
+/// Mean over training clouds of the mean over the others; NaN if there are fewer than two.
 double prediction(std::span<const Map> maps) {
   std::vector<double> of_training;
   for (const Map& trained : maps) {
@@ -98,8 +98,8 @@ double prediction(std::span<const Map> maps) {
   return of_training.empty() ? std::nan("") : mean_sd(of_training).mean;
 }
 
-/// Each sweep by itself, from its points as a pipeline has them that the sweeps went through one after the other: with
-/// the angle of each beam's time, and the tilt latency that it found, in the end. None if a stream is missing.
+/// Maps each sweep separately, from its points as projected by one pipeline that all sweeps go through in turn: with
+/// the tilt angle at each beam's time and the tilt latency estimated at the end. Empty if a stream is missing.
 std::vector<Map> map_streams(const std::string& data, const std::vector<PaperCloud>& clouds) {
   const std::string robot_file = shipped_file("robots", "clausius");
   if (robot_file.empty()) return {};
@@ -108,7 +108,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   auto pipeline = make_host_pipeline(robot);
   struct Sweep {
     std::vector<Point> points;
-    float mended_s;  ///< before the next
+    float mended_s;  ///< the correction before the next sweep
   };
   std::vector<Sweep> sweeps;
   for (const PaperCloud& cloud : clouds) {
@@ -134,7 +134,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   return maps;
 }
 
-/// Root mean square of the difference of two maps' cells, the worst pair of all.
+/// Root mean square of the difference of two maps' cells, for the worst pair.
 double worst_pair(std::span<const Map> maps) {
   double worst = maps.size() > 1 ? 0 : std::nan("");
   for (const Map& a : maps) {
@@ -144,7 +144,7 @@ double worst_pair(std::span<const Map> maps) {
 }
 
 struct Predictions {
-  double curbline = 0, streamed = 0, reference = 0, worst_pair = 0;  ///< NaN where there is nothing to compare
+  double curbline = 0, streamed = 0, reference = 0, worst_pair = 0;  ///< NaN if there is nothing to compare
 };
 
 Predictions predictions(const std::vector<PaperCloud>& clouds, std::span<const Map> streamed) {

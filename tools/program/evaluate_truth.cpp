@@ -14,27 +14,27 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double tolerance_m = 0.1;                 ///< one cell of the usual grid: a match
-constexpr double found_share = 0.5;                 ///< of a curb's visible length, for it to count as found
-constexpr double least_visible_m = 0.3;             ///< a few cells: less is nothing to judge by
+constexpr double tolerance_m = 0.1;      ///< one cell of the default grid: within it, curbs match
+constexpr double found_share = 0.5;      ///< minimum share of a curb's visible length for it to count as found
+constexpr double least_visible_m = 0.3;  ///< a few cells: shorter curbs are not scored
 constexpr std::size_t most_reference_cells = 6400;  ///< the reference takes minutes for more
 
-/// All that is scored, and what it is scored with.
+/// Everything that is scored, and the truth it is scored against.
 struct Evaluation {
   Truth truth;
-  std::optional<RecordedRun> run;  ///< of the logs, where there are logs
+  std::optional<RecordedRun> run;  ///< from the logs, if there are logs
   Found found;
   Seen seen;
-  std::optional<Found> reference;  ///< what crf-em makes of the same sweep
+  std::optional<Found> reference;  ///< the results of crf-em on the same sweep
 };
 
-/// By a method for whole clouds, which are seen from their origin.
+/// Results of a method for whole clouds, which are seen from their origin.
 Found found_in(const Map& map) {
   return {{labelled_cells(map)}, map.curbs, Point2{0, 0}};
 }
 
-/// What replay left in DIR: the labels of the last window and the curbs of the whole way. Its window may be another
-/// than the robot's, so that of one that stood the labels say what was seen.
+/// Takes the results that replay left in DIR: the labels of the last window and the curbs of the whole path. Its window
+/// may differ from the robot's, so for a robot that stood the labels define what was seen.
 void take_results(const std::string& dir, Evaluation& e) {
   if (e.found.windows.empty()) e.found.windows.emplace_back();
   e.found.windows.back() = read_labels(dir + "/labels.csv");
@@ -43,7 +43,7 @@ void take_results(const std::string& dir, Evaluation& e) {
   for (const LabelledCell& cell : e.found.windows.back()) e.seen.add(cell.x_m, cell.y_m);
 }
 
-/// Throws BadInput if there is neither a result nor a log.
+/// Throws BadInput if there are neither results nor logs.
 Evaluation evaluate_recording(const EvaluateOptions& options) {
   const std::string& dir = options.dir;
   const bool results = std::filesystem::exists(dir + "/labels.csv") && std::filesystem::exists(dir + "/curbs.csv");
@@ -72,7 +72,7 @@ Evaluation evaluate_recording(const EvaluateOptions& options) {
   return e;
 }
 
-/// One true step, as the first table and "curbs" have it.
+/// One true step, as in the first table and in "curbs".
 struct CurbRow {
   Segment line;
   CurbMatch match;
@@ -147,7 +147,7 @@ nlohmann::json to_json(const Scored& s) {
   return out;
 }
 
-/// Of all kinds, creases too.
+/// Rates over all kinds of curbs, including creases.
 Rates all_rates(const Evaluation& e) {
   std::vector<Segment> lines;
   for (const TruthCurb& c : e.truth.curbs) lines.push_back(line_of(c));
@@ -170,7 +170,7 @@ void draw(const Evaluation& e, const EvaluateOptions& options) {
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   const Evaluation e = evaluate_recording(options);
   if (e.run && !e.run->remarks.empty()) std::cerr << e.run->remarks << '\n';
-  if (!options.picture.empty()) draw(e, options);  // it may be refused: before anything is printed
+  if (!options.picture.empty()) draw(e, options);  // before anything is printed, because it may be refused
   const Scored here = scored(e.found, e.truth, e.seen);
   std::optional<Scored> reference;
   if (e.reference) reference = scored(*e.reference, e.truth, e.seen);

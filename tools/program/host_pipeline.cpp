@@ -61,7 +61,7 @@ class PipelineOf final : public HostPipeline {
   }
 
  private:
-  /// By the slopes of both planes.
+  /// From the slopes of both planes.
   void set_rise(const Curb& curb, MapCurb& out) const {
     if (!is_step(curb) || curb.near_label == no_label || curb.far_label == no_label) return;
     const Plane &near = pipeline_.plane(curb.near_label), &far = pipeline_.plane(curb.far_label);
@@ -107,7 +107,7 @@ bool fits(const Settings& settings) {
          settings.laser.beams <= limits.beams;
 }
 
-/// What is wrong with the settings is wrong with the robot's file.
+/// Reports errors in the settings as errors in the robot's file.
 template <typename Make>
 std::unique_ptr<HostPipeline> of_robot(const Robot& robot, Make&& make) {
   try {

@@ -1,5 +1,4 @@
-// The pipeline of the firmware on the host: the same template, with limits chosen at run time by the size of the
-// window.
+// The firmware's pipeline on the host: the same template, with limits chosen at run time by the size of the window.
 #pragma once
 
 #include <memory>
@@ -16,9 +15,11 @@ namespace curbline::tools {
 
 /// Limits of the firmware boards: 40 x 40 cells, 16 planes, 1081 beams.
 inline constexpr Limits board_limits{};
-/// The same for live streams: tilt readings of a servo of 1 kHz, and poses, for as long as a line may wait for either.
+/// The same for live streams: room for the tilt readings of a 1 kHz servo, and for poses, for as long as a line may
+/// wait for either.
 inline constexpr Limits live_limits{.tilt_samples = 1024, .poses = 256};
-/// For larger windows on the host. A leaf a cell is the worst case; one in three is more than streets need.
+/// For larger windows on the host. The worst case is one leaf a cell; one leaf for three cells is more than streets
+/// need.
 inline constexpr Limits wide_limits{.rows = 128,
                                     .cols = 128,
                                     .planes = 64,
@@ -30,7 +31,7 @@ inline constexpr Limits wide_limits{.rows = 128,
                                     .borders = 8192,
                                     .curbs = 2048};
 inline constexpr int most_cells = 512;  ///< along one side of a window
-/// Beyond the window of a finished map that is mapped too, map_cloud.hpp: a block.
+/// The margin around the window that is mapped too for a finished map (map_cloud.hpp): one block.
 inline constexpr int margin_cells = 4;
 inline constexpr Limits largest_limits{.rows = most_cells + 2 * margin_cells,
                                        .cols = most_cells + 2 * margin_cells,
@@ -49,24 +50,24 @@ class HostPipeline {
   virtual bool add_tilt(const TiltReading& reading) = 0;
   virtual bool add_pose(const Pose& pose) = 0;
   virtual Status take(const ScanLine& line) = 0;
-  /// The same, its points added to `out` too.
+  /// The same; also appends the line's points to `out`.
   virtual Status take(const ScanLine& line, std::vector<Point>& out) = 0;
   virtual void observe(std::span<const Point> points) = 0;
   virtual int settle() = 0;
   virtual std::span<const Curb> curbs() const = 0;
   virtual const Counters& counters() const = 0;
   virtual const TiltLatency& tilt_latency() const = 0;
-  /// Place of the window now, and everything in it.
+  /// Current position of the window, and its contents.
   virtual Grid grid() const = 0;
   virtual Map map() const = 0;
   virtual std::vector<MapCurb> map_curbs() const = 0;
 };
 
-/// Throws BadInput if the settings are refused; one beyond the largest limits is too.
+/// Throws BadInput if the settings are refused or exceed the largest limits.
 std::unique_ptr<HostPipeline> make_host_pipeline(const Settings& settings);
-/// The same, by the file's name.
+/// The same; errors name the robot's file.
 std::unique_ptr<HostPipeline> make_host_pipeline(const Robot& robot);
-/// The same curbs, of lines that wait for up to a second.
+/// Gives the same curbs, with room for lines that wait up to a second.
 std::unique_ptr<HostPipeline> make_live_pipeline(const Robot& robot);
 
 MapCurb to_map_curb(const Curb& curb);

@@ -1,7 +1,8 @@
-// What each scan line of a replay cost, for drives on which nothing may grow: a CSV with a row a line,
+// The cost of each scan line of a replay, for drives on which nothing may grow: a CSV with one row a line,
 //   x_m,y_m,take_s,evidences,messages,dropped,full,deferred
-// x y are the robot's newest pose, take_s the time within Pipeline::take(); the rest is what the line added to
-// Counters: its work, whether it was dropped, bounds of storage that it hit, and labels that wait for a later line.
+// x y are those of the robot's newest pose, take_s is the time within Pipeline::take(); the other columns are what the
+// line added to Counters: its work, whether it was dropped, storage limits that it reached, and labels deferred to a
+// later line.
 #pragma once
 
 #include <string>
@@ -14,13 +15,13 @@ namespace curbline::tools {
 
 class LineCosts {
  public:
-  /// Throws BadInput if nothing can be written there.
+  /// Throws BadInput if the file cannot be written.
   explicit LineCosts(const std::string& path);
 
-  /// The line that the replay has just taken.
+  /// Adds the line that the replay has just taken.
   void add(const Replay& replay);
 
-  /// Throws BadInput if not everything could be written: then nothing is left of it.
+  /// Throws BadInput if not everything could be written; the file is then removed.
   void commit() { file_.commit(); }
 
  private:

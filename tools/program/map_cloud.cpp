@@ -15,7 +15,7 @@ namespace curbline::tools {
 
 namespace {
 
-/// What lies beyond the window's edge tells what a strip within is: that much of it is mapped too.
+/// Narrow strips at the window's edge are recognised by what lies beyond it, so a margin is mapped too.
 void widen(WindowSettings& window) {
   window.fixed = true;
   window.origin_x_m -= static_cast<float>(margin_cells) * window.cell_x_m;
@@ -24,14 +24,14 @@ void widen(WindowSettings& window) {
   window.cols += 2 * margin_cells;
 }
 
-/// The upper one of the middle two. Of some values, which change places.
+/// The upper of the two middle values; reorders the values, of which there must be at least one.
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-/// Whole kilometres to the window and to most of the cloud's heights: from there on float tells points apart.
+/// Whole kilometres to the window and to the median height of the cloud: relative to these, float resolves the points.
 Point3 whole_kilometres(std::span<const Point3> cloud, const MapOptions& options) {
   const auto whole = [](double metres) { return 1000 * std::round(metres / 1000); };
   std::vector<double> heights;
@@ -40,8 +40,9 @@ Point3 whole_kilometres(std::span<const Point3> cloud, const MapOptions& options
   return options.fixed() ? Point3{whole(options.origin[0]), whole(options.origin[1]), z} : Point3{0, 0, z};
 }
 
-/// How high the ground about the origin lies: the median of the lowest points in squares of a quarter metre, 3 m around
-/// or, where nothing is seen as near, half as far again as the nearest point. Nothing beyond a laser's reach.
+/// Height of the ground around the origin: the median of the lowest points in squares of a quarter metre, within 3 m
+/// or, if nothing is seen that near, one and a half times the distance of the nearest point. Nothing if that is beyond
+/// a laser's reach.
 std::optional<double> ground_about_origin_m(std::span<const Point3> cloud) {
   constexpr double square_m = 0.25, around_m = 3, furthest_m = 30;
   const auto away_m = [](const Point3& p) { return std::hypot(p.x, p.y); };
@@ -59,9 +60,10 @@ std::optional<double> ground_about_origin_m(std::span<const Point3> cloud) {
   return median(heights);
 }
 
-/// How high above the origin the laser was: at it, in the frame of a laser; in that of a robot's base, where the ground
-/// is nearer to the origin's height than to where a robot of pavements would have it below its laser, that much above.
-/// Where neither can be nothing is known, for which a laser below all ground stands.
+/// Height of the laser above the origin. In the frame of a laser it is 0. In that of a robot's base, recognised by
+/// ground that is closer to the origin's height than to that of the ground below a pavement robot's laser, it is the
+/// height at which such a robot carries its laser. If neither is possible, nothing is known; a laser below all ground
+/// stands for that.
 double laser_above_origin_m(std::span<const Point3> cloud) {
   constexpr double carried_m = 1, unknown_m = -100;
   const std::optional<double> ground_m = ground_about_origin_m(cloud);
@@ -69,7 +71,8 @@ double laser_above_origin_m(std::span<const Point3> cloud) {
   return *ground_m < -0.5 * carried_m ? 0 : carried_m;
 }
 
-/// Where the laser is, as seen from `place`; a pipeline's mount reaches 100 m at most, which leaves its direction.
+/// Position of the laser relative to `place`. A pipeline's mount reaches 100 m at most; beyond that only the direction
+/// is kept.
 MountSettings laser_seen_from(const Point3& place, double above_origin_m) {
   constexpr double furthest_m = 100;
   const Point3 way{-place.x, -place.y, above_origin_m - place.z};
@@ -80,16 +83,17 @@ MountSettings laser_seen_from(const Point3& place, double above_origin_m) {
           .z_m = static_cast<float>(share * way.z)};
 }
 
-/// A coordinate, a thousandth of a cell at least within the cell where doubles have it, as the paper's steps do. A
-/// cloud in millimetres has points on the very line between two cells, and the pipeline's floats would put them to
-/// either side. Cells begin at `first_m`. With cells of 10 cm floats lie off by a third of that 500 m away.
+/// Moves a coordinate at least a thousandth of a cell away from the borders of the cell that it has in double
+/// precision, as in the paper's steps. A cloud in millimetres has points exactly on the border of two cells, and the
+/// pipeline's floats would put them on either side. Cells begin at `first_m`. With cells of 10 cm, floats are off by a
+/// third of that thousandth at a distance of 500 m.
 double within_cell(double at_m, double first_m, double side_m) {
   constexpr double rim = 1e-3;
   const double cells = (at_m - first_m) / side_m, cell = std::floor(cells);
   return first_m + side_m * std::clamp(cells, cell + rim, cell + 1 - rim);
 }
 
-/// By the pipeline, with `place` as its map's origin.
+/// Maps with the pipeline, with `place` as the origin of its map.
 Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions options) {
   if (options.fixed()) options.origin = {options.origin[0] - place.x, options.origin[1] - place.y};
   if (options.max_height_m) *options.max_height_m -= place.z;
@@ -98,7 +102,7 @@ Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions opt
   apply_window(options, settings.window);
   const Grid grid = asked_grid(options, settings.window);
   widen(settings.window);
-  // Nothing is known of the sensor: every point has the variance that the prior expects.
+  // Nothing is known about the sensor: every point gets the variance that the prior expects.
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;
   const double first_x_m = grid.x0_m + place.x, first_y_m = grid.y0_m + place.y;

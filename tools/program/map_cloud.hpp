@@ -1,4 +1,4 @@
-// A whole cloud to a map, by any method.
+// Maps a whole cloud, by any method.
 #pragma once
 
 #include <span>
@@ -10,16 +10,16 @@
 
 namespace curbline::tools {
 
-/// Window, cell size, height and method as the options have them; the robot stands at the origin. By curbline itself
-/// margin_cells around the window are mapped too, and not given out. Shadows and veils are those of a laser at the
-/// origin, or 1 m above it where the ground is as high as the origin (the frame of a robot's base); of a cloud that is
-/// in neither frame nothing is known of them. O(points log points).
+/// Window, cell size, height and method are those of the options; the robot stands at the origin. With curbline itself,
+/// margin_cells around the window are also mapped, but not returned. Shadows and veils are those of a laser at the
+/// origin, or 1 m above it if the ground is at the origin's height (the frame of a robot's base); for a cloud in
+/// neither frame they are unknown. O(points log points).
 Map map_cloud(std::span<const Point3> cloud, const MapOptions& options);
 
-/// The same by the paper's methods or its peers' (options.method is one of them) on a given grid.
+/// The same with one of the paper's methods or of its peers (options.method) on a given grid.
 Map map_batch(std::span<const Point3> cloud, const Grid& grid, double max_height_m, const MapOptions& options);
 
-/// Without their variances.
+/// The points without their variances.
 std::vector<Point3> cloud_of(std::span<const Point> points);
 
 }  // namespace curbline::tools

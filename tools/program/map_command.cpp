@@ -21,7 +21,7 @@ std::string span(double from_m, double to_m) {
   return readable(from_m, 3) + " to " + readable(to_m, 3);
 }
 
-/// Throws BadInput unless a point lies in the window: an empty map would say that nothing is there.
+/// Throws BadInput unless a point lies in the window: an empty map would mean that nothing is there.
 void check_seen(const std::string& file, std::span<const Point3> cloud, const Bounds& window,
                 std::optional<double> max_height_m) {
   const auto inside = [&](const Point3& p) {

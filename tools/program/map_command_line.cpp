@@ -8,7 +8,7 @@
 namespace curbline::tools {
 namespace {
 
-/// An option that is one of a few words.
+/// An option with a choice of a few words.
 template <typename Choice>
 CLI::Option* add_choice(CLI::App& command, const std::string& option, Choice& choice,
                         const CLI::TransformPairs<Choice>& choices, const std::string& help) {
@@ -24,8 +24,8 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, Choice& ch
   return command.add_option_function<std::string>(option, choose, help);
 }
 
-/// For an option of one value or two, which would take the values of two such options for its own; CLI11 puts an empty
-/// one between them where it is told to inject a separator.
+/// For an option of one or two values, which would also take the values of a second such option; CLI11 puts an empty
+/// value between them if told to inject a separator.
 CLI::Validator once() {
   return CLI::Validator(
       [](const std::string& text) { return text.empty() ? std::string("given twice, or empty; expected once") : ""; },
@@ -48,7 +48,7 @@ void add_method_option(CLI::App& command, MapMethod& method) {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   const CLI::Validator place = within(-1e9, 1e9, "metres in [-1e9, 1e9]");
-  // Extra arguments, which a list of numbers has unless told not to, would be what follows: the cloud.
+  // Without this, an option with a list of numbers would also take the argument after it, the cloud.
   auto* origin =
       command
           .add_option(
@@ -91,7 +91,7 @@ void add_map_options(CLI::App& command, MapOptions& options) {
       ->check(file_name());
   command.add_option("--picture", options.picture, "file to write: PNG or SVG, by its ending")->check(file_name());
   command.add_flag("--json", options.json, "summary on stdout, a JSON object");
-  // What the method would not heed must not look as if it did.
+  // Options that the method would ignore are refused.
   command.parse_complete_callback([&options, edge, scale] {
     using enum MapMethod;
     const MapMethod method = options.method;

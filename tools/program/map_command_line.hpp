@@ -1,4 +1,4 @@
-// The options that map and replay have in common.
+// The options common to map and replay.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 
 namespace curbline::tools {
 
-/// --method alone; `method` stays as it is without it.
+/// Only --method; without it `method` is unchanged.
 void add_method_option(CLI::App& command, MapMethod& method);
 
 /// Adds the shared options to a command.

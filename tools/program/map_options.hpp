@@ -1,4 +1,4 @@
-// What map and replay are asked for: the window, the method, and what is given out.
+// The options of map and replay: the window, the method, and the outputs.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ enum class MapMethod { curbline, crf_em, em, segment, canny, gradient };
 struct MapOptions {
   std::vector<double> origin;  ///< x y, metres; empty: the window follows the robot
   std::vector<double> size;    ///< along x and y, metres
-  std::vector<double> cell;    ///< one side or two, metres; empty: the robot's
+  std::vector<double> cell;    ///< one or two sides, metres; empty: the robot's
   std::optional<double> max_height_m;
   MapMethod method = MapMethod::curbline;
   reference::EdgePotential edge = reference::EdgePotential::potts;

@@ -17,7 +17,7 @@ std::vector<NamedFile> outputs_of(const MapOptions& options) {
 }
 
 void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary) {
-  // Everything is written beside its target first and takes its place only when all of it could be written.
+  // Everything is first written beside its target, which it replaces only after all of it could be written.
   std::unique_ptr<AtomicFile> labels, curbs;
   if (!options.labels.empty()) {
     labels = std::make_unique<AtomicFile>(options.labels);

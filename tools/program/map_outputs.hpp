@@ -1,4 +1,4 @@
-// What map and replay give out of a finished map.
+// The outputs of map and replay for a finished map.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,10 +11,10 @@
 
 namespace curbline::tools {
 
-/// What give_out() would write to files.
+/// The files that give_out() would write.
 std::vector<NamedFile> outputs_of(const MapOptions& options);
 
-/// Writes the files that were asked for, all or none, and the summary with --json. `summary` may hold more to say.
+/// Writes the requested files, all or none, and the summary with --json. `summary` may have further entries.
 void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary);
 
 }  // namespace curbline::tools

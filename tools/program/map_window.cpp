@@ -14,14 +14,14 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double count_slack = 1e-6;  ///< of a cell
+constexpr double count_slack = 1e-6;  ///< in cells
 
 int cells_along(double length_m, double cell_m) {
   return static_cast<int>(std::ceil(length_m / cell_m - count_slack));
 }
 
-/// Sides of a cell along x and y as asked for: the settings' floats, of which 0.1 is not 0.1, are too coarse to count
-/// by.
+/// Sides of a cell along x and y as requested: the floats of the settings, in which 0.1 is not exactly 0.1, are too
+/// coarse for counting.
 struct CellSides {
   double x_m, y_m;
 };

@@ -1,4 +1,4 @@
-// The window that the options ask for, and what of a map lies in it.
+// The window that the options request, and the part of a map inside it.
 #pragma once
 
 #include "curbline/settings.hpp"
@@ -7,14 +7,15 @@
 
 namespace curbline::tools {
 
-/// Puts the window of the options in place of the robot's: rows and columns are rounded up to whole blocks. Throws
-/// CLI::ValidationError if it makes no sense.
+/// Replaces the robot's window by that of the options; rows and columns are rounded up to whole blocks. Throws
+/// CLI::ValidationError if it is invalid.
 void apply_window(const MapOptions& options, WindowSettings& window);
 
-/// The grid that was asked for: the window of the options exactly, without the rounding.
+/// The requested grid: exactly the window of the options, without the rounding.
 Grid asked_grid(const MapOptions& options, const WindowSettings& window);
 
-/// The part of a map that lies in the grid asked for, which is within the map's, and what planes its cells bear.
+/// The part of a map inside the requested grid, which lies within the map's, with the planes that its cells are
+/// labelled with.
 Map crop(const Map& map, const Grid& asked);
 
 }  // namespace curbline::tools

@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By whatever names, links too. Devices and pipes may be written more than once.
+/// Whether two names, including links, refer to the same file. Devices and pipes may be written more than once.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (a.empty() || b.empty()) return false;

@@ -1,4 +1,4 @@
-// The files that a command is to read and to write, before it reads any.
+// Checks the files that a command will read and write, before it reads any.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace curbline::tools {
 
-/// A file and the option that names it; an empty path: none.
+/// A file and the option that names it; an empty path means none.
 struct NamedFile {
   std::string option, path;
 };

@@ -9,11 +9,11 @@
 namespace curbline::tools {
 namespace {
 
-constexpr std::int64_t interval_ns = 100'000'000;  ///< between looks at what has been found
+constexpr std::int64_t interval_ns = 100'000'000;  ///< between evaluations of what has been found
 
 Robot robot_of(const std::string& dir) {
   Robot robot = read_robot(dir + "/robot.toml");
-  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever its description says
+  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever robot.toml says
   return robot;
 }
 
@@ -21,7 +21,7 @@ ReplayLogs logs_of(const std::string& dir, const Robot& robot) {
   return {dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
 }
 
-/// Keeps what a run must not forget, look by look.
+/// Accumulates, look by look, what must be kept from a run.
 class Record {
  public:
   Record(const Truth& truth, RecordedRun& run)

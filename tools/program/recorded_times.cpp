@@ -9,7 +9,8 @@
 namespace curbline::tools {
 namespace {
 
-/// A player sends late, never early; but a due time is taken from the frame before, which may have been late itself.
+/// A player sends late, never early; but the due time is derived from the previous frame, which may itself have been
+/// late.
 constexpr std::int64_t late_ns = 1'000'000'000, early_ns = 200'000'000, first_reach_ns = 10'000'000'000;
 
 bool same(const can::Frame& a, const can::Frame& b) {
@@ -17,8 +18,8 @@ bool same(const can::Frame& a, const can::Frame& b) {
          std::equal(a.data.begin(), a.data.begin() + a.length, b.data.begin());
 }
 
-/// The recorded frame of those that is nearest to the time it is due: a servo that nods is twice at each angle. Of
-/// equal ones in a row, while the servo rests, the first: which is which makes no difference.
+/// Of the equal recorded frames, the nearest to the due time, because a nodding servo passes each angle twice. Of
+/// consecutive equal frames, while the servo rests, the first: it makes no difference which.
 template <typename Iterator>
 Iterator nearest_same(Iterator first, Iterator last, const can::Frame& frame, std::int64_t due_ns) {
   Iterator nearest = last;
@@ -45,7 +46,7 @@ std::optional<std::string> recording_beside(const std::string& scans) {
 
 }  // namespace
 
-/// What the kernel's filters let through.
+/// What the kernel's filters accept.
 bool RecordedTimes::wanted(const can::Frame& frame) const {
   if (frame.error || frame.remote) return false;
   if (sync_id_ && !frame.extended && frame.id == *sync_id_) return true;
@@ -79,7 +80,7 @@ std::optional<std::int64_t> RecordedTimes::time_of(const can::Frame& frame, std:
   const std::int64_t until_ns = due_ns ? *due_ns + early_ns : front_ns + first_reach_ns;
   while (ahead_.back().time_ns <= until_ns && read_one()) {
   }
-  if (same(ahead_.front(), frame)) {  // the next one, however late: a player that has stalled sends all the same
+  if (same(ahead_.front(), frame)) {  // the next one, however late: a stalled player still sends it
     ahead_.pop_front();
     return front_ns;
   }

@@ -1,5 +1,5 @@
-// Log time for frames of a live bus on which a recording is played again: what replay and the daemon give tilt frames
-// whose scan lines come from a log. tilt_frames.hpp says why.
+// Log times for the frames of a live bus on which a recording is replayed: used by replay and the daemon for tilt
+// frames if the scan lines come from a log. tilt_frames.hpp gives the reason.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace curbline::tools {
 
-/// The times at which the frames of a signal were recorded, given again to the same frames as they come in the same
-/// order.
+/// The times at which the frames of a signal were recorded, assigned to the same frames when they are received in the
+/// same order.
 class RecordedTimes {
  public:
   RecordedTimes(const std::string& log, const can::Signal& signal, std::optional<std::uint16_t> sync_id)
@@ -22,12 +22,12 @@ class RecordedTimes {
   /// Reads the whole log now; nothing is allocated after that.
   void read_all();
 
-  /// The recorded time of a frame that is due about `due_ns` (log time; the first may be any of the first 10 s): the
-  /// next one, or one that comes a second late or 0.2 s early at most; nothing if there is none. Recorded frames before
-  /// it have been missed.
+  /// The recorded time of a frame that is due around `due_ns` (log time; the first frame may be any of the first 10 s).
+  /// The frame must be the next recorded one, or an equal one recorded at most a second before or 0.2 s after the due
+  /// time; nothing if there is none. Recorded frames before it count as missed.
   std::optional<std::int64_t> time_of(const can::Frame& frame, std::optional<std::int64_t> due_ns);
 
-  /// Whether every recorded frame has been met or missed.
+  /// Whether every recorded frame has been matched or missed.
   bool ended();
   long missed() const { return missed_; }
   const std::string& path() const { return log_.path(); }
@@ -39,33 +39,33 @@ class RecordedTimes {
   CanLogReader log_;
   can::Signal signal_;
   std::optional<std::uint16_t> sync_id_;
-  std::deque<can::Frame> ahead_;  ///< read and not met yet, in order of time
+  std::deque<can::Frame> ahead_;  ///< read and not matched yet, in order of time
   std::int64_t newest_ns_ = INT64_MIN;
   bool at_end_ = false;
   long missed_ = 0;
 };
 
-/// The log's time by the bus's: recorded times where there are some, else a constant offset from the first frame on,
-/// which came at the time of the first scan line.
+/// Converts the bus's time to the log's: recorded times if there are any, otherwise a constant offset, as if the first
+/// frame had come at the time of the first scan line.
 class LogClock {
  public:
   explicit LogClock(std::optional<RecordedTimes> recorded = std::nullopt) : recorded_(std::move(recorded)) {}
 
   /// Frames keep the bus's time.
   static LogClock of_the_bus();
-  /// Of a scan log: recorded times are those of the CAN log of its recording, NAME.candump beside NAME.carmen, or
+  /// For a scan log: recorded times are those of the CAN log of its recording, NAME.candump beside NAME.carmen, or
   /// can.log.
   static LogClock of_log(const std::string& scans, const can::Signal& signal, std::optional<std::uint16_t> sync_id);
 
-  /// Gives a frame its time in the log. `line_ns` is that of the scan line that waits for it.
+  /// Sets a frame's time to that in the log. `line_ns` is the time of the scan line that waits for it.
   void set_log_time(can::Frame& frame, std::int64_t line_ns);
 
-  /// Log time less bus time; nothing before the first frame.
+  /// Log time minus bus time; nothing before the first frame.
   std::optional<std::int64_t> offset_ns() const { return offset_ns_; }
-  /// What a user should know of a scan log beside which no CAN log lies: when the first frame came is a guess. Else
-  /// empty.
+  /// A remark for the user if there is no CAN log beside the scan log: the time of the first frame is then a guess.
+  /// Otherwise empty.
   const std::string& guess() const { return guess_; }
-  long not_recorded() const { return not_recorded_; }  ///< frames that the recording does not have
+  long not_recorded() const { return not_recorded_; }  ///< frames that are not in the recording
   RecordedTimes* recorded() { return recorded_ ? &*recorded_ : nullptr; }
   const RecordedTimes* recorded() const { return recorded_ ? &*recorded_ : nullptr; }
 

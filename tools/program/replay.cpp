@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-/// What of a curb lies in a grid, a cell within: a curb has ground on both sides, and is gone when one side is.
+/// The part of a curb that lies in a grid, at least one cell from its edge: a curb has ground on both sides, and is
+/// lost when one side is.
 Share inside_of(const Grid& grid, const MapCurb& c) {
   Bounds box = grid.bounds();
   box = {box.x0 + grid.dx_m, box.y0 + grid.dy_m, box.x1 - grid.dx_m, box.y1 - grid.dy_m};
   return share_in(box, {c.x0_m, c.y0_m}, {c.x1_m, c.y1_m});
 }
 
-/// A time in the logs that go with live scan lines; nothing if there are none, or CAN is live too.
+/// A time in the logs that belong to live scan lines; nothing if there are none, or CAN is live too.
 std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
   if (logs.can.starts_with("can:")) return std::nullopt;
   if (!robot.tilt.fixed) {
@@ -33,7 +34,7 @@ std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs)
   return pose ? std::optional(pose->time_ns) : std::nullopt;
 }
 
-/// Why a log gave no reading at all.
+/// Why a log gave no readings at all.
 std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
   const std::string frames = std::to_string(counters.frames) + " frames";
   if (counters.without_sync > 0) {
@@ -98,7 +99,7 @@ bool Replay::step(std::vector<Point>* points) {
   return true;
 }
 
-/// Frames up to the first reading at or after a time.
+/// Feeds frames up to the first reading at or after a time.
 void Replay::feed_tilt(std::int64_t until_ns) {
   while (can_ && tilt_until_ns_ < until_ns) {
     const auto reading = next_tilt();
@@ -115,7 +116,7 @@ void Replay::feed_tilt(std::int64_t until_ns) {
   }
 }
 
-/// From the log or bus; nothing at the end, or when the bus is silent.
+/// From the log or bus; nothing at the end, or while the bus is silent.
 std::optional<TiltReading> Replay::read_tilt() {
   while (const auto frame = can_->next(line_.time_ns)) {
     if (const auto reading = tilt_decoder_.take(*frame)) {
@@ -133,8 +134,8 @@ std::optional<TiltReading> Replay::next_tilt() {
   return reading;
 }
 
-/// Whether a time is so far ahead of what is waited for that it cannot help, and an earlier one follows: it would hold
-/// back all others. After a gap none is earlier.
+/// Whether a time is too far ahead of the one waited for to be of use, and an earlier one follows: it would hold back
+/// all others. After a real gap, no earlier one follows.
 bool Replay::is_damaged(std::int64_t time_ns, std::int64_t until_ns) {
   if (time_ns <= until_ns + static_cast<std::int64_t>(robot_.tilt.max_gap_s * 1e9f)) return false;
   while (tilt_ahead_.size() <= RisingTimes::most_refused) {
@@ -146,7 +147,7 @@ bool Replay::is_damaged(std::int64_t time_ns, std::int64_t until_ns) {
                      [&](const TiltReading& reading) { return reading.time_ns < time_ns; });
 }
 
-/// Whether the newest reading is too old to say anything of that time.
+/// Whether the newest reading is too old for an extrapolation to that time.
 bool Replay::beyond_extrapolation(std::int64_t time_ns) const {
   const float allowed_s = robot_.tilt.max_extrapolation_s + robot_.tilt.latency_s;
   return tilt_readings_ == 0 || time_ns > tilt_until_ns_ + static_cast<std::int64_t>(allowed_s * 1e9f);
@@ -168,14 +169,14 @@ void Replay::feed_poses(std::int64_t until_ns) {
   }
 }
 
-/// A pose of the future keeps the rest back: where lines had none, that is read as well, and refused where its times go
-/// back.
+/// A pose in the future holds back all others. If lines had no pose, the rest is therefore read too, and refused if its
+/// times go back.
 void Replay::check_poses() {
   while (poses_ && refused_ == Status::no_pose && poses_->next()) continue;
 }
 
-/// Of each curb the part that the window has just left. The pipeline may still hold what it left before: that is kept
-/// already.
+/// Keeps the part of each curb that the window has just left. The pipeline may still have parts that were left before;
+/// those have been kept already.
 void Replay::keep_leaving_curbs() {
   const Grid grid = pipeline_->grid();
   if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;

@@ -1,5 +1,6 @@
-// Logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer would
-// have them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs hold no more.
+// Runs logs through the pipeline as on the robot: tilt frames, poses and scan lines in the order in which its computer
+// would receive them. A scan line is taken when the tilt readings and poses cover its last beam, or the logs have
+// ended.
 #pragma once
 
 #include <deque>
@@ -18,8 +19,7 @@
 
 namespace curbline::tools {
 
-/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty where the robot has
-/// none.
+/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty if the robot has none.
 struct ReplayLogs {
   std::string scans;  ///< or a live scanner: scan_source.hpp
   std::string can;
@@ -28,31 +28,31 @@ struct ReplayLogs {
 
 class Replay {
  public:
-  /// Opens the logs. Throws BadInput if the robot needs one that is not given.
+  /// Opens the logs. Throws BadInput if a log that the robot needs is missing.
   Replay(const Robot& robot, const ReplayLogs& logs);
-  /// Goes on with a pipeline that has taken other logs before.
+  /// Continues with a pipeline that has taken other logs before.
   Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline);
   std::unique_ptr<HostPipeline> take_pipeline() { return std::move(pipeline_); }
 
-  /// Takes the next scan line; false at the end. Throws BadInput for what is wrong with a log. Its points are added to
+  /// Takes the next scan line; false at the end. Throws BadInput for errors in a log. The line's points are appended to
   /// `points`, for the methods that take a whole cloud.
   bool step(std::vector<Point>* points = nullptr);
 
-  /// At the end of a log without one usable reading: throws BadInput that says so.
+  /// At the end of a log without a single usable reading: throws BadInput with the reason.
   void check_complete() const;
 
-  /// What a user should know at the end of what was lost or dropped, a line each; empty if all is well.
+  /// Remarks for the user, at the end, about what was lost or dropped, one a line; empty if there are none.
   std::string remarks() const;
 
   const HostPipeline& pipeline() const { return *pipeline_; }
-  RobotMarker robot() const { return robot_marker_; }  ///< where the newest pose has it; the origin if it stands
-  const CarmenLine& line() const { return line_; }     ///< the one step() took
-  Status status() const { return status_; }            ///< what the pipeline said of it
-  double take_s() const { return take_s_; }            ///< how long the pipeline had it, by the clock
+  RobotMarker robot() const { return robot_marker_; }  ///< at the newest pose; at the origin if it stands
+  const CarmenLine& line() const { return line_; }     ///< the line that step() took
+  Status status() const { return status_; }            ///< the pipeline's status for it
+  double take_s() const { return take_s_; }            ///< time in the pipeline, by the clock
   long tilt_readings() const { return tilt_readings_; }
   can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
 
-  /// Curbs of the whole way: those in the window now and those of the parts it has left, as they were last.
+  /// Curbs of the whole path: those in the window now, and the latest state of the parts that it has left.
   std::vector<MapCurb> all_curbs() const;
 
  private:
@@ -75,7 +75,7 @@ class Replay {
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   RobotMarker robot_marker_;
-  Status status_ = Status::ok, refused_ = Status::ok;  ///< of the newest line; why the last one was refused that was
+  Status status_ = Status::ok, refused_ = Status::ok;  ///< of the newest line; of the last line that was refused
   double take_s_ = 0;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;

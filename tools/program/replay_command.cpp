@@ -27,7 +27,7 @@ struct Options {
   MapOptions map;
 };
 
-/// Keeps the log's own time, `speed` times as fast; 0 does not wait.
+/// Paces the replay by the log's times, `speed` times as fast; 0 does not wait.
 class Pace {
  public:
   explicit Pace(double speed) : speed_(speed) {}
@@ -42,18 +42,18 @@ class Pace {
   double speed_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   static constexpr std::int64_t none = INT64_MIN;
-  static constexpr double longest_ns = 1e18;  // 30 years: the steady clock can bear that
+  static constexpr double longest_ns = 1e18;  // 30 years, which the steady clock can represent
   std::int64_t first_ns_ = none;
 };
 
-/// Speed, 0 for max. A live bus sets the pace by its frames: it runs at 1, and scan lines are not held back.
+/// The speed, 0 for max. The frames of a live bus set the pace: its speed is 1, and scan lines are not held back.
 double speed_of(const std::string& text, bool live) {
   if (text.empty() || (live && text == "1")) return 0;
   if (!live) return parse_speed(text);
   throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
 }
 
-/// Each curb that the last scan line found or changed, one JSON object a line.
+/// Writes each curb that the last scan line added or changed, one JSON object a line.
 class CurbStream {
  public:
   void give_out(std::span<const Curb> curbs) {

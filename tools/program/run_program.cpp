@@ -9,7 +9,7 @@
 namespace curbline::tools {
 namespace {
 
-/// CLI11 says of an unknown command only that one is required.
+/// For an unknown command, CLI11 only says that one is required.
 void check_command(const CLI::App& app, int argc, char** argv) {
   const auto all = app.get_subcommands({});
   if (all.empty() || argc < 2 || argv[1][0] == '-') return;
@@ -33,7 +33,7 @@ int run_program(CLI::App& app, int argc, char** argv) {
     check_command(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (app.exit(error) != 0) return 2;  // else it is the help, or the version
+    if (app.exit(error) != 0) return 2;  // otherwise it is the help or the version
   } catch (const BadInput& error) {
     std::cerr << error.what() << '\n';
     return 1;

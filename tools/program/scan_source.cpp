@@ -23,7 +23,7 @@ void interrupt(int) {
   ::sigaction(SIGINT, &before_interrupt, nullptr);
 }
 
-/// Ctrl-C ends the scan while this lives; a second one does what it did before.
+/// While this object lives, Ctrl-C ends the scan; a second one has its previous effect.
 class InterruptWatch {
  public:
   InterruptWatch() {
@@ -97,7 +97,8 @@ class LiveSource final : public ScanSource {
     return scan;
   }
 
-  /// A connection that ends after its first line is an end like that of a log; why it ended only the user can know.
+  /// A connection that ends after its first line is treated like the end of a log; only the user can know whether it
+  /// was intended.
   void end() const {
     const int error = scanner_.last_error();
     std::string what = error == ETIMEDOUT ? "no scan line for " + std::to_string(silence_.count() / 1000) + " s"

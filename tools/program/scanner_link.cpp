@@ -11,7 +11,7 @@ namespace {
 
 using port::ByteStream, port::Milliseconds;
 
-constexpr Milliseconds tcp_silence{5'000}, serial_silence{10'000};  // an LMS200 is first looked for at four speeds
+constexpr Milliseconds tcp_silence{5'000}, serial_silence{10'000};  // for an LMS200, four speeds are tried first
 constexpr std::string_view scip2_scheme = "scip2:", cola_scheme = "cola:", lms200_scheme = "lms200:";
 
 ByteStream tcp_stream(const std::string& name, std::string_view scheme, std::uint16_t default_port) {

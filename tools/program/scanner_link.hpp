@@ -1,5 +1,5 @@
-// A live scanner by the name that --scans has for it, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE: its
-// protocol and the bytes it speaks over. What replay and the daemon make a LiveScanner of.
+// A live scanner by its name in --scans, scip2:HOST[:PORT], cola:HOST[:PORT] or lms200:DEVICE: its protocol and its
+// byte stream. replay and the daemon make a LiveScanner from it.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,14 @@ namespace curbline::tools {
 struct ScannerLink {
   std::shared_ptr<scanner::Session> session;
   port::ByteStream stream;
-  port::Milliseconds silence;  ///< without a line: the scanner is lost
-  bool has_stamps;             ///< its lines bear the scanner's own time
+  port::Milliseconds silence;  ///< without a line: the scanner is taken to be lost
+  bool has_stamps;             ///< its lines have the scanner's own time
 };
 
 /// True for the names above; anything else is a log.
 bool is_scanner(const std::string& scans);
 
-/// Not connected yet. Throws BadInput if the name makes no sense or its host is not known.
+/// Not connected yet. Throws BadInput if the name is invalid or its host is unknown.
 ScannerLink scanner_link(const std::string& scans, const LaserSettings& laser);
 
 }  // namespace curbline::tools

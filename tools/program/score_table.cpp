@@ -10,9 +10,9 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< where there is no figure
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< for a missing figure
 
-/// A line of the table: a figure, the reference's and the paper's. NaN: there is none.
+/// A line of the table: the figure, the reference's and the paper's. NaN for a missing one.
 void print_line(const char* name, double here, double reference, double paper, int decimals) {
   std::printf("%-36s", name);
   for (const double value : {here, reference, paper}) {

@@ -9,18 +9,18 @@ namespace curbline::tools {
 
 inline constexpr double paper_v = 0.88;  ///< V-measure, in simulation, +- 0.05
 
-/// What is said of one map.
+/// The scores of one map.
 struct Scored {
   PlaneScores planes;
   CurbScores curbs;
 };
 
-/// Over all true steps that were told of at some time.
+/// Over all true steps that were reported at some time.
 struct DetectionSummary {
   Errors time_s, distance_m;
 };
 
-/// To standard output. A dash stands where there is no figure.
+/// Prints to standard output, with a dash for each missing figure.
 void print_score_table(const Scored& here, const std::optional<Scored>& reference, const DetectionSummary& detection);
 
 }  // namespace curbline::tools

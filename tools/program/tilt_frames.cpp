@@ -30,7 +30,7 @@ class LogFrames final : public TiltFrames {
   }
 
  private:
-  /// Two servos of one id, each on a bus of its own, would be one that jumps.
+  /// Two servos with one id, on separate buses, would look like one servo that jumps.
   void check_interface() {
     if (interface_.empty()) interface_ = log_.interface_name();
     if (interface_ == log_.interface_name()) return;
@@ -92,7 +92,7 @@ class LiveFrames final : public TiltFrames {
   }
 
  private:
-  /// Waits for frames; a bus that has fallen silent is asked once more for each line, not waited for.
+  /// Waits for frames; a bus that has fallen silent is polled once for each line, without waiting.
   void receive() {
     ended_ = clock_.offset_ns() && clock_.recorded() != nullptr && clock_.recorded()->ended();
     taken_ = held_ = 0;

@@ -7,7 +7,7 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double touch_m = 1e-6;  // nearer, two corners are one
+constexpr double touch_m = 1e-6;  // closer corners are the same
 constexpr double aside_m = 1e-5;  // how far to either side of an edge its regions are looked up
 
 struct Edge {
@@ -24,7 +24,8 @@ std::vector<Edge> edges_of(const Polygon& outline) {
   return edges;
 }
 
-/// Notes where along `edge`, 0 to 1, the other edge crosses it, and where its ends touch it.
+/// Records where the other edge crosses `edge`, as a share of its length from 0 to 1, and where the ends of the other
+/// touch it.
 void note_meetings(const Edge& edge, const Edge& other, std::vector<double>& cuts) {
   const double length = edge.length_m();
   const double ux = (edge.b.x - edge.a.x) / length, uy = (edge.b.y - edge.a.y) / length;
@@ -58,7 +59,8 @@ std::vector<double> cuts_of(const Edge& edge, const std::vector<std::vector<Edge
   return cuts;
 }
 
-/// The visible pieces of an edge of region `own`, cut there; those that continue each other as one.
+/// Appends the visible pieces of an edge of region `own`, cut at these places; consecutive pieces with the same regions
+/// are joined.
 void append_visible(const std::vector<GroundRegion>& regions, const Edge& edge, const std::vector<double>& cuts,
                     std::size_t own, std::vector<Boundary>& out) {
   const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
@@ -80,8 +82,8 @@ void append_visible(const std::vector<GroundRegion>& regions, const Edge& edge, 
 
 }  // namespace
 
-// A visible piece between two regions lies on an edge of the later one: were it on an edge of the earlier one only, the
-// later one would cover both sides. So each piece is found once, where the upper of its regions is the edge's own.
+// A visible piece between two regions lies on an edge of the later one: if it were only on an edge of the earlier one,
+// the later one would cover both sides. So each piece is found once, at the edge of the upper of its two regions.
 std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& regions) {
   std::vector<std::vector<Edge>> all;
   for (const GroundRegion& region : regions) {

@@ -1,4 +1,4 @@
-// Where two regions of the ground meet, as seen from above: the vertical faces that the laser hits, and the true curbs.
+// Where two regions of the ground meet, seen from above: the vertical faces that the laser hits, and the true curbs.
 #pragma once
 
 #include "simulator/scene.hpp"
@@ -12,7 +12,7 @@ struct Boundary {
 };
 
 /// Every visible piece once, as long as its edge and its neighbours allow. O(edges^2). Strips narrower than 20 um are
-/// overlooked.
+/// missed.
 std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& regions);
 
 }  // namespace curbline::tools

@@ -11,18 +11,18 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double far_m = 16;          // nothing is drawn beyond
-constexpr double robot_room_m = 0.9;  // no obstacle is nearer
-constexpr double curb_room_m = 0.35;  // no curb
+constexpr double far_m = 16;          // extent of what is drawn
+constexpr double robot_room_m = 0.9;  // minimum distance to obstacles
+constexpr double curb_room_m = 0.35;  // minimum distance to curbs
 
-/// Height z + su u + sv v. A street's own coordinates: u along the main curb, v from the road to the pavement.
+/// Height z + su u + sv v. The street's own coordinates: u along the main curb, v from the road to the pavement.
 struct Surface {
   double z = 0, su = 0, sv = 0;
   double at(Point2 p) const { return z + su * p.x + sv * p.y; }
   Surface raised(double by) const { return {z + by, su, sv}; }
 };
 
-/// The surface through three points at their heights.
+/// The surface through three points with given heights.
 Surface through(const Point2 (&p)[3], const double (&z)[3]) {
   const double ax = p[1].x - p[0].x, ay = p[1].y - p[0].y, bx = p[2].x - p[0].x, by = p[2].y - p[0].y;
   const double det = ax * by - ay * bx, dz1 = z[1] - z[0], dz2 = z[2] - z[0];
@@ -59,8 +59,8 @@ class Street {
  private:
   double between(double low, double high) { return low + (high - low) * random_.uniform(); }
   bool chance(double share) { return random_.uniform() < share; }
-  // Every draw is a statement of its own, or stands in braces: the order of a call's arguments is the compiler's
-  // choice.
+  // Every draw is a separate statement or stands in braces, because the evaluation order of a call's arguments is
+  // unspecified.
   double step_m() { return chance(0.4) ? between(0.02, 0.04) : between(0.04, 0.15); }
 
   double up_or_down_m() {
@@ -68,7 +68,7 @@ class Street {
     return chance(0.5) ? step : -step;
   }
 
-  /// The robot stands at the scene's origin and looks along x; the curb passes the middle of its window.
+  /// The robot stands at the scene's origin and looks along x; the curb passes through the middle of its window.
   void stand_beside_the_curb() {
     do {
       turn_rad_ = between(-std::numbers::pi, std::numbers::pi);
@@ -88,7 +88,7 @@ class Street {
     return {origin_.x + c * p.x - s * p.y, origin_.y + s * p.x + c * p.y};
   }
 
-  /// `surface` on top of the slope that all share.
+  /// Draws `surface` with the common slope added.
   void draw_surface(Surface surface) {
     surface = {surface.z + base_.z, surface.su + base_.su, surface.sv + base_.sv};
     const double c = std::cos(turn_rad_), s = std::sin(turn_rad_);
@@ -114,13 +114,13 @@ class Street {
     draw_surface(surface);
   }
 
-  /// From its lower edge, at v, up to `to`; the surface is `step` above that of the road at that edge.
+  /// A strip whose lower edge is at v, where it is `step` above the road.
   Surface beside(const Surface& road, double v, double step) {
     const double fall = between(-0.025, 0.025);
     return {road.at({0, v}) + step - fall * v, road.su, fall};
   }
 
-  /// Across the road, and beyond the pavement.
+  /// Strips across the road and beyond the pavement.
   void draw_other_strips(const Surface& road, const Surface& pavement) {
     if (chance(0.7)) {
       const double v = clear_of_robot(-4.5, -2.2);
@@ -150,7 +150,7 @@ class Street {
     if (!table && step > 0.05 && chance(0.6)) draw_lowered_curb(road, pavement, step);
   }
 
-  /// The road goes up a ramp of 4 to 8 % to a table.
+  /// The road rises by a ramp of 4 to 8 % to a raised table.
   void draw_table(const Surface& road, double rise_m) {
     const double u = between(-1.2, 0.6), to = u + rise_m / between(0.04, 0.08);
     const Surface ramp{road.z - rise_m * u / (to - u), rise_m / (to - u), road.sv};
@@ -158,7 +158,7 @@ class Street {
     draw_region("table", rectangle({to, -far_m}, {far_m, far_m}), road.raised(rise_m));
   }
 
-  /// A ramp of at most 12 % through the curb, and a flank on either side.
+  /// A ramp of at most 12 % through the curb, with a flank on either side.
   void draw_lowered_curb(const Surface& road, const Surface& pavement, double step) {
     const double left_over = between(0, 0.01), depth = std::max(0.8, (step - left_over) / between(0.06, 0.12));
     const double u = between(-1.5, 0.3), to = u + between(1.0, 1.5), flank = between(0.4, 0.8);
@@ -174,7 +174,7 @@ class Street {
     }
   }
 
-  /// Strips as discs about one centre, the road in- or outside.
+  /// Strips as concentric discs, with the road inside or outside.
   void draw_bend() {
     const double radius = between(2.5, 12), step = step_m();
     const bool road_inside = chance(0.5);
@@ -205,7 +205,7 @@ class Street {
     }
   }
 
-  /// The pavement opens, with round corners, for a road of the same plane as the main one.
+  /// The pavement opens, with rounded corners, for a side road in the plane of the main one.
   void draw_side_road() {
     const Surface road{0, 0, between(-0.015, 0.015)};
     const double left = between(-1.8, 0.2), width = between(2.2, 4), step = step_m();
@@ -220,7 +220,7 @@ class Street {
     }
   }
 
-  /// Of the robot's place, or its way.
+  /// Whether a place keeps clear of the robot or its path.
   bool clear(Point2 p, double radius_m) const {
     const Point2 q = in_scene(p);
     return std::hypot(q.x - std::clamp(q.x, -half_way_m_, half_way_m_), q.y) > robot_room_m + radius_m;
@@ -255,7 +255,7 @@ class Street {
   }
 
   Random random_;
-  double half_way_m_;  // along x, on either side of the scene's origin; 0 of a robot that stands
+  double half_way_m_;  // along x, on either side of the scene's origin; 0 if the robot stands
   double turn_rad_ = 0;
   Point2 origin_;
   Surface base_;

@@ -7,7 +7,7 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double slack = 1e-9;  // of a ray's parameter, at the border of two cells
+constexpr double slack = 1e-9;  // in a ray's parameter, at the border of two cells
 
 }  // namespace
 
@@ -44,7 +44,7 @@ double RayCaster::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& dir
   return cast_inside(ray, grid, best);
 }
 
-/// The part of the ray that lies over the grid.
+/// The part of the ray above the grid.
 Share RayCaster::over_grid(const Ray& ray) const {
   Share over{0, nothing};
   over.clip(ray.origin.x(), ray.direction.x(), bounds_.x0, bounds_.x1);
@@ -52,7 +52,7 @@ Share RayCaster::over_grid(const Ray& ray) const {
   return over;
 }
 
-/// Beyond the grid there is the ground that lies everywhere, or nothing.
+/// Outside the grid there is only the unbounded ground, or nothing.
 double RayCaster::cast_outside(const Ray& ray, const Share& grid) const {
   if (!regions_.front().outline.empty()) {
     return nothing;
@@ -61,7 +61,7 @@ double RayCaster::cast_outside(const Ray& ray, const Share& grid) const {
   return t > grid.from && t < grid.to ? nothing : t;
 }
 
-/// Amanatides and Woo's walk through the cells under the ray.
+/// Amanatides and Woo's traversal of the cells under the ray.
 double RayCaster::cast_inside(const Ray& ray, const Share& grid, double best) const {
   if (!grid.any()) {
     return best;
@@ -88,7 +88,7 @@ double RayCaster::cast_inside(const Ray& ray, const Share& grid, double best) co
   return best;
 }
 
-/// Planes count where the ray is over the cell; a face or an obstacle counts wherever it is hit.
+/// Planes count only while the ray is above the cell; a face or an obstacle counts wherever it is hit.
 double RayCaster::cast_in_cell(const Ray& ray, const Cell& cell, double from, double to) const {
   double best = nothing;
   const std::uint32_t* item = items_.data() + cell.first;
@@ -112,11 +112,11 @@ double RayCaster::hit_plane(const Ray& ray, const SurfacePlane& plane) {
     const double t = above / fall;
     return t > 0 ? t : nothing;
   }
-  // The first time at which above - fall t + bend t^2 is 0.
+  // The smallest positive t at which above - fall t + bend t^2 is 0.
   const double aside = plane.camber.across.x * ray.direction.x() + plane.camber.across.y * ray.direction.y();
   const double bend = 0.5 * plane.camber.bend_1_m * aside * aside, rest = fall * fall - 4 * bend * above;
   if (!(rest >= 0)) return nothing;
-  const double sum = fall + std::copysign(std::sqrt(rest), fall);  // no two of a size are subtracted
+  const double sum = fall + std::copysign(std::sqrt(rest), fall);  // avoids subtracting numbers of similar size
   const double one = 2 * above / sum, other = sum / (2 * bend);
   return std::min(one > 0 ? one : nothing, other > 0 ? other : nothing);
 }
@@ -134,7 +134,7 @@ double RayCaster::hit_face(const Ray& ray, const Face& face) {
   return z >= std::min(left, right) && z <= std::max(left, right) ? t : nothing;
 }
 
-/// Cyrus and Beck: the ray is cut by each side in turn.
+/// Cyrus and Beck: each side in turn clips the ray.
 double RayCaster::hit_prism(const Ray& ray, const Prism& prism) {
   const double ox = ray.origin.x() - prism.offset.x, oy = ray.origin.y() - prism.offset.y;
   const double dx = ray.direction.x(), dy = ray.direction.y();
@@ -143,7 +143,7 @@ double RayCaster::hit_prism(const Ray& ray, const Prism& prism) {
     return nothing;
   }
   double from = 0, to = nothing;
-  const auto cut = [&](double outside, double rate) {  // outside + rate t <= 0 is within
+  const auto cut = [&](double outside, double rate) {  // inside while outside + rate t <= 0
     if (rate == 0) {
       if (outside > 0) to = -1;
     } else if (rate < 0) {

@@ -1,5 +1,5 @@
-// What a ray hits in a scene: the ground's planes, the vertical faces between them, and obstacles. About 1 us a ray:
-// a grid over the ground plan holds what lies in each cell, and a ray visits the cells under it in order.
+// What a ray hits in a scene: the ground's planes, the vertical faces between them, and obstacles. About 1 us a ray: a
+// grid over the ground plan lists the contents of each cell, and a ray visits the cells under it in order.
 #pragma once
 
 #include "simulator/boundary.hpp"
@@ -18,10 +18,10 @@ class RayCaster {
 
   explicit RayCaster(const Scene& scene);
 
-  /// Puts the moving obstacles where they are at that time.
+  /// Moves the moving obstacles to their places at this time.
   void move_to(double time_s);
 
-  /// Distance to the first surface, in lengths of `direction`, or `nothing`.
+  /// Distance to the first surface, in units of the length of `direction`, or `nothing`.
   double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
   /// Height of the ground, or -infinity in the void.
@@ -29,7 +29,7 @@ class RayCaster {
 
  private:
   struct Cell {
-    std::uint32_t first = 0;  // of its run in items_: regions from the top down, then faces, then obstacles
+    std::uint32_t first = 0;  // start of its run in items_: regions from the top down, then faces, then obstacles
     std::uint16_t regions = 0, faces = 0, obstacles = 0;
     bool plain = false;  // one region covers the whole cell
   };
@@ -39,7 +39,7 @@ class RayCaster {
   };
   struct Prism {
     Polygon outline;
-    Point2 centre, offset;  // offset: how far it has moved
+    Point2 centre, offset;  // offset: displacement since time 0
     double radius_m = 0, bottom_m = 0, top_m = 0;
   };
   struct Ray {
@@ -66,11 +66,11 @@ class RayCaster {
   std::vector<Face> faces_;
   std::vector<Prism> fixed_;
   std::vector<Obstacle> moving_;
-  std::vector<Prism> moved_;  // as moving_
+  std::vector<Prism> moved_;  // the prisms of moving_, in the same order
   Bounds bounds_;
   double cell_m_ = 0.5;
   int rows_ = 0, cols_ = 0;  // along x, along y
-  double top_m_ = 0;         // nothing fixed inside the grid is higher
+  double top_m_ = 0;         // the top of all that is fixed inside the grid
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> items_;
 };

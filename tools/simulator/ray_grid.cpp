@@ -1,4 +1,4 @@
-// What the ray caster prepares: faces, prisms and the grid that holds what lies in each cell.
+// The ray caster's preparation: faces, prisms and the grid that lists the contents of each cell.
 #include "simulator/ray_caster.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr double most_cells_a_side = 400;
-constexpr double buried_m = 1;  // of an obstacle on the ground, so that no gap opens on a slope or beside a curb
+constexpr double buried_m = 1;  // depth of obstacles in the ground, so that no gap opens on a slope or beside a curb
 
 Bounds united(const Bounds& a, const Bounds& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
@@ -101,7 +101,7 @@ void RayCaster::lay_grid() {
   top_m_ = -nothing;
   for (const GroundRegion& region : regions_) {
     const Bounds box = region.outline.empty() ? bounds_ : bounds(region.outline);
-    const bool bulges = region.plane.camber.bend_1_m > 0;  // no higher than without
+    const bool bulges = region.plane.camber.bend_1_m > 0;  // camber only lowers it
     for (const Point2 p : rectangle({box.x0, box.y0}, {box.x1, box.y1})) {
       top_m_ = std::max(top_m_, bulges ? region.plane.level_m(p) : region.plane.height_m(p));
     }

@@ -1,4 +1,4 @@
-// A scene file to a Scene: tools/scenes/README.md is the manual of its keys.
+// Reads a scene file; tools/scenes/README.md documents its keys.
 #include "formats/bad_input.hpp"
 #include "formats/toml_table.hpp"
 #include "simulator/scene.hpp"
@@ -11,7 +11,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr double rad = std::numbers::pi / 180;
-constexpr Range any{-1e5, 1e5};  // metres, metres a second or degrees: beyond, it is a slip of the pen
+constexpr Range any{-1e5, 1e5};  // metres, metres per second or degrees: values beyond are taken for typing errors
 constexpr Range positive{1e-6, 1e5};
 
 struct Repeat {
@@ -81,7 +81,7 @@ Polygon read_outline(TomlTable& table) {
   return polygon;
 }
 
-/// The plane through three corners at their heights.
+/// The plane through three corners with given heights.
 SurfacePlane plane_through(const Polygon& corners, const std::vector<double>& z) {
   Eigen::Matrix3d rows;
   for (int i = 0; i < 3; ++i) {
@@ -108,7 +108,7 @@ SurfacePlane read_level(TomlTable& table, const Polygon& corners) {
   return plane;
 }
 
-/// Both of its keys, or neither.
+/// Requires both of its keys, or neither.
 Camber read_camber(TomlTable& table) {
   if (!table.has("camber") && !table.has("crown")) return {};
   const double bend_1_m = table.number("camber", {-1, 1});
@@ -198,7 +198,7 @@ double duration_s(const RobotPath& path) {
   return out;
 }
 
-/// Of a robot that drives.
+/// The path of a robot that drives.
 RobotPath read_drive(TomlTable& table) {
   for (const char* standing : {"at", "yaw_deg"}) {
     if (table.has(standing)) table.refuse(standing, "is beside path; expected one of the two: a path implies it");

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double step_s = 0.01;
 constexpr double wheelbase_m = 0.5, track_m = 0.4, wheel_radius_m = 0.15;
-constexpr double tread_step_m = 0.01;  // from one place of the ground that a wheel feels to the next
+constexpr double tread_step_m = 0.01;  // spacing of the ground samples under a wheel
 
 constexpr double abyss_m = -std::numeric_limits<double>::infinity();  // height of the void
 
@@ -22,7 +22,7 @@ double height_m(const Scene& scene, Point2 at) {
   return region < 0 ? abyss_m : scene.regions[static_cast<std::size_t>(region)].plane.height_m(at);
 }
 
-/// The ground under the wheels of one side of a robot that goes straight on for length_m.
+/// The ground under the wheels of one side of a robot that drives straight on for length_m.
 class Tread {
  public:
   Tread(const Scene& scene, Point2 from, double yaw_rad, double left_m, double length_m) {
@@ -34,7 +34,7 @@ class Tread {
     }
   }
 
-  /// How high a wheel stands whose hub is `ahead_m` along the way: its rim lies nowhere below the ground.
+  /// Height of a wheel whose hub is `ahead_m` along the path: no point of its rim is below the ground.
   double wheel_m(double ahead_m) const {
     const double hub_m = ahead_m + reach_m;
     double highest_m = abyss_m;
@@ -49,11 +49,11 @@ class Tread {
   }
 
  private:
-  static constexpr double reach_m = wheelbase_m / 2 + wheel_radius_m + tread_step_m;  // beyond the robot's middle
+  static constexpr double reach_m = wheelbase_m / 2 + wheel_radius_m + tread_step_m;  // from the robot's middle
   std::vector<double> ground_m_;
 };
 
-/// Straight on from a place.
+/// A straight path from a place.
 class Way {
  public:
   Way(const Scene& scene, Point2 from, double yaw_rad, double length_m)
@@ -63,7 +63,7 @@ class Way {
         sides_{Tread(scene, from, yaw_rad, track_m / 2, length_m),
                Tread(scene, from, yaw_rad, -track_m / 2, length_m)} {}
 
-  /// Of the four wheels; one over the void is carried by the other of its side.
+  /// How the four wheels stand; a wheel over the void takes the height of the other on its side.
   Footing footing(double ahead_m) const {
     std::array<double, 2> height{}, along{};
     for (std::size_t side = 0; side < 2; ++side) {

@@ -1,4 +1,4 @@
-// Where the simulated robot truly is at a time.
+// The true pose of the simulated robot as a function of time.
 #pragma once
 
 #include "simulator/scene.hpp"
@@ -9,9 +9,9 @@
 
 namespace curbline::tools {
 
-/// The scene in the map frame of what is simulated: for a robot that stands, its base frame (x ahead, level, z = 0
-/// where it stands), since a pipeline without poses knows no other; for one that drives, the scene's own. Throws
-/// BadInput if the robot stands on nothing.
+/// The scene in the map frame of the simulated data. For a robot that stands, this is its base frame (x ahead, level, z
+/// = 0 where it stands), since a pipeline without poses knows no other; for one that drives, the scene's own frame.
+/// Throws BadInput if there is no ground below the standing robot.
 Scene in_map_frame(const Scene& scene);
 
 /// How four wheels stand on the ground.
@@ -20,17 +20,17 @@ struct Footing {
   double along, across;  ///< slopes ahead and to the left
 };
 
-/// The way of a scene in its map frame. The base's origin lies at the mean height of four wheels, 0.15 m in radius, 0.5
-/// m from axle to axle and 0.4 m across, that roll over what the ground has: up a curb of 12 cm, one axle after the
-/// other, each within 0.15 m. Pitch and roll are theirs, or 0 for a level base. The truth is the polyline between poses
-/// 10 ms apart: O(1) a call.
+/// The path of a scene in its map frame. The base's origin is at the mean height of four wheels that roll over the
+/// ground, 0.15 m in radius, with a wheelbase of 0.5 m and a track of 0.4 m: they climb a curb of 12 cm one axle after
+/// the other, each within 0.15 m. Pitch and roll are those of the wheels, or 0 for a level base. The truth is the
+/// polyline between poses 10 ms apart: O(1) a call.
 class RobotMotion {
  public:
-  /// Up to `until_s`: the robot stays there. Throws BadInput if it would leave the ground before.
+  /// The motion up to `until_s`, after which the robot stays. Throws BadInput if it would leave the ground before.
   explicit RobotMotion(const Scene& scene, double until_s = std::numeric_limits<double>::infinity());
 
   double duration_s() const;                          ///< 0 if it stands
-  Eigen::Isometry3d T_map_base(double time_s) const;  ///< before and after the way, it stands at its ends
+  Eigen::Isometry3d T_map_base(double time_s) const;  ///< before and after the motion, the robot stands at its ends
 
  private:
   struct Sample {

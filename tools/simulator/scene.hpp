@@ -1,8 +1,8 @@
-// A scene: the ground as planes over polygons, obstacles that stand or move on it, and where the robot goes. Read from
-// a TOML file (tools/scenes/README.md lists the keys); metres, radians, seconds, z up.
+// A scene: the ground as planes over polygons, obstacles that stand or move on it, and the robot's path. Read from a
+// TOML file (tools/scenes/README.md lists the keys); metres, radians, seconds, z up.
 //
-// The ground is the height of the last region that holds a point; a point in none is void and returns no beam. Where
-// two regions meet at different heights, a vertical face joins them. Obstacles are upright prisms.
+// The height of the ground is that of the last region that contains a point; a point in no region is void and returns
+// no beam. Where two regions meet at different heights, a vertical face joins them. Obstacles are upright prisms.
 #pragma once
 
 #include "map/polygon.hpp"
@@ -13,15 +13,15 @@
 
 namespace curbline::tools {
 
-/// A road falls to both sides of its crown, by half of the camber times the square of how far away that is.
+/// A road falls on both sides of its crown, by half the camber times the squared distance from the crown.
 struct Camber {
   double bend_1_m = 0;  ///< 0: none
-  Point2 crown;         ///< a point of it
-  Point2 across;        ///< unit vector
+  Point2 crown;         ///< a point of the crown
+  Point2 across;        ///< unit vector across the crown
   double away_m(Point2 p) const { return across.x * (p.x - crown.x) + across.y * (p.y - crown.y); }
 };
 
-/// z = z0 + sx x + sy y, less what the camber takes.
+/// z = z0 + sx x + sy y, minus the camber's fall.
 struct SurfacePlane {
   double z0_m = 0, sx = 0, sy = 0;
   Camber camber{};
@@ -36,7 +36,7 @@ struct SurfacePlane {
   }
 };
 
-/// A part of the ground. Without an outline it lies everywhere.
+/// A part of the ground. Unbounded without an outline.
 struct GroundRegion {
   std::string name;
   Polygon outline;
@@ -49,24 +49,25 @@ struct Obstacle {
   std::string name;
   Polygon outline;  ///< footprint at time 0: convex, counterclockwise
   double height_m = 1;
-  std::optional<double> base_m;  ///< z of its underside; without, it stands on the ground under its centre
+  std::optional<double> base_m;  ///< z of its underside; if empty, it stands on the ground below its centre
   Point2 velocity_m_s;
   bool moves() const { return velocity_m_s.x != 0 || velocity_m_s.y != 0; }
 };
 
-/// One way point is a robot that stands. Otherwise it drives the legs in turn and turns on the spot between them.
+/// A single waypoint is a robot that stands. Otherwise it drives along the legs in turn and turns on the spot between
+/// them.
 struct RobotPath {
   std::vector<Point2> waypoints{{0, 0}};
   double yaw_rad = 0;  ///< of a robot that stands
   double speed_m_s = 1;
   double turn_rate_rad_s = 0.6;
-  bool follows_terrain = false;  ///< true: pitch and roll are the ground's; false: the base stays level
+  bool follows_terrain = false;  ///< true: pitch and roll follow the ground; false: the base stays level
   bool stands() const { return waypoints.size() == 1; }
 };
 
-inline constexpr double longest_s = 86'400;  ///< of a simulation
+inline constexpr double longest_s = 86'400;  ///< duration of a simulation
 
-/// To the next way point: a turn on the spot, then straight on.
+/// To the next waypoint: a turn on the spot, then straight on.
 struct Leg {
   Point2 from, to;
   double from_rad, to_rad;  ///< yaw before and after the turn
@@ -75,7 +76,7 @@ std::vector<Leg> legs(const RobotPath& path);
 
 struct Scene {
   std::string file;    ///< where it was read from, for messages
-  std::string source;  ///< its text, to be copied beside what is simulated
+  std::string source;  ///< its text, to be copied beside the simulated data
   std::vector<GroundRegion> regions;
   std::vector<Obstacle> obstacles;
   RobotPath path;
@@ -85,7 +86,7 @@ struct Scene {
 /// itself.
 Scene read_scene(const std::string& path);
 
-/// The same for the text of a file; messages call it `file`.
+/// The same for text that has been read; messages name it `file`.
 Scene parse_scene(const std::string& text, const std::string& file);
 
 /// The same for a file (a name with '/' or ending in .toml), the name of a scene that ships, random:SEED or
@@ -95,7 +96,7 @@ Scene find_scene(const std::string& name_or_path);
 /// Names of the scenes that ship, sorted.
 std::vector<std::string> shipped_scenes();
 
-/// Index of the region on top there, or -1 in the void. O(corners).
+/// Index of the topmost region there, or -1 in the void. O(corners).
 int region_at(const std::vector<GroundRegion>& regions, Point2 p);
 
 }  // namespace curbline::tools

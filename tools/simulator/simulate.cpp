@@ -21,8 +21,9 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, none);
 }
 
-/// The files of one recording. What this recording lacks is taken away if an earlier one left it there, and so is what
-/// was found in that one. What none has left there is refused: of an earlier one truth.json is there.
+/// The files of one recording. Files of an earlier recording that this one does not have are removed, and so are the
+/// results derived from the earlier one. The presence of truth.json shows that there was an earlier recording; without
+/// it, existing files are refused.
 class Recording {
  public:
   Recording(const std::string& dir, const Robot& robot, bool with_poses)
@@ -32,7 +33,7 @@ class Recording {
     if (failed) {
       throw BadInput(dir + ": " + failed.message() + "; expected a directory to write to");
     }
-    truth_ = open("truth.json");  // the first to take its place: of what is cut off, the next run knows what it is
+    truth_ = open("truth.json");  // committed first: if a run is interrupted, the next one recognises its directory
     scans_ = open("scans.carmen");
     can_ = robot.tilt.fixed ? leave_out("can.log") : open("can.log");
     poses_ = with_poses ? open("poses.tum") : leave_out("poses.tum");

@@ -11,7 +11,7 @@ namespace {
 constexpr double pulse_m = 1.0;
 constexpr int rays = 5;
 
-/// Range of the first echo that is strong enough; `hits` ascending, `nothing` last.
+/// Range of the first echo that is strong enough; `hits` is ascending with `nothing` last.
 double first_echo(const std::array<double, rays>& hits) {
   for (int from = 0; from < rays && hits[static_cast<std::size_t>(from)] < RayCaster::nothing;) {
     const double nearest = hits[static_cast<std::size_t>(from)];
@@ -39,7 +39,7 @@ double SimulatedLaser::echo(const RayCaster& world, const Eigen::Isometry3d& T_m
   if (errors_.beam_divergence_rad <= 0) {
     return world.cast(origin, ahead);
   }
-  // Left unnormalised: an angle of some milliradians lengthens them by 1e-6.
+  // Not normalised: angles of a few milliradians lengthen the rays by 1e-6.
   const double radius = std::sqrt(5.0 / 8.0) * errors_.beam_divergence_rad / 2;
   const Eigen::Vector3d up = radius * T_map_laser.linear().col(2);
   const Eigen::Vector3d left = up.cross(ahead);
@@ -51,7 +51,7 @@ double SimulatedLaser::echo(const RayCaster& world, const Eigen::Isometry3d& T_m
 }
 
 float SimulatedLaser::measure(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad) {
-  // Drawn for every beam, so that what one beam hits does not shift the noise of the next.
+  // Drawn for every beam, so that what one beam hits does not affect the noise of the next.
   const double bearing_noise = random_.normal(), range_noise = random_.normal(), luck = random_.uniform();
   const double true_m = echo(world, T_map_laser, bearing_rad + laser_.bearing_sd_rad * bearing_noise);
   const auto range_m = static_cast<float>(true_m + laser_.range_sd_m * range_noise);

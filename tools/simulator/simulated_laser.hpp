@@ -1,9 +1,9 @@
-// What a laser range-finder reads: a beam with a width, noise and losses.
+// The readings of a laser range-finder: beams with a width, noise and losses.
 //
-// The footprint is sampled by five rays: the middle and four at sqrt(5/8) of the half angle, which have the second
-// moment of an even disc. Surfaces within a pulse length (1 m) of the nearest give one echo, whose range is the mean of
-// their rays: beside an edge it lies between the two surfaces, a mixed pixel. Surfaces further apart give echoes of
-// their own; the range is that of the first with two rays or more, else of the first.
+// Five rays sample the footprint: the centre and four at sqrt(5/8) of the half angle, which together have the second
+// moment of a uniform disc. Surfaces within a pulse length (1 m) of the nearest give one echo, whose range is the mean
+// of their rays: at an edge it lies between the two surfaces, a mixed pixel. Surfaces further apart give separate
+// echoes; the range is that of the first echo with two rays or more, or else of the first echo.
 #pragma once
 
 #include "robot/robot.hpp"
@@ -18,7 +18,7 @@ class SimulatedLaser {
  public:
   SimulatedLaser(const LaserSettings& laser, const SimulatedErrors& errors, std::uint64_t seed);
 
-  /// Range of a beam, metres; NaN if nothing comes back or it is out of the laser's range.
+  /// Range of a beam, metres; NaN if there is no return or it is out of the laser's range.
   float measure(const RayCaster& world, const Eigen::Isometry3d& T_map_laser, double bearing_rad);
 
  private:

@@ -11,7 +11,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr double never_s = RayCaster::nothing;
-constexpr double sync_answer_s = 300e-6;  // from a SYNC to the position: a frame at 500 kbit/s behind another
+constexpr double sync_answer_s = 300e-6;  // from a SYNC to the position: a frame at 500 kbit/s after another
 
 std::int64_t stamp_ns(double time_s) {
   return simulated_start_ns + std::llround(time_s * 1e9);
@@ -27,7 +27,7 @@ Eigen::Isometry3d transform(const MountSettings& mount) {
          rotation(mount.roll_rad, mount.pitch_rad, mount.yaw_rad);
 }
 
-/// A signal clips what it cannot hold.
+/// A signal clips values outside its range, so the sweep must lie within it.
 void check_sweep(const Robot& robot) {
   if (robot.tilt.fixed) return;
   const auto check = [&](const char* key, double angle_rad) {
@@ -44,7 +44,7 @@ void check_sweep(const Robot& robot) {
   check("to_rad", robot.sweep.to_rad);
 }
 
-/// The last pose and the last beam come behind the end.
+/// The last pose and the last beam are after the end.
 double motion_until_s(const Robot& robot, std::optional<double> duration_s) {
   return duration_s.value_or(never_s) + simulated_margin_s + 1 / robot.scan_rate_hz;
 }
@@ -136,14 +136,14 @@ ScanLine Simulation::take_line() {
   return {stamp_ns(start_s), ranges_m_};
 }
 
-/// Jitter shifts the stamp, not the angle's time; a log's stamps never go back.
+/// Jitter shifts the stamp, not the time of the angle; stamps never go back, as in a log.
 void Simulation::stamp_next_frame() {
   const double due_s = static_cast<double>(frames_) / robot_.simulated.tilt_rate_hz - simulated_margin_s;
   const double stamp_s = due_s + robot_.simulated.tilt_jitter_s * tilt_random_.normal();
   frame_stamp_s_ = std::max(stamp_s, frame_stamp_s_ + 1e-6);
 }
 
-/// A drive that answers SYNC sends its position a little later; the angle is that of the SYNC.
+/// A drive that answers SYNC sends its position slightly later; the angle is that at the SYNC.
 can::Frame Simulation::take_frame() {
   if (!robot_.tilt_sync_id || synced_) return take_position();
   can::Frame sync;

@@ -44,7 +44,7 @@ TruthCurb curb_between(Point2 from, Point2 to, const SurfacePlane& left, const S
   return curb;
 }
 
-/// One curb, or two where the step changes its sign on the way.
+/// One curb, or two if the step changes its sign along its length.
 void append_curbs(const Boundary& piece, const SurfacePlane& left, const SurfacePlane& right,
                   std::vector<TruthCurb>& out) {
   const TruthCurb whole = curb_between(piece.from, piece.to, left, right);
@@ -58,7 +58,7 @@ void append_curbs(const Boundary& piece, const SurfacePlane& left, const Surface
   out.push_back(curb_between(level, piece.to, left, right));
 }
 
-/// A rectangle about everything that has an outline.
+/// A rectangle around everything that has an outline.
 Polygon about_all(const Truth& truth) {
   Polygon corners{{0, 0}};
   for (const TruthRegion& region : truth.regions) {

@@ -1,4 +1,4 @@
-// What a simulated scene truly is, in the map frame of the simulated data: for scoring. Written as truth.json beside
+// The truth about a simulated scene, in the map frame of the simulated data, for scoring. Written as truth.json beside
 // the data.
 #pragma once
 
@@ -11,11 +11,11 @@
 namespace curbline::tools {
 
 struct TruthPlane {
-  std::string name;  ///< of the first region that lies in it
+  std::string name;  ///< of the first region in it
   SurfacePlane plane;
 };
 
-/// As drawn, without what later regions cover. Regions of one plane share its index.
+/// As drawn, including parts that later regions cover. Regions of one plane share its index.
 struct TruthRegion {
   std::string name;
   Polygon outline;  ///< empty: everywhere
@@ -25,13 +25,13 @@ struct TruthRegion {
 /// A straight piece of the line between two planes; left and right as seen when going from `from` to `to`.
 struct TruthCurb {
   Point2 from, to;
-  double from_step_m = 0, to_step_m = 0;  ///< left less right at each end; the sign is the same all along
+  double from_step_m = 0, to_step_m = 0;  ///< left minus right at each end; the sign does not change along its length
   double left_z_m = 0, right_z_m = 0;     ///< in the middle
   double height_m = 0;                    ///< mean step, >= 0
   std::string kind;                       ///< step: 1 cm or more at one end at least; crease: less
 };
 
-/// Where an obstacle stands from beginning to end, and the ground cannot be seen.
+/// An obstacle that does not move, so that the ground below is never visible.
 struct TruthObstacle {
   std::string name;
   Polygon outline;
@@ -50,16 +50,16 @@ struct Truth {
   bool obstacle_at(double x_m, double y_m) const;
 };
 
-/// Of a scene in its map frame (in_map_frame).
+/// Makes the truth of a scene in its map frame (in_map_frame).
 Truth make_truth(const Scene& scene, double start_time_s);
 
 void write_truth(std::ostream& out, const Truth& truth);
 
-/// The polygons for regions.gt, the topmost first: a point lies in the first that holds it. A region that lies
-/// everywhere is drawn 10 m beyond all others.
+/// The polygons for regions.gt, topmost first: a point belongs to the first that contains it. An unbounded region is
+/// drawn 10 m beyond all others.
 std::vector<Polygon> drawn_regions(const Truth& truth);
 
-/// Reads DIR/truth.json. Throws BadInput if it is missing or not as written.
+/// Reads DIR/truth.json. Throws BadInput if it is missing or not in the format that write_truth() writes.
 Truth read_truth(const std::string& dir);
 
 }  // namespace curbline::tools

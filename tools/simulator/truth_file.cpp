@@ -1,4 +1,4 @@
-// truth.json, out and in.
+// Writes and reads truth.json.
 #include "curbline/settings.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/fields.hpp"
@@ -63,7 +63,7 @@ Json obstacles_json(const Truth& truth) {
   return out;
 }
 
-/// A part of the file and the way to it, "curbs[3].x0_m", for errors.
+/// A part of the file and the path to it, "curbs[3].x0_m", for errors.
 class Part {
  public:
   Part(const Json& json, std::string file, std::string name = {})
@@ -83,7 +83,7 @@ class Part {
   }
   double number(const std::string& key) const { return at(key).number(); }
   double place_m(const std::string& key) const { return at(key).place_m(); }
-  /// No window lies farther off, and samples along longer lines take long to score.
+  /// No window is farther away, and samples along longer lines take long to score.
   double place_m() const {
     const double metres = number();
     check(std::abs(metres) <= static_cast<double>(WindowSettings::furthest_m), "a place within 100 km");
@@ -104,7 +104,7 @@ class Part {
     part.check(part.json_.is_string(), "a string");
     return part.json_.get<std::string>();
   }
-  /// Below `count`.
+  /// An index below `count`.
   int index(const std::string& key, std::size_t count) const {
     const Part part = at(key);
     part.check(part.json_.is_number_unsigned() && part.json_.get<std::size_t>() < count, "the index of a plane");
