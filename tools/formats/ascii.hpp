@@ -1,4 +1,4 @@
-// Text as ASCII, without locale.
+// Helpers for ASCII text, without locale.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace curbline::tools {
 
-/// For words that count in small letters and capitals: endings of files, names of columns.
+/// For words whose case does not matter: endings of files, names of columns.
 inline std::string lower_case(std::string text) {
   for (char& c : text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -14,7 +14,7 @@ inline std::string lower_case(std::string text) {
   return text;
 }
 
-/// A "?" for each byte that is no printable ASCII: for one line of a message or a comment.
+/// Replaces each byte that is not printable ASCII by "?": for one line of a message or a comment.
 inline std::string printable_ascii(std::string_view text) {
   std::string out;
   for (const char c : text) out += c >= ' ' && c <= '~' ? c : '?';

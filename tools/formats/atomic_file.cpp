@@ -19,11 +19,11 @@ std::string temporary_beside(const std::string& target) {
   return target + "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".part";
 }
 
-/// Names of what is not committed, for the handler of signals; null: none.
+/// Names of uncommitted files, for the signal handler; null for a free place.
 std::array<std::atomic<const char*>, 16> uncommitted{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-/// In the first place that holds one name, puts another.
+/// Replaces the name in the first place that contains it.
 void replace(const char* name, const char* by) {
   for (auto& place : uncommitted) {
     const char* expected = name;
@@ -31,8 +31,8 @@ void replace(const char* name, const char* by) {
   }
 }
 
-/// The signal is sent again for its own action, which follows when this returns. Not by SA_RESETHAND: a second one that
-/// comes before the first one's handler has begun would have its way at once.
+/// The signal is raised again for its default action, which follows when the handler returns. SA_RESETHAND is no
+/// alternative: a second signal that arrives before the handler of the first has begun would act at once.
 void remove_uncommitted(int signal) {
   for (const auto& place : uncommitted) {
     if (const char* const name = place) ::unlink(name);

@@ -1,5 +1,5 @@
-// A file that is either written whole or not there: output goes to a name beside the target and takes the target's
-// place at commit(). What is not committed is removed, and the file that stood there before stays.
+// A file that is either written completely or not at all: output goes to a temporary name beside the target, which it
+// replaces at commit(). Without a commit it is removed, and the previous file stays.
 #pragma once
 
 #include <fstream>
@@ -10,7 +10,7 @@
 
 namespace curbline::tools {
 
-/// Keeps why a file could not be written until somebody asks: a stream says only that it could not.
+/// Keeps the reason why a file could not be written: a stream only reports that it could not.
 class FileBuffer : public std::filebuf {
  public:
   int error() const { return error_; }  ///< the first errno; 0: none
@@ -25,7 +25,7 @@ class FileBuffer : public std::filebuf {
 
 class AtomicFile {
  public:
-  /// Throws BadInput if nothing can be written there. A target that is no file but a device or pipe (/dev/stdout) is
+  /// Throws BadInput if the file cannot be written. A target that is not a file but a device or pipe (/dev/stdout) is
   /// written to directly.
   explicit AtomicFile(const std::string& path);
   ~AtomicFile();
@@ -34,23 +34,23 @@ class AtomicFile {
 
   std::ostream& stream() { return stream_; }
 
-  /// Throws BadInput unless all that was written so far could be: asked of each of several files before any takes its
-  /// place.
+  /// Throws BadInput unless everything written so far could be stored: called for each of several files before any is
+  /// committed.
   void flush();
 
-  /// Throws BadInput if not everything could be written: then nothing is left of it.
+  /// Throws BadInput if not everything could be written; nothing of the file is then left.
   void commit();
 
  private:
   std::string path_;       ///< as given, for errors
-  std::string target_;     ///< behind symbolic links
+  std::string target_;     ///< with symbolic links resolved
   std::string temporary_;  ///< empty: writes to the target
   FileBuffer buffer_;
   std::ostream stream_{&buffer_};
 };
 
-/// For main(): from now on what is not committed is removed as well when a signal ends the program, Ctrl-C or a closed
-/// pipe; and to write beyond the limit on a file's size is an error, not an end. Of 16 files at a time.
+/// For main(): from now on, uncommitted files, 16 at a time, are also removed when a signal ends the program, such as
+/// Ctrl-C or a closed pipe; and exceeding the limit on a file's size is an error instead of ending the program.
 void remove_uncommitted_at_signals();
 
 }  // namespace curbline::tools

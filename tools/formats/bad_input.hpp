@@ -1,4 +1,4 @@
-// The one way in which a tool says that its input is bad.
+// The exception with which all tools report bad input.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace curbline::tools {
 
-/// what() is the whole line for stderr: "FILE:LINE: what is wrong; expected ...". main() prints it and exits with 1.
+/// what() is the complete line for stderr: "FILE:LINE: what is wrong; expected ...". main() prints it and exits with 1.
 class BadInput : public std::runtime_error {
  public:
   explicit BadInput(const std::string& what) : std::runtime_error(what) {}

@@ -10,7 +10,7 @@
 namespace curbline::tools {
 namespace {
 
-constexpr std::string_view lost = "DROPCOUNT: dropped ";  // of candump -d; how many follows
+constexpr std::string_view lost = "DROPCOUNT: dropped ";  // written by candump -d, followed by a number
 
 }  // namespace
 

@@ -1,5 +1,4 @@
-// CAN frames in a candump log (candump/candump.hpp says what a line looks like), in the log's order, whatever their
-// times.
+// CAN frames in a candump log (candump/candump.hpp describes its lines), in the log's order, whatever their times.
 #pragma once
 
 #include <optional>
@@ -16,15 +15,15 @@ class CanLogReader {
  public:
   explicit CanLogReader(const std::string& path) : source_(path) {}
 
-  /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are passed over, what candump -d
-  /// says of frames that it has lost is counted. Throws BadInput for any other line that candump does not write, and
-  /// for a file without a frame.
+  /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are skipped; candump -d's reports
+  /// of lost frames are counted. Throws BadInput for any other line that candump does not write, and for a file without
+  /// a frame.
   std::optional<can::Frame> next();
 
   const std::string& path() const { return source_.path(); }
-  long line() const { return source_.line(); }                           ///< of the frame last given
+  long line() const { return source_.line(); }                           ///< of the last frame returned
   const std::string& interface_name() const { return interface_name_; }  ///< the same
-  std::uint64_t frames_lost() const { return frames_lost_; }             ///< by candump, so far
+  std::uint64_t frames_lost() const { return frames_lost_; }             ///< lost by candump, so far
 
  private:
   LineReader source_;
@@ -32,10 +31,10 @@ class CanLogReader {
   std::uint64_t frames_lost_ = 0;
 };
 
-/// Which frame bears a signal, for the user: "id 0x181", "id 0x181 with multiplexor 9".
+/// The frame that contains a signal, for the user: "id 0x181", "id 0x181 with multiplexor 9".
 std::string frame_of(const can::Signal& signal);
 
-/// Writes one line. The frame must be one that a bus carries; times are cut to the microsecond, as candump has them.
+/// Writes one line. The frame must be one that a bus can carry; times are truncated to the microsecond, as by candump.
 void write_can_frame(std::ostream& out, const can::Frame& frame, std::string_view interface_name);
 
 }  // namespace curbline::tools

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t most_beams = 100'000;
 constexpr double furthest_m = 1e6;
 
-/// CARMEN's message names are of capitals, digits and underscores.
+/// CARMEN's message names consist of capitals, digits and underscores.
 bool is_message_name(std::string_view word) {
   return word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string_view::npos;
 }
@@ -29,7 +29,7 @@ void read_ranges(Fields& fields, CarmenLine& scan) {
   for (std::int64_t i = 0; i < remissions; ++i) fields.number("a remission");
 }
 
-/// What follows the message's name.
+/// Parses what follows the message's name.
 CarmenLine parse_scan(Fields& fields) {
   CarmenLine scan;
   fields.number("laser_type");

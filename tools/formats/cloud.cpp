@@ -17,14 +17,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "KITTI clouds are little-endian");
 
-/// Which columns x, y and z stand in.
+/// The columns of x, y and z.
 struct Columns {
   std::array<int, 3> of_axis{0, 1, 2};
 
   int last() const { return *std::max_element(of_axis.begin(), of_axis.end()); }
 };
 
-/// The axis that a column's name means, "X", "y_m", "//z": 0 to 2, or -1.
+/// The axis that a column's name refers to, "X", "y_m", "//z": 0 to 2, or -1.
 int axis_of(std::string_view name) {
   const std::size_t start = std::min(name.find_first_not_of("/\""), name.size());
   const std::string word = lower_case(std::string(name.substr(start)));

@@ -14,8 +14,8 @@ namespace {
 constexpr std::string_view label_columns = "x_m,y_m,height_m,variance_m2,points,label,probability";
 constexpr std::string_view curb_columns = "x0_m,y0_m,x1_m,y1_m,height_m,height_sd_m,probability,kind";
 constexpr int places = 6;
-constexpr double furthest_m = 1e8;  ///< coordinates of a national grid are some 1e6
-constexpr double longest_m = 1e4;   ///< of a curb: beyond that it is a slip of the pen, and takes long to score
+constexpr double furthest_m = 1e8;  ///< coordinates of a national grid are around 1e6
+constexpr double longest_m = 1e4;   ///< of a curb: a longer one is a typing error, and takes long to score
 
 void expect_header(LineReader& source, std::string_view columns) {
   const auto header = source.next();
@@ -41,7 +41,7 @@ double read_probability(Fields& fields) {
   return value;
 }
 
-/// Reads the rows below the header, one call of `read_row` each.
+/// Reads the rows below the header, with one call of `read_row` each.
 template <typename Row, typename ReadRow>
 std::vector<Row> read_rows(const std::string& path, std::string_view columns, ReadRow read_row) {
   LineReader source(path);

@@ -14,9 +14,9 @@ namespace curbline::tools {
 namespace {
 
 constexpr std::uint64_t most = 0xFFFFFFFF;
-constexpr std::uint32_t no_message = 0xC0000000;  // holds the signals that are in no message
+constexpr std::uint32_t no_message = 0xC0000000;  // contains the signals that belong to no message
 
-/// Statements that end with a semicolon and say nothing of a signal's bits.
+/// Statements that end with a semicolon and do not affect a signal's bits.
 const std::set<std::string_view> passed_over{"VAL_TABLE_",     "BO_TX_BU_",       "EV_",
                                              "ENVVAR_DATA_",   "EV_DATA_",        "CM_",
                                              "BA_DEF_",        "BA_DEF_REL_",     "BA_",
@@ -56,9 +56,9 @@ class DbcParser {
 
   DbcScanner in_;
   Dbc dbc_;
-  DbcMessage orphans_;             ///< of no message
-  DbcMessage* current_ = nullptr;  ///< whose signals come
-  std::set<std::string> names_;    ///< of messages
+  DbcMessage orphans_;             ///< signals without a message
+  DbcMessage* current_ = nullptr;  ///< the message whose signals follow
+  std::set<std::string> names_;    ///< names of messages
   std::set<std::uint32_t> ids_;
 };
 
@@ -81,7 +81,7 @@ void DbcParser::statement(const std::string& keyword) {
   in_.fail("unknown statement " + keyword.substr(0, 40) + "; expected BO_, SG_ or another of DBC");
 }
 
-/// The words of the format that a file may use: up to the baud rate, which every file has behind them.
+/// The keywords that a file may use, up to the baud rate statement that follows in every file.
 void DbcParser::symbols() {
   in_.expect(':');
   const std::set<std::string_view> none_of_them{"", "BS_", "BU_", "BO_"};
@@ -174,7 +174,7 @@ void DbcParser::signal() {
   current_->signals.push_back(std::move(signal));
 }
 
-/// Nodes, apart by commas.
+/// Nodes, separated by commas.
 void DbcParser::receivers() {
   while (!in_.peek_word().empty() && !begins_a_statement(in_.peek_word())) {
     in_.word("a receiver");
@@ -182,7 +182,7 @@ void DbcParser::receivers() {
   }
 }
 
-/// The signal that a statement names by its message's id and its name; null for one of no message.
+/// The signal that a statement names by its message's id and its own name; null for one without a message.
 DbcSignal* DbcParser::named_signal() {
   const auto id = static_cast<std::uint32_t>(in_.whole("a message's id", most));
   const std::string name = in_.word("a signal's name");

@@ -1,9 +1,9 @@
-// DBC, Vector's text format for what the frames of a CAN bus hold: the messages and signals of a file, strictly read,
-// and a writer for our own. Debian has no C++ library for it.
+// DBC, Vector's text format for the contents of the frames of a CAN bus: a strict reader of messages and signals, and a
+// writer for our own. Debian has no C++ library for it.
 //
 // Read: BO_ messages, SG_ signals, simple multiplexing (M, m3), SIG_VALTYPE_ floats, SG_MUL_VAL_, extended ids (bit
-// 31). Everything else of the format (comments, attributes, value tables, nodes, environment) is passed over; a
-// statement that is none of the format is an error. Files of at most 16 MiB.
+// 31). Everything else in the format (comments, attributes, value tables, nodes, environment) is skipped; an unknown
+// statement is an error. Files of at most 16 MiB.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +27,14 @@ struct DbcSignal {
   bool is_signed = false;
   DbcValueType type = DbcValueType::whole;
   double scale = 1, offset = 0;
-  double minimum = 0, maximum = 0;  ///< both 0: not said
+  double minimum = 0, maximum = 0;  ///< both 0: not specified
   std::string unit;
   bool is_multiplexor = false;               ///< M
-  std::optional<std::uint64_t> multiplexed;  ///< m3: there while the multiplexor is 3
-  /// SG_MUL_VAL_: the multiplexor's name and the ranges of its value; empty without.
+  std::optional<std::uint64_t> multiplexed;  ///< m3: present while the multiplexor is 3
+  /// SG_MUL_VAL_: the multiplexor's name and the ranges of its value; empty if there is none.
   std::string multiplexor;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
-  std::string comment;  ///< of the writer alone
+  std::string comment;  ///< only for the writer
   long line = 0;        ///< where it was read
 };
 
@@ -45,17 +45,17 @@ struct DbcMessage {
   std::uint32_t id = 0;
   bool extended = false;
   int length = 8;       ///< bytes
-  std::string comment;  ///< of the writer alone
+  std::string comment;  ///< only for the writer
   std::vector<DbcSignal> signals;
   long line = 0;
 
-  std::uint32_t file_id() const { return extended ? id | extended_bit : id; }  ///< as a file has it
+  std::uint32_t file_id() const { return extended ? id | extended_bit : id; }  ///< as in a file
 };
 
 using Dbc = std::vector<DbcMessage>;
 
-/// Throws BadInput for what is no DBC file, with the line and what was expected; for a message or, in a message, a
-/// signal that comes twice.
+/// Throws BadInput, with the line and what was expected, if the file is not DBC, or if a message or a signal of a
+/// message occurs twice.
 Dbc read_dbc(const std::string& path);
 
 /// A signal as lib/curbline/can decodes it, and the unit of its values.
@@ -64,12 +64,12 @@ struct DbcTiltSignal {
   std::string unit;
 };
 
-/// Throws BadInput if there is no such message or signal (naming those that there are), or if the signal is one that is
-/// not decoded: a float of 64 bits, one outside its message, one that depends on several multiplexors or values.
+/// Throws BadInput if there is no such message or signal (listing those that there are), or if the signal cannot be
+/// decoded: a float of 64 bits, one outside its message, one that depends on several multiplexors or values.
 DbcTiltSignal find_signal(const Dbc& dbc, const std::string& path, const std::string& message,
                           const std::string& signal);
 
-/// Names must be words of the format (letters, digits, underscores).
+/// Names must be valid in the format (letters, digits, underscores).
 void write_dbc(std::ostream& out, const Dbc& dbc);
 
 }  // namespace curbline::tools

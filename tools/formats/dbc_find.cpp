@@ -6,7 +6,7 @@
 namespace curbline::tools {
 namespace {
 
-/// "a, b, c", the first twenty.
+/// "a, b, c": the first twenty.
 template <typename Named>
 std::string names_of(const std::vector<Named>& all) {
   std::string names;
@@ -20,7 +20,7 @@ const Named* find(const std::vector<Named>& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// One signal of one message, on its way to lib/curbline/can.
+/// Converts one signal of one message for lib/curbline/can.
 struct Search {
   const std::string& path;
   const DbcMessage& message;

@@ -1,5 +1,5 @@
-// The words, numbers, strings and marks of a DBC file, read from front to back. What is not there as expected throws
-// BadInput with file, line and what was expected.
+// Reads the words, numbers, strings and punctuation of a DBC file from front to back. If something else is there,
+// throws BadInput with file, line and what was expected.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,28 @@ namespace curbline::tools {
 
 class DbcScanner {
  public:
-  /// `path` is how errors call the text.
+  /// `path` names the text in errors.
   DbcScanner(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {}
 
-  long line() const { return line_; }  ///< of what comes next, once at_end() or a call below has passed the blanks
+  long line() const { return line_; }  ///< of the next token, once at_end() or a call below has skipped the blanks
   bool at_end();
 
-  /// True, and past it, if the mark comes next.
+  /// If the mark comes next, skips it and returns true.
   bool take(char mark);
   void expect(char mark);
 
-  /// Letters, digits and underscores, not beginning with a digit. peek_word() does not go past it and gives "" for
+  /// Letters, digits and underscores, not beginning with a digit. peek_word() does not advance and returns "" for
   /// anything else.
   std::string_view peek_word();
   std::string word(const char* what);
 
   std::uint64_t whole(const char* what, std::uint64_t highest);
   double number(const char* what);       ///< finite
-  std::string string(const char* what);  ///< in quotation marks; may go over lines
+  std::string string(const char* what);  ///< in quotation marks; may span lines
 
-  /// Past what comes next, a string or one character: to leave out what nobody asks for.
+  /// Skips a string or one character.
   void skip();
-  /// Past the statement's semicolon.
+  /// Skips the rest of the statement, including its semicolon.
   void skip_statement();
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }

@@ -18,7 +18,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// What can be shown of a field in one line of an error.
+/// The part of a field that is shown in the one line of an error.
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   return printable_ascii(text.substr(0, most)) + (text.size() > most ? "..." : "");
@@ -28,7 +28,7 @@ std::string shown(std::string_view text) {
 
 std::optional<std::int64_t> parse_time_ns(std::string_view text) {
   if (const auto exact = candump::parse_time(text)) return exact;
-  // With an exponent, as numerical tools write it: as good as double is, 0.2 us in this century.
+  // With an exponent, as numerical tools write it: as accurate as a double, 0.2 us in this century.
   const auto seconds = parse_number<double>(text);
   if (!seconds || !is_time_s(*seconds)) return std::nullopt;
   const double whole = std::floor(*seconds);

@@ -1,6 +1,5 @@
-// The fields of one line of text, read from left to right. Each is named as it is read, so that what is missing or
-// wrong is said with the file, the line, the field and what was expected. Numbers by std::from_chars: no locale, about
-// 50 ns.
+// The fields of one line of text, read from left to right. Each is named when it is read, so that an error states the
+// file, the line, the field and what was expected. Numbers are read with std::from_chars: no locale, about 50 ns.
 #pragma once
 
 #include <cstdint>
@@ -12,29 +11,30 @@
 
 namespace curbline::tools {
 
-/// Are they seconds that 64 bits of nanoseconds can hold?
+/// Whether 64 bits of nanoseconds can represent these seconds.
 inline bool is_time_s(double seconds) {
   return seconds >= 0.0 && seconds < 9.2e9;
 }
 
-/// A time in seconds, as nanoseconds: exact if it is written in decimals. Nothing if the text is none. No heap.
+/// A time in seconds, converted to nanoseconds: exact if it is written in decimals. Nothing if the text is not a time.
+/// No heap.
 std::optional<std::int64_t> parse_time_ns(std::string_view text);
 
 class Fields {
  public:
-  /// How fields are apart: by any run of blanks and tabs, or by one comma each, blanks about it ignored.
+  /// How fields are separated: by any run of blanks and tabs, or by one comma each, with blanks around it ignored.
   enum class Apart { blanks, commas };
 
-  /// `source` must have given `line`, and outlive this.
+  /// `line` must have been read from `source`, which must outlive this object.
   Fields(const LineReader& source, std::string_view line, Apart apart = Apart::blanks);
 
-  /// True if no field is left. Blank lines start that way.
+  /// True if no field is left, as from the start on a blank line.
   bool at_end() const { return !more_; }
 
-  // Each takes the next field. They throw BadInput if there is none or it is another thing.
+  // Each reads the next field and throws BadInput if there is none or it has another form.
   std::string_view word(std::string_view name);
   double number(std::string_view name);         ///< finite
-  double number_or_nan(std::string_view name);  ///< NaN and infinities too
+  double number_or_nan(std::string_view name);  ///< also accepts NaN and infinities
   std::int64_t whole(std::string_view name, std::int64_t lowest, std::int64_t highest);
   std::int64_t time_ns(std::string_view name);  ///< seconds; exact to the nanosecond if written in decimals
 

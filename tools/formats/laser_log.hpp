@@ -1,6 +1,6 @@
-// The scan lines of a CARMEN log as a robot's laser measured them: their beams are its own, and where they bear the
-// times of their arrival on a host, they get those of the mirror's turns (curbline/intake/line_clock.hpp). Stamps that
-// lie on turns are kept to the nanosecond.
+// The scan lines of a CARMEN log as a robot's laser measured them. Their beams must be those of the laser. If they are
+// stamped on arrival at a host, their times are corrected to the turns of the mirror (curbline/intake/line_clock.hpp).
+// Stamps that already lie on turns are kept to the nanosecond.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ class LaserLog {
   /// The next scan line; nothing at the end. Throws BadInput as CarmenReader and check_geometry() do.
   std::optional<CarmenLine> next();
 
-  /// What a user should know of the stamps at the end; empty if all were kept.
+  /// Remarks for the user about the stamps, at the end; empty if all were kept.
   std::string remarks() const;
 
  private:

@@ -22,7 +22,7 @@ LineReader::LineReader(std::string path, std::size_t max_line)
   if (!file_) throw BadInput(path_ + ": cannot be opened: " + std::strerror(errno) + "; expected a file to read");
 }
 
-/// What lies in many a log folder, and is no text that is wrong.
+/// Recognises packed files, which are common in folders of logs, so that they are not reported as malformed text.
 void LineReader::check_plain() const {
   struct Packed {
     std::string_view start, by;
@@ -41,7 +41,7 @@ std::optional<std::string_view> LineReader::next() {
     fill();
     check_plain();
   }
-  std::size_t searched = 0;  // bytes of the line without a line end
+  std::size_t searched = 0;  // bytes searched without finding a line end
   for (;;) {
     const char* const start = buffer_.data() + begin_;
     const void* const found = std::memchr(start + searched, '\n', end_ - begin_ - searched);
@@ -71,8 +71,8 @@ std::string_view LineReader::take(std::size_t length, std::size_t end_bytes) {
   return line;
 }
 
-/// Makes room behind what is left, up to the longest line and a byte, and reads once. read() and not fread(), which
-/// would wait until a pipe has filled the buffer.
+/// Makes room after the unread bytes, up to the longest line plus one byte, and reads once. Uses read() instead of
+/// fread(), which would wait until a pipe has filled the buffer.
 void LineReader::fill() {
   std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
   end_ -= begin_;

@@ -1,4 +1,4 @@
-// Text as a number, for what is not read by CLI11 or toml++. No locale, no heap; about 50 ns.
+// Converts text to a number where CLI11 and toml++ are not used. No locale, no heap; about 50 ns.
 #pragma once
 
 #include <charconv>
@@ -8,8 +8,8 @@
 
 namespace curbline::tools {
 
-/// The number that is all of the text, as std::from_chars has it: no blanks, no '+'. Nothing for anything else, and for
-/// what the type does not hold.
+/// The number that the whole text represents for std::from_chars: no blanks, no '+'. Nothing for other text, and for
+/// values outside the type's range.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text) {
   const char* const last = text.data() + text.size();

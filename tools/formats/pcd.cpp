@@ -20,7 +20,7 @@ constexpr std::int64_t most_points = std::int64_t{1} << 32;
 struct Field {
   std::string name;
   std::int64_t size = 4;   ///< bytes
-  std::int64_t count = 1;  ///< numbers
+  std::int64_t count = 1;  ///< number of values
 };
 
 struct Header {
@@ -29,10 +29,10 @@ struct Header {
   bool binary = false;
 };
 
-/// Where one coordinate lies in a point.
+/// The position of one coordinate within a point.
 struct Place {
-  std::int64_t column = 0;  ///< of ascii
-  std::int64_t offset = 0;  ///< of binary, bytes
+  std::int64_t column = 0;  ///< for ascii
+  std::int64_t offset = 0;  ///< for binary, in bytes
   bool wide = false;        ///< float64
 };
 
@@ -87,8 +87,8 @@ void read_data_kind(Fields& words, Header& header) {
   header.binary = kind == "binary";
 }
 
-/// Up to and with the DATA line. FIELDS must stand before SIZE, TYPE and COUNT; VERSION, COUNT and VIEWPOINT may be
-/// missing.
+/// Reads up to and including the DATA line. FIELDS must come before SIZE, TYPE and COUNT; VERSION, COUNT and VIEWPOINT
+/// are optional.
 Header read_header(LineReader& source) {
   Header header;
   while (const auto line = source.next()) {

@@ -1,4 +1,4 @@
-// Clouds in PCD 0.7 (Point Cloud Library), ascii or binary. read_cloud() is the way in.
+// Clouds in PCD 0.7 (Point Cloud Library), ascii or binary. Called by read_cloud().
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace curbline::tools {
 
-/// All points, those that are not finite too; fields other than x, y and z are passed over. Throws BadInput, also for
-/// fewer points than the header promises and for binary_compressed data.
+/// All points, including those that are not finite; fields other than x, y and z are skipped. Throws BadInput, also if
+/// there are fewer points than the header states, and for binary_compressed data.
 std::vector<Point3> read_pcd(const std::string& path);
 
 }  // namespace curbline::tools

@@ -1,5 +1,5 @@
-// Hand-drawn or simulated regions of the ground (`.gt`): polygons, one corner a line, x y in millimetres, apart by a
-// blank line.
+// Hand-drawn or simulated regions of the ground (`.gt`): polygons with one corner a line, x y in millimetres, separated
+// by blank lines.
 #pragma once
 
 #include <ostream>
@@ -10,10 +10,11 @@
 
 namespace curbline::tools {
 
-/// Throws BadInput for anything but two numbers a line, for a polygon of less than three corners, and for none.
+/// Throws BadInput for lines that do not have two numbers, for polygons with fewer than three corners, and if there are
+/// no polygons.
 std::vector<Polygon> read_regions(const std::string& path);
 
-/// To 0.1 mm.
+/// Rounded to 0.1 mm.
 void write_regions(std::ostream& out, const std::vector<Polygon>& regions);
 
 }  // namespace curbline::tools

@@ -1,4 +1,4 @@
-// Files that come with curbline: scenes and robots by their name.
+// Finds files that ship with curbline, scenes and robots, by name.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,11 @@
 
 namespace curbline::tools {
 
-/// Where files of a kind ("scenes", "robots") may lie: where they were installed beside the program, and in the source
-/// tree.
+/// Folders that may contain files of a kind ("scenes", "robots"): that installed beside the program, and that in the
+/// source tree.
 std::vector<std::filesystem::path> shipped_folders(const std::string& kind);
 
-/// The path of KIND/NAME.toml in the first of these folders that has it; empty if none has.
+/// The path of KIND/NAME.toml in the first of these folders that has it; otherwise empty.
 std::string shipped_file(const std::string& kind, const std::string& name);
 
 }  // namespace curbline::tools

@@ -16,14 +16,14 @@ long line_of(const toml::node& node) {
   return static_cast<long>(node.source().begin.line);
 }
 
-/// As TOML has it: 1081 and 1081.0 are different things.
+/// As TOML writes it: 1081 and 1081.0 differ.
 std::string shown_number(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
   const std::string text = shortest(node.value_or(0.0));
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-/// What a string of the file may hold, in one line that a terminal has room for.
+/// A string of the file, shortened and escaped to fit one line of a terminal.
 std::string in_one_line(std::string_view text) {
   constexpr std::string_view digits = "0123456789abcdef";
   constexpr std::size_t most = 200;
@@ -43,7 +43,7 @@ std::string in_one_line(std::string_view text) {
   return out;
 }
 
-/// A number or string as it is, anything else by its type.
+/// A number or string as it is; the type for anything else.
 std::string shown(const toml::node& node) {
   std::ostringstream text;
   if (node.is_number()) {
@@ -56,7 +56,8 @@ std::string shown(const toml::node& node) {
   return in_one_line(text.str());
 }
 
-/// Position behind a string that begins at text[i]. One of a single line ends with it if nothing closes it.
+/// The position after the string that begins at text[i]. An unterminated string of a single line ends at the line's
+/// end.
 std::size_t behind_string(std::string_view text, std::size_t i) {
   const char quote = text[i];
   const bool multi_line = text.substr(i, 3) == std::string(3, quote);
@@ -67,17 +68,18 @@ std::size_t behind_string(std::string_view text, std::size_t i) {
     } else if (text[i] == quote) {
       if (!multi_line) return i + 1;
       const std::size_t quotes = std::min(text.find_first_not_of(quote, i), text.size()) - i;
-      if (quotes >= 3) return i + std::min<std::size_t>(quotes, 5);  // two may be the string's own
+      if (quotes >= 3) return i + std::min<std::size_t>(quotes, 5);  // two may belong to the string
     }
   }
   return text.size();
 }
 
-/// toml++ calls itself for each part of a dotted key, and the stack ends. Values it counts itself, to 256 too.
+/// toml++ recurses for each part of a dotted key without a limit, so the stack would overflow. For nested values it has
+/// its own limit, also 256.
 void refuse_deep_keys(std::string_view text, const std::string& path) {
   constexpr int most = 256;
   long line = 1;
-  int dots = 0;  // of what may be a key
+  int dots = 0;  // in what may be a key
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {

@@ -1,5 +1,5 @@
 // Poses of the robot, T_map_base, in a TUM trajectory: one a line, `time tx ty tz qx qy qz qw`; seconds, metres, unit
-// quaternion; # comments are passed over.
+// quaternion; # comments are skipped.
 #pragma once
 
 #include <cstdint>
@@ -19,28 +19,28 @@ struct TrajectoryPose {
   double qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;  ///< of norm 1
 };
 
-/// As the pipeline has it.
+/// The pipeline's type of pose.
 Pose to_pose(const TrajectoryPose& pose);
 
 class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::string& path) : source_(path) {}
 
-  /// The next pose; nothing at the end. Throws BadInput for a line that is cut or holds anything but numbers, for a
-  /// position beyond 1000 km, for a quaternion whose norm differs from 1 by more than 0.01 (within, it is normalised),
-  /// for a time before the last one, and for a file without a pose.
+  /// The next pose; nothing at the end. Throws BadInput for a line that is truncated or contains anything but numbers,
+  /// for a position beyond 1000 km, for a quaternion whose norm differs from 1 by more than 0.01 (otherwise it is
+  /// normalised), for a time before the last one, and for a file without a pose.
   std::optional<TrajectoryPose> next();
 
   const std::string& path() const { return source_.path(); }
-  long line() const { return source_.line(); }  ///< of the pose last given
+  long line() const { return source_.line(); }  ///< of the last pose returned
 
  private:
   LineReader source_;
   std::optional<std::int64_t> last_time_ns_;
 };
 
-/// A pose of a line of text, for what comes live: nothing if it is none, without a reason and without the heap. Whether
-/// the numbers are a pose the pipeline asks.
+/// Parses a pose from a line of text, for live input: nothing if it is malformed, without a reason and without heap.
+/// The pipeline checks whether the numbers are a valid pose.
 std::optional<Pose> parse_pose(std::string_view line);
 
 /// Writes one line: times to the nanosecond, metres to 1e-6, quaternions to 1e-9.

@@ -1,4 +1,4 @@
-// A file read at once, for formats that are not read line by line.
+// Reads a whole file, for formats that are not read line by line.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace curbline::tools {
 
-/// Its bytes. `expected` says in errors what it should be, "a DBC file". Throws BadInput, with the reason, if it cannot
-/// be read, and if it is longer than `most_mib`; of that no more is kept.
+/// The bytes of the file. `expected` states in errors what it should be, "a DBC file". Throws BadInput, with the
+/// reason, if it cannot be read or is longer than `most_mib`; no more than that is read.
 std::string read_whole(const std::string& path, std::size_t most_mib, const std::string& expected);
 
 }  // namespace curbline::tools

@@ -11,11 +11,12 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Metres a cell: a step of h, smoothed, peaks at about 0.4 h; the weak ones are slopes of 8 % over cells of 10 cm.
+/// Metres per cell: a smoothed step of h peaks at about 0.4 h; the weak threshold is a slope of 8 % over cells of 10
+/// cm.
 constexpr double strong = 0.4 * least_step_m, weak = 0.008;
-constexpr int reach = 2;  ///< cells to either side of an edge whose heights tell the step
+constexpr int reach = 2;  ///< cells to either side of an edge that are used for the height of the step
 
-/// Heights by cell, NaN where there is none.
+/// Heights by cell, NaN if unknown.
 class Image {
  public:
   Image(int rows, int cols)
@@ -43,7 +44,7 @@ Image made(int rows, int cols, Value value) {
   return out;
 }
 
-/// Heights with holes of one cell filled from two neighbours or more, as gaps between scan lines are.
+/// Heights, with holes of one cell, such as gaps between scan lines, filled from two neighbours or more.
 Image heights_of(const reference::Dem& dem) {
   const Grid& g = dem.grid;
   const Image raw = made(g.rows, g.cols, [&](int i, int j) {
@@ -61,7 +62,7 @@ Image heights_of(const reference::Dem& dem) {
   });
 }
 
-/// Sum over the 3 x 3 cells about one, weights by row and column; NaN beside a hole.
+/// Weighted sum over the 3 x 3 cells around a cell, weights by row and column; NaN beside a hole.
 double filtered(const Image& image, int i, int j, const std::array<double, 3>& along_i,
                 const std::array<double, 3>& along_j) {
   double sum = 0;
@@ -88,7 +89,8 @@ Gradient gradient_of(const Image& heights) {
   return out;
 }
 
-/// Where the gradient is largest along itself, between cells by a parabola; the offset is in cells.
+/// The maximum of the gradient along its own direction, interpolated between cells by a parabola; the offset is in
+/// cells.
 std::optional<double> ridge(const Gradient& g, int i, int j) {
   const double size = g.size(i, j);
   if (!(size >= weak)) return std::nullopt;
@@ -101,7 +103,8 @@ std::optional<double> ridge(const Gradient& g, int i, int j) {
   return bend < 0 ? 0.5 * (before - after) / bend * std::hypot(di, dj) : 0;
 }
 
-/// The nearest known height along the gradient from the edge's side on, far enough to be on the level.
+/// The known height on one side of the edge, along the gradient: as far from the edge as possible, so that it is that
+/// of the level ground.
 double side_height(const Image& heights, double i, double j, double ui, double uj) {
   for (int far = reach; far >= 1; --far) {
     const double z = heights(static_cast<int>(std::lround(i + far * ui)), static_cast<int>(std::lround(j + far * uj)));
@@ -112,7 +115,7 @@ double side_height(const Image& heights, double i, double j, double ui, double u
 
 using CellIndex = std::pair<int, int>;  ///< row and column
 
-/// Adds a cell, and all ridges that a chain of neighbours joins with it.
+/// Adds a cell and all ridges connected with it through neighbours.
 void join_ridges(const Image& ridges, CellIndex from, Image& kept, std::vector<CellIndex>& out) {
   const auto keep = [&](int i, int j) {
     kept.at(i, j) = 1;
@@ -129,7 +132,7 @@ void join_ridges(const Image& ridges, CellIndex from, Image& kept, std::vector<C
   }
 }
 
-/// Edges above the weak threshold that a chain of neighbours joins with a strong one (Canny's hysteresis).
+/// Edges above the weak threshold that are connected with a strong one through neighbours (Canny's hysteresis).
 std::vector<CellIndex> joined_to_strong(const Image& ridges, const Gradient& g) {
   Image kept(ridges.rows(), ridges.cols());
   std::vector<CellIndex> out;
@@ -156,7 +159,7 @@ std::vector<MapCurb> canny_curbs(const reference::Dem& dem) {
     const double step = side_height(heights, at_i, at_j, ui, uj) - side_height(heights, at_i, at_j, -ui, -uj);
     if (!(step >= least_step_m && step <= most_step_m)) continue;
     EdgePoint edge{grid.x0_m + (at_i + 0.5) * grid.dx_m, grid.y0_m + (at_j + 0.5) * grid.dy_m, 0};
-    // Whether the gradient leads away from the origin.
+    // Whether the gradient points away from the origin.
     const bool up = edge.x_m * ui * grid.dx_m + edge.y_m * uj * grid.dy_m > 0;
     edge.height_m = up ? step : -step;
     edges.push_back(edge);

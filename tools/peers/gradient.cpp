@@ -6,7 +6,7 @@
 namespace curbline::tools::peers {
 namespace {
 
-/// Height of the cell beyond a border less that of the cell before it, 0 where that is no curb.
+/// Height of the cell after a border minus that of the cell before it, 0 if that is not a curb.
 double step_m(const reference::Dem& dem, int i, int j, int axis) {
   const reference::DemCell& a = dem.cells[dem.grid.at(i, j)];
   const reference::DemCell& b = dem.cells[axis == 0 ? dem.grid.at(i + 1, j) : dem.grid.at(i, j + 1)];
@@ -32,7 +32,7 @@ std::vector<MapCurb> gradient_curbs(const reference::Dem& dem) {
         if (here != 0) {
           MapCurb curb = reference::border_run(g, axis, line, first, end);
           const double across = axis == 0 ? curb.x0_m : curb.y0_m;
-          curb.height_m = (across >= 0 ? sum : -sum) / (end - first);  // the side nearer to the origin is near
+          curb.height_m = (across >= 0 ? sum : -sum) / (end - first);  // the side nearer to the origin is the near side
           curb.probability = 1;
           curb.kind = curb.height_m > 0 ? "step_up" : "step_down";
           out.push_back(curb);

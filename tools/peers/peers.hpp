@@ -1,8 +1,8 @@
-// Curbs by the methods that the paper names as its peers, to see what planes and probabilities buy. Both work on the
-// cell means of an elevation map, give out curbs alone (cells bear no label), and know no uncertainty.
+// Curbs by the methods that the paper compares itself with, to show the benefit of planes and probabilities. Both work
+// on the cell means of an elevation map, return only curbs (cells have no labels), and have no uncertainties.
 //
 //   gradient  A border between neighbouring cells that differ by 3 to 30 cm is a curb.
-//   canny     Canny's edges of the height map, through which RANSAC draws cubic polynomials; after F. Oniga, S.
+//   canny     Canny's edges of the height map, through which RANSAC fits cubic polynomials; after F. Oniga, S.
 //             Nedevschi and M. Meinecke, "Curb detection based on a multi-frame persistence map for urban driving
 //             scenarios" (ITSC 2008) and "Polynomial curb detection based on dense stereovision for driving assistance"
 //             (ITSC 2010). Theirs is a stereo camera's map, filtered over frames; here it is the laser's, from one
@@ -22,7 +22,7 @@ inline constexpr double most_step_m = 0.3;    ///< higher is a wall or a car
 
 enum class Method { canny, gradient };
 
-/// Cells with heights and curbs; points above the greatest height are left out. Steps are as seen from the origin.
+/// Cells with heights, and curbs; points above the greatest height are ignored. Steps are as seen from the origin.
 Map map_cloud(std::span<const Point3> cloud, const Grid& grid, double max_height_m, Method method);
 
 std::vector<MapCurb> gradient_curbs(const reference::Dem& dem);

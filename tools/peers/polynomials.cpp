@@ -11,7 +11,7 @@ namespace curbline::tools::peers {
 namespace {
 
 constexpr int trials = 300;
-constexpr int terms = 4;  ///< of a cubic
+constexpr int terms = 4;  ///< coefficients of a cubic
 constexpr double tolerance_m = 0.08, gap_m = 0.4, piece_m = 0.3;
 constexpr std::size_t least_points = 8;
 
@@ -30,7 +30,7 @@ struct Curve {
 
 using Points = std::vector<EdgePoint>;
 
-/// Least squares, the axis from the first to the last point.
+/// Least squares, with the axis from the first to the last point.
 Curve fit(const Points& points, const EdgePoint& from, const EdgePoint& to) {
   Curve curve;
   const double length = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
@@ -51,7 +51,7 @@ Curve fit(const Points& points, const EdgePoint& from, const EdgePoint& to) {
   return curve;
 }
 
-/// The two points that lie farthest apart, of few.
+/// The two points with the largest distance; for few points.
 std::pair<EdgePoint, EdgePoint> ends_of(const Points& points) {
   std::pair<EdgePoint, EdgePoint> ends{points.front(), points.back()};
   double longest = 0;
@@ -66,7 +66,8 @@ std::pair<EdgePoint, EdgePoint> ends_of(const Points& points) {
   return ends;
 }
 
-/// Those near the curve that no gap parts from the middle of the points it was drawn through, in order along it.
+/// The points near the curve that are not separated by a gap from the middle of the points through which it was fitted,
+/// in order along it.
 Points on_curve(const Points& points, const Curve& curve, double middle_u) {
   Points near;
   for (const EdgePoint& p : points) {

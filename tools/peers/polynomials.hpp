@@ -1,4 +1,4 @@
-// Cubic polynomials through edge points, by RANSAC, and the curbs that they are.
+// Fits cubic polynomials to edge points by RANSAC, and converts them to curbs.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@ namespace curbline::tools::peers {
 
 struct EdgePoint {
   double x_m = 0, y_m = 0;
-  double height_m = 0;  ///< far less near
+  double height_m = 0;  ///< far minus near
 };
 
-/// The curve with the most points within 8 cm, then that of the points that are left, and so on while it has 8 points.
-/// Each is cut at gaps of 0.4 m and given out in pieces of at most 0.3 m. The same points give the same curbs.
+/// Finds the curve with the most points within 8 cm, then that of the remaining points, and so on as long as it has 8
+/// points. Each is split at gaps of 0.4 m and returned in pieces of at most 0.3 m. The same points give the same curbs.
 std::vector<MapCurb> polynomial_curbs(std::vector<EdgePoint> points);
 
 }  // namespace curbline::tools::peers

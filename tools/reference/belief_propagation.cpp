@@ -31,7 +31,7 @@ class Propagation {
     fresh_.resize(labels);
   }
 
-  /// All messages once; returns the largest change.
+  /// Updates all messages once; returns the largest change.
   double sweep(bool forward) {
     double change = 0;
     const std::size_t count = 2 * dem_.edges.size();
@@ -61,7 +61,7 @@ class Propagation {
       if (in / 2 != m / 2) cavity_.array() *= message_.col(index(in)).array();
     }
     const double top = cavity_.maxCoeff();
-    if (!(top > 0)) return 0;  // beyond what double can tell: the old message stands
+    if (!(top > 0)) return 0;  // beyond the range of double: the old message stays
     cavity_ /= top;
     general_ ? pass_general(factors_[m / 2]) : pass_two_valued(factors_[m / 2]);
     fresh_ /= fresh_.sum();
@@ -101,8 +101,8 @@ class Propagation {
   const std::vector<EdgeFactor>& factors_;
   Product product_;
   bool general_;
-  Eigen::MatrixXd node_;     ///< a column a cell
-  Eigen::MatrixXd message_;  ///< a column a message
+  Eigen::MatrixXd node_;     ///< one column per cell
+  Eigen::MatrixXd message_;  ///< one column per message
   std::vector<std::vector<std::size_t>> incoming_;
   Eigen::VectorXd cavity_, fresh_;
 };

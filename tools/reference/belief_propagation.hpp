@@ -10,16 +10,16 @@
 
 namespace curbline::tools::reference {
 
-/// Factor of an edge: one value where both cells bear the same label, another where they do not.
+/// Factor of an edge: one value if both cells have the same label, another if not.
 struct EdgeFactor {
   double equal = 1, unequal = 1;
 };
 
-/// The factors of all edges, by Options::edge. eq. (10): with d = |h_i - h_j| and q = 1 / (1 + exp(s2_i + s2_j - d)),
-/// 1 - q where equal, q otherwise.
+/// The factors of all edges, by Options::edge. eq. (10): with d = |h_i - h_j| and q = 1 / (1 + exp(s2_i + s2_j - d)), 1
+/// - q for equal labels, q otherwise.
 std::vector<EdgeFactor> edge_factors(const Dem& dem, const Options& options);
 
-/// Bounds of its code: 200 sweeps, or no message changes by more than 1e-9.
+/// The limits in the paper's code: 200 sweeps, or until no message changes by more than 1e-9.
 inline constexpr int most_sweeps = 200;
 inline constexpr double message_tolerance = 1e-9;
 
@@ -32,7 +32,7 @@ struct BeliefSummary {
 enum class Product { sum, max };
 
 /// Beliefs (rows: cells, normalised) from log node potentials. Messages start uniform and are updated one after the
-/// other, forward and backward in turn (its code: in random order; measured to make no difference).
+/// other, alternately forward and backward (the paper's code: in random order; measurements show no difference).
 BeliefSummary propagate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors,
                         Product product, Messages messages, Eigen::MatrixXd& belief);
 

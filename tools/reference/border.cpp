@@ -9,7 +9,7 @@ double step(const MapPlane& low, const MapPlane& high, double x, double y) {
   return high.height_m(x, y) - low.height_m(x, y);
 }
 
-/// Labels on the low and the high side of a border along `axis`, -1 where there is none.
+/// Labels on the low and the high side of a border along `axis`, -1 for none.
 struct Sides {
   int low = -1, high = -1;
   bool operator==(const Sides&) const = default;
@@ -31,9 +31,9 @@ MapCurb make_curb(const Map& map, const Sides& sides, int axis, MapCurb curb) {
   if (low == nullptr || high == nullptr) return curb;
   const double x = 0.5 * (curb.x0_m + curb.x1_m), y = 0.5 * (curb.y0_m + curb.y1_m);
   const double step_m = step(*low, *high, x, y);
-  curb.height_m = (axis == 0 ? x : y) >= 0 ? step_m : -step_m;  // the side nearer to the origin is near
+  curb.height_m = (axis == 0 ? x : y) >= 0 ? step_m : -step_m;  // the side nearer to the origin is the near side
   curb.height_sd_m = std::hypot(low->sd_m, high->sd_m);
-  // Planes that meet between the centres of the cells make a fold, wherever in the cells it lies.
+  // Planes that meet between the centres of the cells make a fold, wherever within the cells they do.
   const double dx = axis == 0 ? 0.5 * map.grid.dx_m : 0, dy = axis == 0 ? 0 : 0.5 * map.grid.dy_m;
   const bool meet = step(*low, *high, x - dx, y - dy) * step(*low, *high, x + dx, y + dy) <= 0;
   if (!meet && std::abs(step_m) > 2 * curb.height_sd_m) curb.kind = curb.height_m > 0 ? "step_up" : "step_down";

@@ -1,4 +1,4 @@
-// The elevation map (paper, III-A and III-B): each cell the posterior of its height.
+// The elevation map (paper, III-A and III-B): each cell has the posterior of its height.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace curbline::tools::reference {
 
-/// kappa0 = 0, nu0 = 1, sigma0^2 = 3e-4 m^2, as in the paper's code, which goes on with the mode of the posterior.
+/// kappa0 = 0, nu0 = 1, sigma0^2 = 3e-4 m^2, as in the paper's code, which continues with the mode of the posterior.
 struct DemCell {
   int points = 0;
   double height_m = 0;
-  double squares_m2 = 0;  ///< sum of squares about the mean
+  double squares_m2 = 0;  ///< sum of squared deviations from the mean
   double variance_m2() const { return (3e-4 + squares_m2) / (points + 3); }
 };
 
@@ -33,7 +33,7 @@ struct Dem {
   std::array<double, 3> phi(std::size_t v) const;
 };
 
-/// Points above the greatest height, outside the grid or not finite are left out. O(points + cells).
+/// Points above the greatest height, outside the grid or not finite are ignored. O(points + cells).
 Dem make_dem(std::span<const Point3> cloud, const Grid& grid, double max_height_m);
 
 }  // namespace curbline::tools::reference

@@ -8,7 +8,7 @@
 namespace curbline::tools::reference {
 namespace {
 
-// The paper's code has no floor and fails on a plane through three cells; 0.1 mm changes nothing else.
+// The paper's code has no lower bound and fails on a plane through three cells; 0.1 mm changes nothing else.
 constexpr double least_variance_m2 = 1e-8;
 
 Eigen::Vector3d phi_of(const Dem& dem, std::size_t v) {
@@ -76,7 +76,7 @@ void maximise(const Dem& dem, const Responsibilities& responsibility, std::vecto
     if (count < 1e-3) continue;
     if (pivots.minCoeff() > 1e-9 * pivots.maxCoeff()) {
       planes[k].w = solver.solve(b);
-    } else {  // cells on one line tell no plane: a level one through their mean
+    } else {  // cells on one line determine no plane: use a level one at their mean height
       planes[k].w = {b[0] / count, 0, 0};
     }
     double squares = 0;

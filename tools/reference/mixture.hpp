@@ -1,4 +1,4 @@
-// Mixture of planes (paper, III-D): h_i ~ sum_k pi_k N(w_k' phi_i, v_k), fitted by EM. The E-step is the caller's.
+// Mixture of planes (paper, III-D): h_i ~ sum_k pi_k N(w_k' phi_i, v_k), fitted by EM. The caller does the E-step.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,17 +17,17 @@ struct MixturePlane {
 /// Rows: valid cells; columns: planes.
 using Responsibilities = Eigen::MatrixXd;
 
-/// Least squares for each component of three cells or more, which are the first; smaller ones get no plane, but their
-/// cells stay in the mixture. No cell is weighed, as in the code (the text weighs by variance).
+/// Least squares for each component of three cells or more, which come first; smaller ones get no plane, but their
+/// cells stay in the mixture. Cells are not weighted, as in the code (the paper's text weights them by variance).
 std::vector<MixturePlane> planes_of_components(const Dem& dem, const std::vector<int>& component);
 
 /// ln(pi_k N(h_i | w_k' phi_i, v_k)).
 Eigen::MatrixXd log_likelihoods(const Dem& dem, const std::vector<MixturePlane>& planes);
 
-/// E-step for independent cells; returns the log likelihood of all.
+/// E-step for independent cells; returns the total log likelihood.
 double independent_responsibilities(const Eigen::MatrixXd& log_likelihood, Responsibilities& out);
 
-/// M-step: least squares weighed by responsibility. A plane that nearly no cell answers for keeps its parameters.
+/// M-step: least squares weighted by responsibility. A plane that has almost no responsibility keeps its parameters.
 void maximise(const Dem& dem, const Responsibilities& responsibility, std::vector<MixturePlane>& planes);
 
 }  // namespace curbline::tools::reference

@@ -29,7 +29,7 @@ Labelling best_of(const Eigen::MatrixXd& belief) {
   return out;
 }
 
-/// EM until the likelihood stands; the label of each cell by its last E-step, by max-product on the grid.
+/// EM until the likelihood converges; each cell gets the label of its last E-step, or of max-product on the grid.
 Labelling expectation_maximisation(const Dem& dem, const Options& options, std::vector<MixturePlane>& planes) {
   const std::vector<EdgeFactor> factors = edge_factors(dem, options);
   const bool on_grid = options.method == Method::crf_em;

@@ -1,14 +1,14 @@
-// The published method (Maye, Kaestner and Siegwart, ICRA 2012) as a batch in double precision: what the streaming
-// pipeline is compared with. Cells, graph segmentation, least squares, EM with beliefs from loopy belief propagation.
-// Where the paper's text and its code differ, the code is followed (each file says where); eq. (10) can be asked for.
+// The published method (Maye, Kaestner and Siegwart, ICRA 2012) as a batch in double precision, for comparison with the
+// streaming pipeline. Cells, graph segmentation, least squares, EM with beliefs from loopy belief propagation. Where
+// the paper's text and its code differ, this follows the code (each file says where); eq. (10) is optional.
 //
-// Departures from the code; V-measure moves by less than 0.01 with any of the first two, on the recorded streets:
-// - The M-step weighs cells by their responsibility, as the paper's formula does; the code by its square.
-// - A component of three cells gets a plane, one whose cells lie on one line a level plane; the code wants four cells
-//   that tell both slopes.
-// - EM stops when the likelihood of independent cells stands; the code takes belief propagation's own estimate.
-// - Planes have a least variance, node potentials are scaled by their largest: the code can run out of range.
-// - The code drops cells some 38 standard deviations from the mean height; here the greatest height does that.
+// Departures from the code. On the recorded streets, each of the first two changes the V-measure by less than 0.01:
+// - The M-step weights cells by their responsibility, as in the paper's formula; the code by its square.
+// - A component of three cells gets a plane, one whose cells lie on one line a level plane; the code requires four
+//   cells that determine both slopes.
+// - EM stops when the likelihood of independent cells converges; the code uses belief propagation's own estimate.
+// - Planes have a minimum variance, node potentials are scaled by their largest: the code can overflow or underflow.
+// - The code drops cells some 38 standard deviations from the mean height; here the limit on height does that.
 #pragma once
 
 #include <span>
@@ -18,19 +18,19 @@
 namespace curbline::tools::reference {
 
 enum class Method {
-  segment,  ///< the graph segmentation alone
+  segment,  ///< only the graph segmentation
   em,       ///< then EM for a mixture of planes, cells independent
   crf_em,   ///< the E-step by belief propagation on the grid: the paper's algorithm
 };
 
 enum class EdgePotential {
-  potts,  ///< the constant factor of its code: exp(potts) for equal labels, 1 otherwise
+  potts,  ///< the constant factor of the paper's code: exp(potts) for equal labels, 1 otherwise
   eq10,   ///< the paper's eq. (10), from the cells' heights and variances
 };
 
-/// How a message is computed: the result is the same but for rounding.
+/// How a message is computed; the results only differ by rounding.
 enum class Messages {
-  general,     ///< the K x K matrix of the edge, as a general engine for factor graphs does: O(K^2)
+  general,     ///< by the K x K matrix of the edge, as in a general engine for factor graphs: O(K^2)
   two_valued,  ///< from the sum of the sender's belief: O(K)
 };
 

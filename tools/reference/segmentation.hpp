@@ -1,4 +1,5 @@
-// Graph segmentation (Felzenszwalb and Huttenlocher 2004) of the elevation map (paper, III-C): where EM starts.
+// Graph segmentation (Felzenszwalb and Huttenlocher 2004) of the elevation map (paper, III-C): the initialisation of
+// EM.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 
 namespace curbline::tools::reference {
 
-/// Kullback-Leibler divergence of two cells' normals, both ways, added.
+/// Symmetric Kullback-Leibler divergence of two cells' normal distributions: the sum of both directions.
 double divergence(const DemCell& a, const DemCell& b);
 
 /// Component of each valid cell, numbered by size, the largest first.

@@ -13,7 +13,7 @@ struct LaserModel {
   double first_bearing_deg, step_deg;
   int beams;
   double rate_hz;
-  double turn_s;  ///< of the mirror; it takes 360 / step beams a turn, those behind the housing too
+  double turn_s;  ///< of the mirror; a turn has 360 / step beams, including those behind the housing
   double min_range_m, max_range_m;
   double range_sd_m;
 };
@@ -26,9 +26,9 @@ constexpr LaserModel models[] = {
     // from 0.5 m; statistical error 12 mm (systematic +-30 mm). 50 Hz gives as many points a second, and more lines
     // while nodding.
     {"lms-151", -135.0, 0.5, 541, 50.0, 0.020, 0.5, 50.0, 0.012},
-    // SICK LMS2xx technical description: 180 deg, mirror at 75 Hz, mm mode to 8 m, statistical error 5 mm. 1 deg a
-    // turn: for 0.5 deg the scanner interlaces two turns, so that neighbours are 13 ms apart, which a nodding laser
-    // cannot use.
+    // SICK LMS2xx technical description: 180 deg, mirror at 75 Hz, mm mode to 8 m, statistical error 5 mm. Steps of 1
+    // deg: for 0.5 deg the scanner interlaces two turns, so neighbouring beams are 13 ms apart, which is unusable on a
+    // nodding laser.
     {"lms-200", -90.0, 1.0, 181, 75.0, 1.0 / 75.0, 0.1, 8.0, 0.005},
 };
 
@@ -48,7 +48,7 @@ bool set_model(const std::string& name, Robot& robot) {
   return false;
 }
 
-/// What each key's range cannot say.
+/// Checks beyond the range of each key.
 void check_scan(const TomlTable& table, const Robot& robot) {
   const LaserSettings& laser = robot.laser;
   if (laser.bearing_step_rad == 0.0f) table.refuse("bearing_step_rad", "is 0; expected another number");

@@ -1,4 +1,4 @@
-// The parts of a robot file that have a source file of their own. read_robot() puts them together.
+// The parts of a robot file that have their own source file. read_robot() combines them.
 #pragma once
 
 #include "formats/toml_table.hpp"

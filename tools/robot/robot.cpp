@@ -109,7 +109,7 @@ Robot read_robot(const std::string& path) {
   read_simulated(file.table("simulated"), robot.simulated);
   read_tuning(file.table("tuning"), robot);
   file.done();
-  constexpr int most = std::numeric_limits<int>::max();  // the host makes its pipeline as large as it must be
+  constexpr int most = std::numeric_limits<int>::max();  // no limits: the host makes its pipeline as large as necessary
   if (const char* bad = bad_setting(pipeline_settings(robot), {.rows = most, .cols = most, .beams = most}))
     throw BadInput(path + ": " + bad + " is out of range; expected what lib/curbline/settings.hpp says of it");
   return robot;

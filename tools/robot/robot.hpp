@@ -1,5 +1,5 @@
-// The description of a robot, as its TOML file gives it (tools/robots). Everything that simulate, replay and the daemon
-// need to know of the machine.
+// The description of a robot, as read from its TOML file (tools/robots): everything that simulate, replay and the
+// daemon need to know about the machine.
 #pragma once
 
 #include "curbline/can/servo_presets.hpp"
@@ -12,23 +12,23 @@
 
 namespace curbline::tools {
 
-/// Of a laser: what the host programs have room for.
+/// Largest number of beams that the host programs support.
 inline constexpr int most_beams = 2881;
 
-/// What only the simulator needs to know of the robot's sensors.
+/// Properties of the robot's sensors that only the simulator needs.
 struct SimulatedErrors {
   double dropout = 0.0;                  ///< share of returns that are lost
   double beam_divergence_rad = 0.0;      ///< full angle; a beam across an edge gives a mixed pixel
   double tilt_rate_hz = 40.0;            ///< tilt frames a second
-  double tilt_latency_s = 0.0;           ///< of tilt frames, beyond the TiltSettings::latency_s that the robot knows of
-  double tilt_latency_sweep_sd_s = 0.0;  ///< standard deviation of what each sweep's latency differs by
+  double tilt_latency_s = 0.0;           ///< in addition to TiltSettings::latency_s, which the robot knows
+  double tilt_latency_sweep_sd_s = 0.0;  ///< standard deviation of each sweep's difference from it
   double tilt_jitter_s = 0.0;            ///< standard deviation of a frame's time stamp
   double pose_rate_hz = 20.0;
   double pose_position_sd_m = 0.0;
   double pose_attitude_sd_rad = 0.0;
-  double pose_jump_every_s = 0.0;  ///< so often the localisation thinks better, by as much up or down ...
+  double pose_jump_every_s = 0.0;  ///< interval of jumps by which the localisation corrects itself; 0: never
   double pose_jump_height_m = 0.0;
-  double pose_jump_attitude_rad = 0.0;  ///< ... of roll and of pitch; 0: never
+  double pose_jump_attitude_rad = 0.0;  ///< in roll and in pitch
 };
 
 /// How the servo nods, for the simulator.
@@ -56,11 +56,11 @@ struct Robot {
   SimulatedErrors simulated{};
 };
 
-/// Reads a TOML file. Throws BadInput naming file, line and key: unknown key, wrong type, value out of range. Keys bear
+/// Reads a TOML file. Throws BadInput naming file, line and key: unknown key, wrong type, value out of range. Keys have
 /// the names of the fields, units included; all have a default. tools/robots/README.md lists them.
 Robot read_robot(const std::string& path);
 
-/// What Pipeline::init() takes.
+/// The settings for Pipeline::init().
 inline Settings pipeline_settings(const Robot& robot) {
   return {robot.window,       robot.laser,  robot.tilt,   robot.pose,
           robot.segmentation, robot.planes, robot.labels, robot.curbs};

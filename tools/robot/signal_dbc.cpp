@@ -38,7 +38,7 @@ DbcSignal dbc_multiplexor(const can::Multiplexor& multiplexor) {
   return out;
 }
 
-/// Radians of one of a DBC's units, in the spellings that files have.
+/// Radians per unit of a DBC file, in the spellings that occur in files.
 std::optional<double> radians_of(const std::string& unit) {
   static const std::map<std::string, double> known{{"rad", 1.0},       {"mrad", 1e-3},         {"deg", pi / 180},
                                                    {"Deg", pi / 180},  {"degree", pi / 180},   {"degrees", pi / 180},

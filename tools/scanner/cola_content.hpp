@@ -1,4 +1,4 @@
-// What a CoLa B scanner says, put together: letters and numbers, framed.
+// Builds the telegrams of a CoLa B scanner from letters and numbers.
 #pragma once
 
 #include <algorithm>

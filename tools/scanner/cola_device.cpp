@@ -12,7 +12,7 @@
 namespace curbline::tools {
 namespace {
 
-constexpr std::uint8_t unknown_command = 1, unknown_variable = 3;  // of sFA
+constexpr std::uint8_t unknown_command = 1, unknown_variable = 3;  // error codes of sFA
 constexpr double turn_ns = 20e6, ahead_deg = 90.0;
 constexpr std::uint16_t first_range = 16;
 

@@ -1,4 +1,4 @@
-// An LMS200: 20h (modes 24h, 25h and the speeds), 3Bh, 74h; anything else is refused by 0x15. Source: SICK 8007954.
+// An LMS200: 20h (modes 24h, 25h and the speeds), 3Bh, 74h; anything else is refused with 0x15. Source: SICK 8007954.
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -74,7 +74,7 @@ class Lms200Device final : public Device {
   std::int64_t line_duration_ns() const override { return std::llround(turn_ns * variant_.field_deg / 360.0); }
 
  private:
-  /// Content of the reply, nothing for what is not known.
+  /// Content of the reply; empty for an unknown command.
   Bytes answer(std::span<const std::uint8_t> command) {
     if (command.size() == 2 && command[0] == 0x20) return answer_mode(command[1]);
     if (command.size() == 1 && command[0] == 0x74) {

@@ -1,4 +1,4 @@
-// curbline-scanner: a simulated laser scanner to connect to.
+// curbline-scanner: a simulated laser scanner that drivers can connect to.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>

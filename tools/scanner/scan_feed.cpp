@@ -15,7 +15,7 @@ std::optional<CarmenLine> next_line(Simulation& simulation, const LaserSettings&
   return std::nullopt;
 }
 
-/// What misfit_of() compares others with.
+/// The geometry with which misfit_of() compares the other lines.
 LaserSettings beams_of(const CarmenLine& line) {
   LaserSettings laser;
   laser.beams = static_cast<int>(line.ranges_m.size());

@@ -1,5 +1,5 @@
-// The scan lines that a simulated scanner takes: those of a CARMEN log, or of a robot in a scene (the same that
-// `curbline simulate` writes, so that its CAN log belongs to them).
+// The scan lines of a simulated scanner: those of a CARMEN log, or of a robot in a scene (the same as `curbline
+// simulate` writes, so that its CAN log belongs to them).
 #pragma once
 
 #include <functional>
@@ -14,14 +14,15 @@ namespace curbline::tools {
 
 class ScanFeed {
  public:
-  /// All its lines must have the beams of the first.
+  /// All lines must have the beams of the first.
   static ScanFeed from_log(const std::string& path);
   static ScanFeed from_scene(const Scene& scene, const Robot& robot);
 
-  /// The next line; nothing at the end. Throws BadInput for what is wrong with a log.
+  /// The next line; nothing at the end. Throws BadInput for errors in a log.
   std::optional<CarmenLine> next();
 
-  /// The next line without taking it: its geometry is that of all, its time when it is due. nullptr at the end.
+  /// The next line without removing it: all lines have its geometry, and its time is when it is due. nullptr at the
+  /// end.
   const CarmenLine* front() const { return front_ ? &*front_ : nullptr; }
 
  private:

@@ -12,7 +12,7 @@ namespace curbline::tools {
 namespace {
 
 constexpr int dmin_mm = 23, dmax_mm = 60'000;
-constexpr std::uint32_t no_return = 1;  // below DMIN: an error code
+constexpr std::uint32_t no_return = 1;  // a value below DMIN is an error code
 constexpr double turn_ns = 25e6;
 constexpr std::size_t block = 64;
 
@@ -99,7 +99,7 @@ class Scip2Device final : public Device {
       return reply(command, was_on ? "02" : "00");
     }
     if (command.starts_with("MD") || command.starts_with("MS")) return answer_measure(command);
-    return reply(command, "0E");  // not known; SCIP2.0 among them, since it speaks nothing else
+    return reply(command, "0E");  // unknown command; also SCIP2.0, because it supports nothing else
   }
 
   std::string answer_clock(const std::string& command, std::int64_t clock_ns) {

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 using port::wait_for;
 
 constexpr auto tick = 20ms, send_patience = 1'000ms;
-constexpr std::int64_t lead_ns = 300'000'000;  // the scanner is on for so long before its first line
+constexpr std::int64_t lead_ns = 300'000'000;  // the scanner is switched on this long before its first line
 constexpr auto last_words = 5s;
 
 std::unique_ptr<Device> make_device(Protocol protocol, const ScanFeed& feed, const std::string& source, int baud) {
@@ -81,7 +81,7 @@ void ScannerServer::listen_tcp() {
   port_ = ntohs(address.sin_port);
 }
 
-/// The server holds both sides, so that a reader may come and go.
+/// The server holds both ends open, so that readers may connect and disconnect.
 void ScannerServer::open_pty() {
   std::array<char, 64> name{};
   termios raw{};
@@ -114,7 +114,7 @@ void ScannerServer::accept_reader() {
   reader_ = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
 }
 
-/// Waits for commands for a tick at most, not at all when a line is due, and answers them.
+/// Waits for commands and answers them: for one tick at most, or not at all if a line is due.
 void ScannerServer::serve() {
   if (!wait_for(reader_, POLLIN, line_is_due() ? 0ms : clock_runs_ ? 1ms : tick)) return;
   std::array<std::uint8_t, 512> bytes{};
@@ -130,7 +130,7 @@ void ScannerServer::serve() {
   if (same_speed()) send(device_->take(std::span(bytes).first(static_cast<std::size_t>(got)), clock_ns()));
 }
 
-/// On a serial line of another speed both sides hear noise.
+/// At different speeds, both sides of a serial line receive noise.
 bool ScannerServer::same_speed() const {
   if (pty_ < 0) return true;
   termios line{};
@@ -153,7 +153,7 @@ void ScannerServer::play_line() {
   const auto scan = feed_.next();
   const long index = next_line_++;
   if (options_.restart_before.contains(index)) restart_device();
-  if (reader_ < 0 || !device_->measuring()) return;  // lost
+  if (reader_ < 0 || !device_->measuring()) return;  // the line is lost
   const std::int64_t measured_ns = scan->time_ns + device_->line_duration_ns();
   if (measured_ns < wire_free_ns_) return;  // a slow serial line is still busy
   Bytes telegram = device_->telegram(*scan);
@@ -190,7 +190,7 @@ void ScannerServer::drop_reader() {
   reader_ = -1;
 }
 
-/// Closes when the reader has all.
+/// Closes after the reader has received everything.
 void ScannerServer::finish() {
   const auto give_up = Clock::now() + last_words;
   if (pty_ >= 0) {
