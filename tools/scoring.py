@@ -1,4 +1,4 @@
-"""What the scripts that score many scenes share."""
+"""Shared by the scripts that score many scenes."""
 import argparse, contextlib, json, os, shutil, signal, subprocess, sys
 
 signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/streets | head` ends without a traceback
@@ -6,20 +6,20 @@ signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/streets | head` ends wit
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CURBLINE = os.environ.get("CURBLINE", os.path.join(ROOT, "build", "bin", "curbline"))
 LASERS = ["utm30lx", "lms151", "lms200"]
-# A localisation that thinks better of itself, for a robot's [simulated].
+# A localisation that corrects itself in steps, for a robot's [simulated].
 JUMPS = "pose_jump_every_s = 1.5\npose_jump_height_m = 0.02\npose_jump_attitude_rad = 0.007"
 METHODS = ["segment", "em", "crf-em", "curbline", "canny", "gradient"]
 
 
 class Words(argparse.ArgumentParser):
-    """The command line of a script. Where it is wrong, one line says so; exit status 2."""
+    """The command line of a script. An error is reported in one line, with exit status 2."""
 
     def __init__(self, doc, out):
         super().__init__(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
         self.add_argument("--out", default=os.path.join(ROOT, out))
 
     def begin(self, out):
-        """What must be there before the work begins: the program, and a directory to write to."""
+        """Checks the prerequisites before the work begins: the program, and a directory to write to."""
         if shutil.which(CURBLINE) is None:
             self.error(f"{CURBLINE}: no program; expected tools/build to have made it, or CURBLINE to name another")
         try:
@@ -32,7 +32,7 @@ class Words(argparse.ArgumentParser):
 
 
 def number(kind, lowest, highest):
-    """What an argument must be, for argparse."""
+    """The range of an argument, for argparse."""
     def read(word):
         try:
             value = kind(word)
@@ -45,12 +45,12 @@ def number(kind, lowest, highest):
 
 
 def script(main):
-    """Runs a script. What stops it is told by one line; exit status 1, or 130 of one that was interrupted."""
+    """Runs a script. A failure is reported in one line, with exit status 1, or 130 if interrupted."""
     try:
         try:
             main()
         finally:
-            print(end="", flush=True)  # here, where a full disk can be told
+            print(end="", flush=True)  # flush here, where a full disk can be reported
     except KeyboardInterrupt:
         status, why = 130, "interrupted"
     except OSError as error:
@@ -58,13 +58,13 @@ def script(main):
     else:
         return
     print(f"{os.path.basename(sys.argv[0])}: {why}", file=sys.stderr)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what Python still holds and would fail to write once more
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # discards what Python still buffers, whose write would fail again
     sys.exit(status)
 
 
 @contextlib.contextmanager
 def whole_file(path):
-    """A file to write, which is at PATH once it is whole: until then, or if it never is, an earlier one stays."""
+    """A file to write, which appears at PATH only when it is complete: until then, or on failure, an earlier one stays."""
     part = path + ".part"
     try:
         with open(part, "w") as file:
@@ -79,13 +79,13 @@ def whole_file(path):
 
 
 def failed(error, status, words):
-    """Ends the script: curbline has failed, and said why."""
+    """Ends the script after curbline has failed with a message."""
     why = error.strip()
     sys.exit(f"{why}{': ' if why else ''}exit status {status} of curbline {' '.join(words)}")
 
 
 def run(*words):
-    """Runs curbline to its end; its standard output. Ends the script where it fails."""
+    """Runs curbline to its end and returns its standard output. Ends the script if it fails."""
     done = subprocess.run([CURBLINE, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         failed(done.stderr, done.returncode, words)
@@ -94,7 +94,7 @@ def run(*words):
 
 
 def parsed(text, words):
-    """What curbline says with --json. Ends the script where that is nothing."""
+    """Parses the output of curbline --json. Ends the script if it is not JSON."""
     try:
         return json.loads(text)
     except ValueError:
@@ -110,7 +110,7 @@ def robot(name):
 
 
 def late_robot(laser, directory, errors):
-    """The shipped robot with these lines in its [simulated], in DIRECTORY/late.toml; its path."""
+    """Writes the shipped robot with these lines in its [simulated] to DIRECTORY/late.toml; returns the path."""
     with open(robot(laser)) as file:
         text = file.read()
     path = os.path.join(directory, "late.toml")
@@ -120,11 +120,11 @@ def late_robot(laser, directory, errors):
 
 
 def mean(values, weights=None):
-    """Of those that are there; None of none."""
+    """The mean of the values that are not None, or None if there are none."""
     pairs = [(v, w) for v, w in zip(values, weights or [1] * len(values)) if v is not None and w > 0]
     return sum(v * w for v, w in pairs) / sum(w for _, w in pairs) if pairs else None
 
 
 def shown(value, scale, decimals, width=10):
-    """A figure of a table, or a dash where there is none."""
+    """A figure of a table, or a dash if it is missing."""
     return f"{'-':>{width}}" if value is None else f"{scale * value:{width}.{decimals}f}"

@@ -1,6 +1,6 @@
-// Times and sizes, all in one process so that ratios hold: a scan line, a whole map of 1600 cells beside the paper's
-// algorithm, belief messages, bytes for several limits. The data is the simulated street of the demo, seen by the robot
-// of the demo.
+// Times and sizes, all in one process so that their ratios are comparable: a scan line, a whole map of 1600 cells
+// compared with the paper's algorithm, belief messages, bytes for several limits. The data is the simulated street of
+// the demo, seen by the robot of the demo.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// One recorded nod: what goes in, line by line, and the same as points.
+/// One recorded nod: the inputs, line by line, and the same as points.
 struct Street {
   Settings settings;
   std::vector<TiltReading> tilt;
@@ -51,7 +51,7 @@ struct Street {
     project();
   }
 
-  /// Readings up to the first after the line's end; returns where to go on.
+  /// Feeds readings up to the first after the line's end; returns where to continue.
   template <typename Pipeline>
   std::size_t feed(Pipeline& pipeline, std::size_t next, std::int64_t line_ns) const {
     while (next < tilt.size() && (next == 0 || tilt[next - 1].time_ns < line_ns + 25'000'000))
@@ -79,7 +79,8 @@ const Street& street() {
   return data;
 }
 
-/// A nod, line by line: median, 99 % and worst of all lines, and the median as a share of the 25 ms between lines.
+/// A nod, line by line: median, 99 % quantile and maximum of all lines, and the median as a share of the 25 ms between
+/// lines.
 void scan_line(benchmark::State& state) {
   const auto pipeline = std::make_unique<Pipeline<board_limits>>();
   std::vector<double> times;
@@ -123,7 +124,7 @@ double map_by_reference(reference::Messages messages) {
   return seconds_since(start);
 }
 
-/// The same points to a map by both, in turn; times_as_fast is the ratio of the sums.
+/// Both methods map the same points in turn; times_as_fast is the ratio of the sums.
 void whole_map(benchmark::State& state, reference::Messages messages) {
   const auto pipeline = std::make_unique<Pipeline<board_limits>>();
   double ours = 0, theirs = 0;
@@ -146,13 +147,13 @@ BENCHMARK_CAPTURE(whole_map, against_crf_em_with_K_x_K_messages, reference::Mess
 BENCHMARK_CAPTURE(whole_map, against_crf_em_with_O_K_messages, reference::Messages::two_valued)
     ->Unit(benchmark::kMillisecond);
 
-/// Belief propagation over the whole window, messages a second.
+/// Belief propagation over the whole window, in messages a second.
 void belief_messages(benchmark::State& state) {
   const auto pipeline = std::make_unique<Pipeline<board_limits>>();
   map_by_pipeline(*pipeline);
   LabelField<board_limits> field;
   field.init(street().settings.labels);
-  // The planes of a finished map, as the field takes them.
+  // The planes of a finished map, as input of the field.
   Segmentation<board_limits> segmentation;
   PlaneMixture<board_limits> mixture;
   Dem<board_limits> dem;

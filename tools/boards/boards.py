@@ -12,10 +12,10 @@ QUIET = ["-display", "none", "-monitor", "none", "-serial", "null"]
 @dataclass(frozen=True)
 class Board:
     name: str
-    folder: str = "desk"   # of board/
-    run: tuple = ()        # what comes before the program: an emulator and its machine
+    folder: str = "desk"   # in board/
+    run: tuple = ()        # placed before the program: an emulator and its machine
     compilers: str = ""    # prefix of its binutils
-    budget: bool = False   # its folder's budget.toml is of this core
+    budget: bool = False   # its folder's budget.toml applies to this core
 
     @property
     def core(self):
@@ -47,7 +47,8 @@ BOARDS = {b.name: b for b in [
     Board("cortex-r5f", "zcu102_r5", ZCU102, ARM, budget=True),
 ]}
 REFERENCE = "x86-64-gcc"
-# An emulated board's time is its instructions', 16 ns each: the same in every run, however busy this machine is.
+# The time of an emulated board is derived from its instructions, 16 ns each: the same in every run, however busy this
+# machine is.
 BY_INSTRUCTIONS = ["-icount", "shift=4,sleep=off"]
 
 
@@ -63,7 +64,7 @@ def command(board, program, words, extra=()):
 
 
 def run(board, program, words, extra=(), timeout_s=900):
-    """Runs it and returns what it printed. Ends with one line if it fails."""
+    """Runs it and returns its output. Ends with one line if it fails."""
     line = command(board, program, words, extra)
     environment = {**os.environ, "QEMU_AUDIO_DRV": "none"}
     try:
@@ -75,7 +76,7 @@ def run(board, program, words, extra=(), timeout_s=900):
     if done.returncode != 0:
         sys.exit(f"{board.name}: {program.name} ended with {done.returncode}: {done.stderr.strip()}")
     said = (done.stdout + done.stderr).splitlines(keepends=True)
-    return "".join(line for line in said if not line.startswith("qemu: module audio"))  # what QEMU misses and nobody uses
+    return "".join(line for line in said if not line.startswith("qemu: module audio"))  # QEMU lacks an audio module
 
 
 def program_of(build, name, program="drive.elf"):

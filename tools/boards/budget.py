@@ -18,18 +18,18 @@ import stack
 import stages
 
 BUDGETS = [("flash", "firmware"), ("ram", "pipeline"), ("stack", "pipeline"), ("instructions", "worst"), ("instructions", "mean")]
-PAINT_MARGIN = 160  # bytes of the frames above main(), which painting sees and the graph of main() does not
+PAINT_MARGIN = 160  # bytes of the frames above main(), which painting includes and the graph of main() does not
 
 
 def flash_bytes(elf, prefix):
-    """What the loader writes: every section with contents that is part of the image."""
+    """The bytes that the loader writes: every section with contents that is part of the image."""
     out = stages.run([prefix + "objdump", "-h", elf])
     sections = re.findall(r"^\s*\d+ (\S+)\s+([0-9a-f]+) .*\n\s+(.*)$", out, re.M)
     return sum(int(size, 16) for _, size, flags in sections if "LOAD" in flags.split(", "))
 
 
 def stack_rows(board, elf, results):
-    """Of the pipeline by the call graph; main() by the graph and by painting, which must agree."""
+    """The pipeline's by the call graph; main()'s by the graph and by painting, which must agree."""
     graph = stack.CallGraph(elf.parent, elf, board.compilers)
     pipeline, _ = graph.worst("::take(const curbline::ScanLine&)")
     main, path = graph.worst("main")
@@ -55,7 +55,7 @@ def read_counts(path):
 
 
 def rows_by_drive(results):
-    """Where the worst line and the highest mean are."""
+    """The drives with the worst line and the highest mean."""
     totals = {path.stem: [sum(line[1:len(stages.STAGES)]) for line in read_counts(path)] for path in results.glob("*.counts")}
     means = {drive: sum(t) // len(t) for drive, t in totals.items()}
     recorded = [n for drive, t in totals.items() if drive.startswith("scan-") for n in t]
@@ -93,7 +93,8 @@ def measure(build, board):
 
 
 def print_table(board, rows, budget, kept):
-    """Returns how many budgets are exceeded. A budget of what is not measured would never be: it is refused."""
+    """Prints the table and returns the number of exceeded budgets. A budget without a measurement could never be exceeded, so it is
+    refused."""
     measured = {(group, name) for group, name, _ in keyed(rows)}
     for group, names in budget.items():
         for name in names:
@@ -114,7 +115,7 @@ def print_table(board, rows, budget, kept):
 
 
 def without_recorded(budget):
-    """The budget but for the mean of all drives, which is not known; says so."""
+    """The budget without the mean of all drives, which is unknown; prints a note."""
     print("instructions.mean: THE RECORDED DRIVES ARE NOT THERE, NOT JUDGED without them", file=sys.stderr)
     return budget | {"instructions": {name: allowed for name, allowed in budget["instructions"].items() if name != "mean"}}
 
@@ -127,7 +128,7 @@ def keyed(rows):
 
 
 def check(budget, path):
-    """Every budget is there: one that is not would never be exceeded."""
+    """Requires every budget: one that is missing could never be exceeded."""
     for group, names in budget.items():
         if not isinstance(names, dict):
             sys.exit(f"{path}: {group} is {names!r}; expected a table")

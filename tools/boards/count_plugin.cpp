@@ -1,9 +1,10 @@
-// A QEMU plugin that counts the instructions of a firmware by stage and by scan line. Arguments: map=FILE (what
-// tools/budget made of the firmware's debug information: `line ADDRESS`, then `range FIRST END STAGE`, hexadecimal,
-// stage -1 for helpers) and out=FILE (a row of counts by stage for each line). An instruction of a helper, such as
-// memcpy, counts for the stage that ran last. A line ends where the instruction at `line` is reached. Counts repeat
-// exactly. For firmware on one core without interrupts; what no range holds is another core's and not counted. Source:
-// QEMU, TCG Plugins, version 1 of the interface; its header is in no package, so what is used of it stands here.
+// A QEMU plugin that counts the instructions of a firmware by stage and by scan line. Arguments: map=FILE (written by
+// tools/budget from the firmware's debug information: `line ADDRESS`, then `range FIRST END STAGE`, hexadecimal, stage
+// -1 for helpers) and out=FILE (a row of counts by stage for each line). An instruction of a helper, such as memcpy,
+// counts for the stage that ran last. A line ends when the instruction at `line` is reached. Counts repeat exactly. For
+// firmware on one core without interrupts; instructions outside all ranges belong to another core and are not counted.
+// Source: QEMU, TCG Plugins, version 1 of the interface; no package contains its header, so the declarations needed are
+// repeated here.
 #include <algorithm>
 #include <array>
 #include <cinttypes>
@@ -36,7 +37,7 @@ struct Range {
   std::uint64_t first, end;
   int stage;
 };
-/// What a block of translated code adds.
+/// The counts that a block of translated code adds.
 struct Block {
   bool ends_line = false;
   std::uint64_t leading_helpers = 0;  ///< before the first instruction that has a stage
@@ -72,13 +73,13 @@ void on_block(unsigned, void* data) {
 }
 
 void on_translation(qemu_plugin_id_t, qemu_plugin_tb* tb) {
-  auto* const block = new Block;  // lives as long as the translation may: to the end
+  auto* const block = new Block;  // lives until the end, as the translation may
   const std::size_t n = qemu_plugin_tb_n_insns(tb);
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint64_t address = qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(tb, i));
     if (i == 0 && address == line_address) block->ends_line = true;  // a function's entry begins a block
     const int stage = stage_of(address);
-    if (stage == elsewhere) continue;  // of another core
+    if (stage == elsewhere) continue;  // code of another core
     if (stage != helper) block->last_stage = stage;
     ++(block->last_stage == helper ? block->leading_helpers
                                    : block->counts[static_cast<std::size_t>(block->last_stage)]);

@@ -1,4 +1,4 @@
-"""The drives that boards are run on: every recorded sweep of ../shared where that is, and simulated scenes."""
+"""The drives for the boards: every recorded sweep of ../shared, if that exists, and simulated scenes."""
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +9,7 @@ sys.path.append(str(boards.ROOT / "tools"))
 import scoring
 
 RECORDED = boards.ROOT.parent / "shared" / "data" / "clausius"
-# Streets with the most planes, curbs and work, a drive whose window moves, and one whose poses step.
+# The streets with the most planes, curbs and work, a drive whose window moves, and one whose poses step.
 LASER = "utm30lx"
 SCENES = ["street", "steps", "roundabout", "inclined_planes", "city", "random-drive:9001"]
 ERRORS = {"random-drive:9001": scoring.JUMPS}
@@ -30,7 +30,7 @@ def check(line):
 
 
 def write(build, robot, scans, can, poses, name):
-    """Writes one unless it is newer than what it is made of."""
+    """Writes a drive unless it is newer than its sources."""
     out = folder(build) / f"{name}.drive"
     tool = Path(build) / "bin" / "curbline-drive-log"
     sources = [tool, robot, scans, can] + ([poses] if poses else [])
@@ -40,7 +40,7 @@ def write(build, robot, scans, can, poses, name):
 
 
 def make(build):
-    """Makes what is missing. Says so where the recordings are."""
+    """Makes the missing drives. Prints a note if the recordings do not exist."""
     folder(build).mkdir(parents=True, exist_ok=True)
     robots = boards.ROOT / "tools" / "robots"
     if not RECORDED.is_dir():

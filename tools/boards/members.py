@@ -1,4 +1,4 @@
-"""Bytes of each member of a class, by a firmware's debug information."""
+"""Bytes of each member of a class, from a firmware's debug information."""
 import re
 import subprocess
 
@@ -28,7 +28,7 @@ def name_of(attributes):
 
 
 def member_sizes(elf, class_name, prefix):
-    """[(member, bytes up to the next)] in order of address, of the first complete class whose name begins so."""
+    """[(member, bytes up to the next)] in order of address, for the first complete class whose name begins with class_name."""
     members, size, inside = [], 0, None
     for depth, tag, attributes in entries(elf, prefix):
         if inside is None:

@@ -28,7 +28,7 @@ def frame_time(record):
 
 
 def as_received(drive, received, out):
-    """Writes the drive with the frames that the board had. Returns by how much the latest came late."""
+    """Writes the drive with the frames as the board received them. Returns the largest delay."""
     latest = 0
     frames = iter(received)
     with out.open("wb") as file:
@@ -51,7 +51,7 @@ def as_received(drive, received, out):
 
 
 def check_curbs(build, drive, results):
-    """What the times of the bus change is a few microseconds of tilt: the same curbs as from the log, to half a centimetre."""
+    """The bus shifts the times of the tilt by a few microseconds: the curbs must equal those from the log to half a centimetre."""
     ours, theirs = ([[float(v) for v in line.split(",")[:5]] for line in curbs_of(build, path)] for path in (results, reference_of(build, drive)))
     if not ours or len(ours) != len(theirs) or any(abs(a - b) > 0.005 for o, t in zip(ours, theirs) for a, b in zip(o, t)):
         sys.exit(f"{drive.stem}: curbs over the bus are {ours}, and those of the log {theirs}")

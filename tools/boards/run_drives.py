@@ -18,7 +18,7 @@ def results_folder(build, name):
 
 
 def run_core(board, build, program, drive, results):
-    """With the plugin that counts, if what it counts has a budget."""
+    """Runs with the counting plugin if the board has a budget."""
     extra = counting(board, build, program, results) if board.budget else []
     said = boards.run(board, program, [str(drive), str(results)], extra)
     used = re.search(r"stack bytes used: (\d+)", said)

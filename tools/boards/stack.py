@@ -15,7 +15,7 @@ SIZE = re.compile(r"(\d+) bytes \((static|dynamic[^)]*)\)")
 
 
 def bare(title):
-    """The linker's name: static functions bear their file before a colon."""
+    """The linker's name: titles of static functions have their file before a colon."""
     return title.rsplit(":", 1)[-1]
 
 
@@ -27,7 +27,7 @@ class CallGraph:
             sys.exit(f"{build}: no call graph; expected a build with -fcallgraph-info=su,da, not out of a compiler cache")
         for path in graphs:
             target = re.search(r"CMakeFiles/(\S+\.elf)\.dir/", str(path))
-            if not target or target[1] == elf.name:  # of the libraries and of this program
+            if not target or target[1] == elf.name:  # part of the libraries or of this program
                 self.read(path.read_text())
         self.add_library_functions(elf, prefix)
 
@@ -43,7 +43,8 @@ class CallGraph:
             self.calls.setdefault(bare(source), set()).add(bare(target))
 
     def add_library_functions(self, elf, prefix):
-        """What the compiler left no note of: registers pushed, stack taken and calls, instruction by instruction."""
+        """Adds functions without call graphs from the disassembly: registers pushed, stack allocated and calls, instruction by
+        instruction."""
         listing = run([prefix + "objdump", "-d", "--no-show-raw-insn", elf])
         name = None
         for line in listing.splitlines():
@@ -73,8 +74,8 @@ class CallGraph:
             self.calls.setdefault(name, set()).add("__indirect_call")
 
     def worst(self, root):
-        """(bytes, [functions of the deepest path]) of a function and what it calls; named as the linker has it, or by a part of its
-        readable name that no other has."""
+        """(bytes, [functions of the deepest path]) of a function and what it calls; named by its linker name, or by a part of its readable
+        name that is unique."""
         found = [root] if root in self.bytes else [n for n in self.bytes if root in self.names.get(n, n)]
         if len(found) != 1:
             sys.exit(f"{root}: {len(found)} functions of that name in the call graph; expected one")
@@ -98,7 +99,7 @@ class CallGraph:
 
 
 def registers(operands):
-    """How many are in {r4, r5-r7, lr}."""
+    """The number of registers in a list such as {r4, r5-r7, lr}."""
     count = 0
     for part in re.search(r"\{([^}]*)\}", operands)[1].split(","):
         ends = [int(n) if n else 0 for n in re.findall(r"[rsd](\d+)", part)]

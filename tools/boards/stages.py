@@ -1,4 +1,4 @@
-"""Which instruction of a firmware belongs to which stage of the pipeline, by its debug information, inlined code included."""
+"""Assigns the instructions of a firmware to the stages of the pipeline, from its debug information, inlined code included."""
 import os
 import re
 import subprocess
@@ -6,11 +6,11 @@ from pathlib import Path
 
 from boards import ROOT
 
-# Stage 0 is what is not the pipeline: the board, its port, the drive's records.
+# Stage 0 is everything outside the pipeline: the board, its port, the drive's records.
 STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes", "labels", "curbs"]
 HELPER = -1
-# Whose code is written for one stage, by its folder in lib/curbline. That of others, what all share and the map, belongs to the stage that
-# calls it.
+# Folders of lib/curbline whose code is written for one stage. Other code, the shared parts and the map, belongs to the stage that calls
+# it.
 FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "planes", "labels": "labels", "curbs": "curbs"}
 
 
@@ -20,9 +20,9 @@ def run(line, text=None):
 
 
 def stage_of_frame(function, path):
-    """Stage of one frame of an inline stack, None for what any stage uses."""
+    """Stage of one frame of an inline stack, None for code that any stage uses."""
     path = Path(path)
-    if path.parent.name == "map":  # stages read cells too; adding to them is a stage
+    if path.parent.name == "map":  # all stages read cells; adding to them is a stage of its own
         return "cells" if path.name == "viewpoints.hpp" or re.search(r"\b(add|follow|clear_touched)\b", function) else None
     if path.name == "pipeline.hpp":
         return "pipeline"
@@ -34,7 +34,7 @@ def stage_of_frame(function, path):
 
 
 def stage_of_stack(frames):
-    """frames: (function, file), innermost first. What the pipeline called last decides; what that called in turn is part of it."""
+    """frames: (function, file), innermost first. The function that the pipeline called decides; what that called in turn is part of it."""
     stage = None
     for function, path in frames:
         here = stage_of_frame(function, path)
@@ -59,14 +59,14 @@ def inline_stacks(elf, addresses, addr2line):
 
 
 def symbols(elf, nm):
-    """[(address, size, type, demangled name)] of what has a size."""
+    """[(address, size, type, demangled name)] of symbols that have a size."""
     out = run([nm, "-S", "-C", elf])
     found = re.findall(r"^([0-9a-f]+) ([0-9a-f]+) (\w) (.*)$", out, re.M)
     return [(int(a, 16), int(s, 16), t, n) for a, s, t, n in found]
 
 
 def write_map(elf, path, prefix):
-    """The count plugin's map of a firmware."""
+    """Writes the count plugin's map of a firmware."""
     functions = [(a & ~1, s, n) for a, s, t, n in symbols(elf, prefix + "nm") if t.lower() in "tw"]
     line_end = [a for a, _, n in functions if re.search(r"\bDrive<.*::end_line\(", n)]
     if len(line_end) != 1:

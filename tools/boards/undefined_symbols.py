@@ -17,7 +17,7 @@ ARCHIVES = ("curbline/lib/libcurbline.a", "common/libcurbline_drive.a")
 
 
 def asked_of_others(archives, prefix):
-    """What the archives use together and do not have."""
+    """The symbols that the archives together use and do not define."""
     undefined, defined = set(), set()
     for line in stages.run([prefix + "nm", *archives]).splitlines():
         if match := re.fullmatch(r"[0-9a-f ]*\s(\w) (\S+)", line):

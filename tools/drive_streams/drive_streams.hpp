@@ -1,4 +1,4 @@
-// Logs to the stream that boards are fed, and the stream of results to curbs.
+// Converts logs to the stream that boards are fed, and the stream of results to curbs.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@ namespace curbline::tools {
 
 struct DriveFiles {
   std::string robot;              ///< TOML
-  std::string scans, can, poses;  ///< can and poses are empty where the robot has none
+  std::string scans, can, poses;  ///< can and poses are empty if the robot has none
   std::string out;
 };
 
-/// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: what `curbline
-/// replay` gives the pipeline, with some readings more of the time to come. Returns what a user should know of the
-/// lines' stamps (LaserLog::remarks()). Throws BadInput.
+/// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: as `curbline
+/// replay` feeds the pipeline, with some more readings ahead. Returns remarks for the user about the lines' stamps
+/// (LaserLog::remarks()). Throws BadInput.
 std::string write_drive(const DriveFiles& files);
 
 /// The curbs after the last scan line of a stream of results. Throws BadInput.

@@ -1,4 +1,4 @@
-// curbline-drive-log: logs to a board's input, a board's output to curbs.
+// curbline-drive-log: converts logs to a board's input, and a board's output to curbs.
 #include <CLI/CLI.hpp>
 #include <iostream>
 

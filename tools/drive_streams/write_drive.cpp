@@ -19,11 +19,12 @@ using drive_log::RecordHeader;
 using drive_log::RecordKind;
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
-/// The board finds the servo's latency on the way, and this many standard deviations beyond what was set are served.
+/// The board estimates the servo's latency during the drive; readings are sent far enough ahead for this many standard
+/// deviations beyond the configured latency.
 constexpr float latency_bound = 4.0f;
 
-/// Padding and the room of an empty optional lie in the stream too: zeros there, so that the same logs make the same
-/// bytes. Compilers that cannot tell padding leave it as it is; nobody reads it.
+/// Padding and the storage of an empty optional are part of the stream: zeroed, so that the same logs give the same
+/// bytes. Compilers without this builtin leave it as it is; nobody reads it.
 template <typename T>
 void clear_padding(T& value) {
 #if __has_builtin(__builtin_clear_padding)

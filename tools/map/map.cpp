@@ -15,10 +15,10 @@ MapCurb part_of(const MapCurb& curb, const Share& share) {
   part.y0_m = curb.y0_m + share.from * dy;
   part.x1_m = curb.x0_m + share.to * dx;
   part.y1_m = curb.y0_m + share.to * dy;
-  const double off = 0.5 * (share.from + share.to) - 0.5;  // of its middle from the curb's
+  const double off = 0.5 * (share.from + share.to) - 0.5;  // of its middle from the curb's middle
   part.height_m = curb.height_m + off * curb.rise_m;
   part.height_sd_m = std::hypot(curb.height_sd_m, off * curb.rise_sd_m);
-  part.position_sd_m = curb.position_sd_m * std::sqrt(1 + 12 * off * off);  // as that of a line
+  part.position_sd_m = curb.position_sd_m * std::sqrt(1 + 12 * off * off);  // as for a fitted line
   part.rise_m = (share.to - share.from) * curb.rise_m;
   part.rise_sd_m = (share.to - share.from) * curb.rise_sd_m;
   if (is_step(curb)) part.kind = part.height_m < 0 ? "step_down" : "step_up";

@@ -1,4 +1,4 @@
-// A finished map, as every method gives it out: what the label and curb files, the pictures and the scores are made of.
+// A finished map, as returned by every method: the basis of the label and curb files, the pictures and the scores.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct Point3 {
   double x = 0, y = 0, z = 0;
 };
 
-/// The place of a grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
+/// A grid: cell (i, j) covers [x0 + i dx, x0 + (i+1) dx) x [y0 + j dy, y0 + (j+1) dy), metres.
 struct Grid {
   double x0_m = 0, y0_m = 0;
   double dx_m = 0.1, dy_m = 0.1;
@@ -23,7 +23,7 @@ struct Grid {
   std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(j);
   }
-  double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< of a cell's centre
+  double x_m(int i) const { return x0_m + (i + 0.5) * dx_m; }  ///< centre of a cell
   double y_m(int j) const { return y0_m + (j + 0.5) * dy_m; }
   Bounds bounds() const { return {x0_m, y0_m, x0_m + rows * dx_m, y0_m + cols * dy_m}; }
 };
@@ -32,11 +32,11 @@ struct MapCell {
   double x_m = 0, y_m = 0;  ///< centroid of its points, or its centre
   double height_m = 0;      ///< mean height
   double variance_m2 = 0;   ///< of the cell's posterior
-  int points = 0;           ///< 0: the cell is invalid and every other field means nothing
-  int label = -1;           ///< of the surface of its readings, a plane or several along a bend; -1: none
+  int points = 0;           ///< 0: the cell is invalid and all other members are meaningless
+  int label = -1;           ///< of the surface of its readings, which is one plane or several along a bend; -1: none
   double probability = 0;   ///< of the plane of its readings
-  int ground = -1;  ///< label of the ground under its middle, where that is told apart from the readings'; -1: not
-  int plane = -1;   ///< label of the plane of its readings, where that is told apart from the surface; -1: not
+  int ground = -1;          ///< label of the ground at its centre, if separate from that of the readings; otherwise -1
+  int plane = -1;           ///< label of the plane of its readings, if separate from that of the surface; otherwise -1
 };
 
 inline int ground_of(const MapCell& cell) {
@@ -55,22 +55,22 @@ struct MapPlane {
   double height_m(double x_m, double y_m) const { return z0_m + sx * x_m + sy * y_m; }
 };
 
-/// A straight piece of curb line. height_m: far side less near side, as seen from the robot: above 0 is a step up.
+/// A straight piece of curb line. height_m: far side minus near side, as seen from the robot: positive is a step up.
 struct MapCurb {
   double x0_m = 0, y0_m = 0, x1_m = 0, y1_m = 0;
   double height_m = 0, height_sd_m = 0, probability = 0;
   std::string kind{};  ///< step_up, step_down, crease, ramp_edge
   double position_sd_m = 0, face_width_m = 0;
-  int id = 0;         ///< 0: it has none
-  double rise_m = 0;  ///< how much height_m, which is that of the middle, grows from one end to the other
+  int id = 0;         ///< 0: none
+  double rise_m = 0;  ///< change of height_m, which applies to the middle, from one end to the other
   double rise_sd_m = 0;
   bool operator==(const MapCurb&) const = default;
 };
 
-/// Told as a step, up or down; creases and edges of ramps are none.
+/// Whether its kind is a step, up or down, and not a crease or the edge of a ramp.
 bool is_step(const MapCurb& curb);
 
-/// That part of a curb line, as high as it is there.
+/// That part of a curb line, with its own height.
 MapCurb part_of(const MapCurb& curb, const Share& share);
 
 struct Map {
@@ -80,10 +80,10 @@ struct Map {
   std::vector<MapCurb> curbs;
 };
 
-/// nullptr: the map has none of that label. O(planes).
+/// nullptr if the map has no plane with this label. O(planes).
 const MapPlane* plane_of(const Map& map, int label);
 
-/// All of the map to another place.
+/// Shifts the whole map.
 void move(Map& map, const Point3& by);
 
 }  // namespace curbline::tools

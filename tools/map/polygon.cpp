@@ -89,7 +89,7 @@ Polygon with_round_corners(const Polygon& polygon, double radius_m) {
   for (std::size_t i = 0; i < n; ++i) {
     append_arc(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n], radius_m, out);
   }
-  // Two arcs that use up the whole edge between them meet in one point.
+  // Two arcs that together use up the edge between them meet in one point.
   const auto same = [](Point2 a, Point2 b) { return length(a - b) < 1e-6; };
   out.erase(std::unique(out.begin(), out.end(), same), out.end());
   if (same(out.front(), out.back())) {

@@ -1,4 +1,4 @@
-// Polygons on the ground plan, metres: drawn regions, the surfaces of a scene, the footprints of its obstacles.
+// Polygons in the ground plan, metres: drawn regions, the surfaces of a scene, the footprints of its obstacles.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ struct Point2 {
   double x = 0, y = 0;
 };
 
-/// Corners in order, either way round, the last joined to the first.
+/// Corners in order, clockwise or counterclockwise, the last joined to the first.
 using Polygon = std::vector<Point2>;
 
 /// A rectangle along the axes.
@@ -20,30 +20,30 @@ struct Bounds {
 Polygon rectangle(Point2 corner, Point2 opposite);
 Polygon circle(Point2 centre, double radius_m);  ///< 48 corners on the circle, counterclockwise
 
-/// Each corner replaced by an arc of that radius, cut smaller where the edges beside it are too short.
+/// Each corner is replaced by an arc of that radius, or a smaller one if the adjacent edges are too short.
 Polygon with_round_corners(const Polygon& polygon, double radius_m);
 
 Polygon moved(const Polygon& polygon, Point2 by);
 
-double signed_area_m2(const Polygon& polygon);  ///< above 0: counterclockwise
-bool is_simple(const Polygon& polygon);  ///< three corners or more, some area, no edge crosses or touches another
+double signed_area_m2(const Polygon& polygon);  ///< positive: counterclockwise
+bool is_simple(const Polygon& polygon);  ///< at least three corners, nonzero area, no edge crosses or touches another
 bool contains(const Polygon& polygon, Point2 point);
 Bounds bounds(const Polygon& polygon);
 
-/// A part of a segment, as shares of the way from its start to its end; or of a ray, in steps from its origin on.
+/// A part of a segment, as fractions of its length; or of a ray, in steps from its origin.
 struct Share {
   double from = 0, to = 1;
   bool any() const { return from < to; }
 
-  /// Leaves what of it lies where low <= start + t step <= high; from > to if nothing does, or the step is NaN
-  /// (Liang and Barsky 1984).
+  /// Restricts it to where low <= start + t step <= high; then from > to if that is nowhere, or the step is NaN (Liang
+  /// and Barsky 1984).
   void clip(double start, double step, double low, double high);
 };
 
-/// The part of the segment from a to b that lies in the rectangle; from > to if none does.
+/// The part of the segment from a to b inside the rectangle; from > to if there is none.
 Share share_in(const Bounds& box, Point2 a, Point2 b);
 
-/// True if the segment from a to b has a point in the rectangle.
+/// Whether the segment from a to b has a point in the rectangle.
 bool crosses(const Bounds& box, Point2 a, Point2 b);
 
 }  // namespace curbline::tools

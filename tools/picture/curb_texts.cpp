@@ -11,13 +11,13 @@ namespace curbline::tools::picture {
 namespace {
 
 constexpr double like_height_m = 0.02;
-constexpr double shortest = 10;  ///< pixels: a text beside a shorter line could be anyone's
+constexpr double shortest = 10;  ///< pixels: a text beside a shorter line would be ambiguous
 
 double length_m(const MapCurb& curb) {
   return std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m);
 }
 
-/// A place by the line of a piece: how far along it from its first end, and how far beside it.
+/// A position relative to the line of a piece: the distance along it from its first end, and the distance beside it.
 struct Beside {
   double along_m, across_m;
 };
@@ -46,7 +46,7 @@ bool adjoins(const MapCurb& run, const MapCurb& piece, double gap_m) {
          std::min(a.along_m, b.along_m) <= axis.length() + gap_m;
 }
 
-/// The run with the piece: between those of the four ends that lie furthest apart along the run.
+/// The run extended by the piece: between the two of the four ends that are furthest apart along the run.
 MapCurb extended(const MapCurb& run, const MapCurb& piece) {
   const Axis axis(run);
   MapCurb result = run;
@@ -78,7 +78,7 @@ std::string centimetres(double height_m) {
 
 constexpr double shares[] = {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9};
 
-/// Touches the line at `share` of its length from the one side (1) or the other (-1), or lies on it (0).
+/// A box that touches the line at `share` of its length on one side (1) or the other (-1), or lies on it (0).
 Box beside_line(Pixel a, Pixel b, double share, double side, double width) {
   const double height = text_height + 4, length = std::hypot(b.x - a.x, b.y - a.y);
   const double nx = side * -(b.y - a.y) / length, ny = side * (b.x - a.x) / length;

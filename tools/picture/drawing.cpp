@@ -13,7 +13,7 @@ bool follows(char c) {
   return (static_cast<Byte>(c) & 0xC0) == 0x80;
 }
 
-/// JSON is UTF-8: its writer refuses what is not.
+/// JSON is UTF-8: its writer refuses other text.
 bool is_utf8(const std::string& words) {
   try {
     return !nlohmann::json(words).dump().empty();

@@ -1,4 +1,5 @@
-// What all parts of the picture are drawn with: places on the page, lines and texts. Pixels, x to the right and y down.
+// Drawing primitives for all parts of the picture: positions on the page, lines and texts. Pixels, x to the right and y
+// down.
 #pragma once
 
 #include <cairo.h>
@@ -23,7 +24,7 @@ struct Box {
 
 bool overlap(const Box& a, const Box& b);
 bool inside(const Box& inner, const Box& outer);
-/// Whether the straight line from a to b meets the box; not if one of them is NaN.
+/// Whether the straight line from a to b meets the box; false if one of them is NaN.
 bool crosses(const Box& box, Pixel a, Pixel b);
 
 struct Destroy {
@@ -34,25 +35,25 @@ using Surface = std::unique_ptr<cairo_surface_t, Destroy>;
 using Context = std::unique_ptr<cairo_t, Destroy>;
 
 inline constexpr Colour black{0.1, 0.1, 0.1}, white{1, 1, 1};
-inline constexpr double text_height = 12;  ///< of everything but titles
+inline constexpr double text_height = 12;  ///< of all texts except titles
 
 void set_colour(cairo_t* cr, const Colour& colour);
 void set_line(cairo_t* cr, const Colour& colour, double width, std::initializer_list<double> dashes = {});
 void stroke(cairo_t* cr, Pixel from, Pixel to);
 void fill(cairo_t* cr, const Box& box);
 
-/// Of the texts from here on.
+/// For the texts that follow.
 void set_font(cairo_t* cr, double height, bool bold = false);
 double text_width(cairo_t* cr, const std::string& words);
-/// Begins at `base`, on the base line; share 0.5: is centred there; 1: ends there.
+/// Starts at `base`, on the base line; with share 0.5 it is centred there, with 1 it ends there.
 void text(cairo_t* cr, const std::string& words, Pixel base, double share = 0);
-/// Black with a white rim, to be read on any colour; in the middle of the box.
+/// Black with a white rim, readable on any colour; centred in the box.
 void text_with_rim(cairo_t* cr, const std::string& words, const Box& box);
 
-/// What a font can draw and XML can hold: blanks for control characters, and "?" for all that is not ASCII if the
-/// whole is not UTF-8.
+/// Text that a font can draw and XML can contain: blanks instead of control characters, and "?" for everything that is
+/// not ASCII if the whole is not UTF-8.
 std::string printable(std::string words);
-/// The words as far as they fit, with "..." if that is not all.
+/// As much of the text as fits, with "..." if it was shortened.
 std::string shortened(cairo_t* cr, const std::string& words, double width);
 
 }  // namespace curbline::tools::picture

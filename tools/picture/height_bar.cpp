@@ -11,7 +11,7 @@ namespace {
 
 constexpr double gap = 8;
 
-/// Cells of a wall bear the label of the ground around it.
+/// False for example for cells of a wall, which have the label of the ground around it.
 bool on_its_plane(const Map& map, const MapCell& cell) {
   const MapPlane* const plane = plane_of(map, plane_label_of(cell));
   return plane != nullptr && std::abs(cell.height_m - plane->height_m(cell.x_m, cell.y_m)) <= 3 * plane->sd_m;

@@ -16,7 +16,7 @@ constexpr double line_height = 20, symbol_width = 34;
 
 struct Line {
   std::string words;
-  std::function<void(cairo_t*, const Box&)> symbol{};  ///< none: a heading or a remark
+  std::function<void(cairo_t*, const Box&)> symbol{};  ///< empty for a heading or a remark
   bool bold = false;
 };
 
@@ -65,7 +65,7 @@ std::string count(int cells) {
   return std::to_string(cells) + (cells == 1 ? " cell" : " cells");
 }
 
-/// The planes in `room` lines.
+/// Lists the planes in `room` lines.
 void append_planes(std::vector<Line>& lines, const std::vector<PlaneCells>& planes, std::size_t room) {
   const std::size_t listed = planes.size() <= room ? planes.size() : room - 1;
   for (std::size_t n = 0; n < listed; ++n) {
@@ -77,7 +77,7 @@ void append_planes(std::vector<Line>& lines, const std::vector<PlaneCells>& plan
   lines.push_back({std::to_string(planes.size() - listed) + " more: " + count(cells)});
 }
 
-/// At most `room` lines; a legend without its planes takes less than ten.
+/// At most `room` lines; a legend without its planes takes fewer than ten.
 std::vector<Line> list(const Map& map, const PictureExtras& extras, bool robot_shown, std::size_t room) {
   const std::vector<PlaneCells> planes = planes_by_size(map);
   const auto count_if = [&](auto is) {

@@ -12,24 +12,24 @@ namespace {
 
 constexpr double max_width = 1600, max_height = 1000;
 constexpr double margin = 16, page_title_room = 30, bar_gap = 14, column_gap = 26;
-constexpr double least_column = 150;  ///< of a panel with its title
-constexpr double least_height = 200;  ///< of the panels with what is below them
+constexpr double least_column = 150;  ///< width of a panel with its title
+constexpr double least_height = 200;  ///< of the panels and what is below them
 constexpr double least_bar = 150, most_bar = 480;
-constexpr double most_for_legend = 480;  ///< a legend makes a page higher than its panels up to this
+constexpr double most_for_legend = 480;  ///< up to this height, the legend makes a page higher than its panels
 
-/// Not on the page yet. A map without cells shows one square metre.
+/// Not yet placed on the page. A map without cells shows one square metre.
 View window_of(const Grid& grid) {
   if (grid.cells() == 0) return {};
   return {grid.x0_m, grid.x0_m + grid.rows * grid.dx_m, grid.y0_m, grid.y0_m + grid.cols * grid.dy_m};
 }
 
-/// Whole pixels.
+/// The size in whole pixels.
 Box scaled(const View& window, double scale) {
   const auto pixels = [&](double length_m) { return std::max(1.0, std::floor(length_m * scale + 1e-6)); };
   return {0, 0, pixels(window.y1_m - window.y0_m), pixels(window.x1_m - window.x0_m)};
 }
 
-/// Centred in a column that begins at x.
+/// Centres the panel in a column that begins at x.
 View put(View window, Box box, double x, double column, double y) {
   box.x = std::round(x + 0.5 * (column - box.width));
   box.y = y;
@@ -37,7 +37,7 @@ View put(View window, Box box, double x, double column, double y) {
   return window;
 }
 
-/// Texts look the same in both kinds of file, and take the same room before and after the layout.
+/// Makes texts look the same in both kinds of file, and have the same size during layout and drawing.
 void prepare(cairo_t* cr) {
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
@@ -61,7 +61,7 @@ void draw_planes(cairo_t* cr, const Page& page, const Map& map) {
   draw_cells(cr, page.planes, map, [&](const MapCell& cell) { return colour_of.at(cell.label); });
 }
 
-/// Lines, marker and axes, which both panels have. Returns the room that the marker takes.
+/// Draws lines, marker and axes, which both panels have. Returns the boxes that the marker takes.
 std::vector<Box> draw_common(cairo_t* cr, const View& view, const std::string& title, const Map& map,
                              const PictureExtras& extras) {
   draw_curbs(cr, view, map.curbs, extras.truth);

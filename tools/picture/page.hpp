@@ -1,4 +1,4 @@
-// The whole picture: where its parts lie on the page, and drawing them.
+// The whole picture: the layout of its parts on the page, and their drawing.
 //
 //   title
 //          Height (m)              Planes and curbs
@@ -7,7 +7,7 @@
 //          +----------+               +----------+
 //             y (m)                      y (m)
 //
-// or, where the window is so wide that the cells are larger that way, with the panels one below the other.
+// or, if the cells are then larger because the window is wide, with one panel below the other.
 #pragma once
 
 #include <string>
@@ -25,10 +25,10 @@ struct Page {
   HeightRange range;
 };
 
-/// The panels as large as a page of 1600 x 1000 lets them be, and the page no larger than they and the legend need.
+/// The panels are as large as a page of 1600 x 1000 allows, and the page is no larger than they and the legend need.
 Page lay_out(const Map& map, const PictureExtras& extras);
 
-/// Returns the heights that it wrote beside the curbs.
+/// Returns the texts of the heights beside the curbs.
 std::vector<std::string> draw(cairo_t* cr, const Page& page, const Map& map, const PictureExtras& extras);
 
 }  // namespace curbline::tools::picture

@@ -66,13 +66,14 @@ void draw_scale_bar(cairo_t* cr, const View& view) {
   text(cr, words, {x + length + gap, y + 0.36 * text_height});
 }
 
-/// Of the numbers at the ends, with the decimals of the closest that ticks() may stand: a tenth of the window apart.
+/// Width of the numbers at the ends, with the decimals of the finest steps that ticks() may choose: a tenth of the
+/// window.
 double wider_end(cairo_t* cr, double low, double high) {
   const int places = std::max(0, -static_cast<int>(std::floor(std::log10((high - low) / 10))));
   return std::max(text_width(cr, decimals(low, places)), text_width(cr, decimals(high, places)));
 }
 
-/// As cairo's RGB24 has it.
+/// In the format of cairo's RGB24.
 std::uint32_t packed(const Colour& colour) {
   const auto byte = [](double share) { return static_cast<std::uint32_t>(std::lround(255 * share)); };
   return byte(colour.r) << 16 | byte(colour.g) << 8 | byte(colour.b);

@@ -10,7 +10,7 @@
 
 namespace curbline::tools::picture {
 
-/// Where the grid lies on the page: x ahead up, y left to the left.
+/// The position of the grid on the page: x ahead points up, y left points left.
 struct View {
   double x0_m = 0, x1_m = 1, y0_m = 0, y1_m = 1;              ///< the window
   Box box{};                                                  ///< the same on the page
@@ -20,21 +20,21 @@ struct View {
   }
 };
 
-/// The rooms that an axis takes, pixels.
+/// Space that the axis takes, pixels.
 inline constexpr double title_room = 24, bottom_room = 66;
-/// Left and right of the grid: as wide as the longest number asks for.
+/// Space to the left and right of the grid, for the widest number.
 double left_room(cairo_t* cr, const View& view);
 double right_room(cairo_t* cr, const View& view);
 
-/// Each cell that has points in its colour: one picture of the panel's pixels in either kind of file, since half a
-/// million cells are too many lines for an SVG.
+/// Draws each cell that has points in its colour: as one image of the panel's pixels in both kinds of file, because
+/// half a million cells are too many elements for an SVG.
 void draw_cells(cairo_t* cr, const View& view, const Map& map, const std::function<Colour(const MapCell&)>& colour);
-/// Frame, numbers, names, title and the bar of 1 m (of a power of ten where 1 m is too long or too short to see).
+/// Frame, numbers, names, title and a scale bar of 1 m (another power of ten if 1 m is too long or too short to see).
 void draw_axes(cairo_t* cr, const View& view, const std::string& title);
 
-/// An arrow from where the robot is to where it heads.
+/// An arrow from the robot's position in the direction of its heading.
 void draw_arrow(cairo_t* cr, Pixel at, double heading_rad);
-/// Whether the marker lies in the window or on its edge: else it is not drawn.
+/// Whether the marker lies in the window or on its edge; otherwise it is not drawn.
 bool shows(const View& view, const RobotMarker& robot);
 
 }  // namespace curbline::tools::picture

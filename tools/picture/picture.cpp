@@ -34,8 +34,8 @@ std::string escaped(std::string_view words) {
   return result;
 }
 
-/// Cairo counts what it names through the life of the program; counted through the file, the same map gives the same
-/// bytes again.
+/// Cairo numbers its ids throughout the life of the program; numbered within the file, the same map always gives the
+/// same bytes.
 std::string renumbered(const std::string& svg) {
   static const std::regex name(R"re((id="|href="#|url\(#)([a-z-]+)([0-9]+)(?=["\)]))re");
   std::map<std::string, std::size_t> numbers;
@@ -50,7 +50,7 @@ std::string renumbered(const std::string& svg) {
   return result.append(svg, done);
 }
 
-/// Cairo's texts are outlines; this is what a reader or a search can find.
+/// Cairo draws texts as outlines; this adds text that can be read and searched.
 void describe(std::string& svg, const std::string& title, const std::vector<std::string>& curb_texts) {
   std::string words = "\n<title>" + escaped(printable(title)) + "</title>\n<desc>";
   for (const std::string& text : curb_texts) words += (&text == &curb_texts.front() ? "curbs: " : ", ") + text;

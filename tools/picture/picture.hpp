@@ -1,6 +1,6 @@
-// A map as a picture: heights on the left, planes on the right, curbs with their heights on both. x ahead points up,
-// y left points left, as the robot sees it. The last thing that is done with a map; a window of 512 x 512 cells takes
-// well under a second. What is drawn where: page.hpp.
+// Draws a map: heights on the left, planes on the right, curbs with their heights on both. x ahead points up, y left
+// points left, as the robot sees it. This is the last step for a map; a window of 512 x 512 cells takes well under a
+// second. page.hpp shows the layout.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace curbline::tools {
 
-/// A place in the grid's frame. Heading: counterclockwise from x ahead.
+/// A position in the grid's frame. Heading: counterclockwise from x ahead.
 struct RobotMarker {
   double x_m = 0, y_m = 0;
   double heading_rad = 0;
@@ -19,14 +19,14 @@ struct RobotMarker {
 
 struct PictureExtras {
   std::string title{};           ///< UTF-8
-  std::vector<MapCurb> truth{};  ///< drawn dashed beneath the curbs
+  std::vector<MapCurb> truth{};  ///< drawn dashed below the curbs
   std::optional<RobotMarker> robot{};
 };
 
-/// PNG or SVG by the ending of `path`, in small letters or capitals, as large as the window wants and at most 1600 x
-/// 1000 pixels. The SVG's <desc> bears the texts of the curbs, so that they can be searched for. The same map gives the
-/// same bytes on one machine; another one may have other fonts. Written whole or not at all. Throws BadInput for
-/// another ending, or if it cannot be written.
+/// PNG or SVG by the ending of `path`, in lower or upper case, as large as the window requires and at most 1600 x 1000
+/// pixels. The SVG's <desc> contains the texts of the curbs, so that they can be searched for. The same map gives the
+/// same bytes on one machine; other machines may have other fonts. Written completely or not at all. Throws BadInput
+/// for another ending, or if it cannot be written.
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras = {});
 
 }  // namespace curbline::tools

@@ -8,10 +8,10 @@ namespace curbline::tools::picture {
 namespace {
 
 struct Middle {
-  double x_m = 0, y_m = 0;  ///< sums until all cells are in
+  double x_m = 0, y_m = 0;  ///< sums until all cells have been added
   int cells = 0;
-  double nearest_m = std::numeric_limits<double>::infinity();  ///< of its cells to the middle
-  Pixel at{};                                                  ///< of that cell
+  double nearest_m = std::numeric_limits<double>::infinity();  ///< smallest distance of a cell to the middle
+  Pixel at{};                                                  ///< position of that cell
 };
 
 template <typename Call>

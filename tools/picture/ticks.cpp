@@ -8,7 +8,7 @@
 namespace curbline::tools::picture {
 namespace {
 
-constexpr double slack = 1e-6;  // of a step: an end that is a tick but for rounding
+constexpr double slack = 1e-6;  // in steps: tolerance for rounding at the ends
 
 std::vector<Tick> multiples(double low, double high, double step) {
   std::vector<Tick> result;

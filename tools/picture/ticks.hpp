@@ -1,4 +1,4 @@
-// The round numbers at an axis or a colour bar.
+// The round numbers on an axis or a colour bar.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ struct Tick {
   std::string words;
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten from low to high, as close as they may stand: room_px of each text, and
-/// at most ten steps. Units are the axis's own, px_per_unit their size on the page.
+/// Multiples of 1, 2 or 5 times a power of ten from low to high, as dense as possible: room_px for each text, and at
+/// most ten steps. Units are those of the axis, px_per_unit is their size on the page.
 std::vector<Tick> ticks(double low, double high, double px_per_unit,
                         const std::function<double(const std::string&)>& room_px);
 

@@ -1,6 +1,6 @@
-// Network interfaces made, removed, and taken up and down by netlink: what `ip link` does, without needing it. For the
-// program behind tools/with-vcan and for tests. Needs CAP_NET_ADMIN in the network namespace. Each call returns 0 or a
-// negative errno. Source: rtnetlink(7).
+// Creates and removes network interfaces, and takes them up and down, through netlink: the functions of `ip link`
+// without depending on it. For the program behind tools/with-vcan and for tests. Needs CAP_NET_ADMIN in the network
+// namespace. Each call returns 0 or a negative errno. Source: rtnetlink(7).
 #pragma once
 
 #include <linux/if_link.h>
@@ -27,7 +27,7 @@ class LinkRequest {
   }
   ifinfomsg& link() { return message_.link; }
 
-  /// Returns where the attribute begins, for end_nested().
+  /// Returns the attribute's position, for end_nested().
   std::size_t add(unsigned short type, const void* data, std::size_t size) {
     const std::size_t at = NLMSG_ALIGN(message_.header.nlmsg_len);
     rtattr attribute{};
@@ -70,7 +70,7 @@ class LinkRequest {
 
 constexpr unsigned mtu_classic = 16, mtu_fd = 72;  // sizes of can_frame and canfd_frame
 
-/// A virtual CAN interface, up, that carries CAN FD frames too unless told.
+/// Creates a virtual CAN interface that is up; by default it also carries CAN FD frames.
 inline int make_vcan(const char* name, unsigned mtu = mtu_fd) {
   LinkRequest request(RTM_NEWLINK, NLM_F_CREATE | NLM_F_EXCL);
   request.link().ifi_flags = IFF_UP;

@@ -1,10 +1,11 @@
-// What tools/with-vcan runs a command with: a network namespace of its own on this kernel, or, as process 1, a guest
-// kernel whose root folder is the host's. Static and without the C++ library's I/O, as an initial RAM disk wants it.
+// The program with which tools/with-vcan runs a command: in its own network namespace on this kernel, or, as process 1,
+// on a guest kernel whose root folder is the host's. Static and without the C++ library's I/O, for use in an initial
+// RAM disk.
 //
-//   vcan probe                  exit status 0 if this kernel gives a vcan0
+//   vcan probe                  exit status 0 if this kernel supports a vcan0
 //   vcan run COMMAND...         becomes the command, in a namespace with vcan0 and lo up
-//   process 1, vcan_job=FOLDER  of a guest kernel; runs what the folder says (`directory`, `environment`, `arguments`;
-//                               the last two end each word by a zero byte), writes its exit status to FOLDER/status,
+//   process 1, vcan_job=FOLDER  of a guest kernel; runs the job in the folder (`directory`, `environment`, `arguments`;
+//                               in the last two a zero byte ends each word), writes its exit status to FOLDER/status,
 //                               turns the guest off
 #include <fcntl.h>
 #include <sched.h>
@@ -52,7 +53,7 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-/// Root of a network namespace: by right, or in a user namespace of its own.
+/// Becomes root of a network namespace: directly if permitted, otherwise in a new user namespace.
 void enter_namespace() {
   const uid_t user = ::getuid();
   const gid_t group = ::getgid();
@@ -88,7 +89,7 @@ void load_module(const std::string& path) {
   ::close(fd);
 }
 
-/// Their paths, one a line, each after those that it needs.
+/// Loads the modules listed by path, one a line, each after those that it depends on.
 void load_modules(const std::string& list) {
   const std::string text = read_text(list);
   for (std::size_t at = 0; at < text.size();) {
@@ -98,7 +99,7 @@ void load_modules(const std::string& list) {
   }
 }
 
-/// In QEMU this program comes as an initial RAM disk: the host's files are reached by 9P, then are the root.
+/// In QEMU this program is in an initial RAM disk: it mounts the host's files over 9P and makes them the root.
 void enter_host_files() {
   if (::access("/modules", F_OK) != 0) return;
   load_modules("/modules");
@@ -120,7 +121,7 @@ void start_guest() {
   ::mount("tmpfs", "/run", "tmpfs", 0, nullptr);
 }
 
-/// Standard output and error are terminals 0 and 1, as they come: no carriage returns. Nothing comes in.
+/// Standard output and error are terminals 0 and 1 in raw form: no carriage returns. Standard input is empty.
 void open_output() {
   const char* const given = std::getenv("vcan_terminal");
   const std::string terminal = given != nullptr ? given : "/dev/tty";
@@ -137,7 +138,7 @@ void open_output() {
   }
 }
 
-/// Words of a file that end by zero bytes, as argv and environ want them.
+/// Words of a file, each ended by a zero byte, in the form of argv and environ.
 class Words {
  public:
   explicit Words(const std::string& path) : text_(read_text(path)) {

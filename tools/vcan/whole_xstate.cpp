@@ -1,7 +1,7 @@
-// Preloaded into User-Mode Linux. Debian 12's kernel of it keeps 2,696 bytes of a process's floating-point and vector
-// registers, which is all of them up to AVX-512; the host's kernel takes them back only as a whole (Linux,
-// arch/x86/kernel/fpu/regset.c, xstateregs_set), and where the processor has more, such as AMX, the guest's first
-// process would end. What the guest does not know of is put back as it was.
+// Preloaded into User-Mode Linux. Debian 12's User-Mode Linux keeps 2,696 bytes of a process's floating-point and
+// vector registers, which is everything up to AVX-512. The host's kernel only accepts the complete state (Linux,
+// arch/x86/kernel/fpu/regset.c, xstateregs_set), so on processors with more state, such as AMX, the guest's first
+// process would end. The state that the guest does not know is restored unchanged.
 #include <dlfcn.h>
 #include <elf.h>
 #include <sys/ptrace.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Ptrace = long (*)(__ptrace_request, pid_t, void*, void*);
 
-// Looked up before the guest starts, and no buffer on the stack: the guest's stacks are small.
+// Looked up before the guest starts, and no buffer on the stack, because the guest's stacks are small.
 const auto next_ptrace = reinterpret_cast<Ptrace>(::dlsym(RTLD_NEXT, "ptrace"));
 alignas(64) char registers[1 << 16];
 
