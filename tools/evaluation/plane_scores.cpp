@@ -53,7 +53,7 @@ long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*
   return std::max_element(cells.begin(), cells.end(), nearer) - cells.begin() + 2;
 }
 
-/// From the lowest to the highest cell.
+/// The grid from the lowest to the highest cell.
 Grid grid_of(const std::vector<LabelledCell>& cells) {
   const Axis x = axis_of(cells, &LabelledCell::x_m), y = axis_of(cells, &LabelledCell::y_m);
   if (x.count * y.count > most_places) {

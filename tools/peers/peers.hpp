@@ -17,7 +17,7 @@
 
 namespace curbline::tools::peers {
 
-inline constexpr double least_step_m = 0.03;  ///< of a curb; half the height of what wheels notice
+inline constexpr double least_step_m = 0.03;  ///< of a curb; half the height that wheels notice
 inline constexpr double most_step_m = 0.3;    ///< higher is a wall or a car
 
 enum class Method { canny, gradient };

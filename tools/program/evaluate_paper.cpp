@@ -108,7 +108,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   auto pipeline = make_host_pipeline(robot);
   struct Sweep {
     std::vector<Point> points;
-    float mended_s;  ///< the correction before the next sweep
+    float mended_s;  ///< the corrections made up to the next sweep
   };
   std::vector<Sweep> sweeps;
   for (const PaperCloud& cloud : clouds) {
