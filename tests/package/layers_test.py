@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Dependencies run one way: board -> port -> lib, tools -> port -> lib, and in lib along the data's way (lib/README.md)."""
+"""Dependencies run one way: board -> port -> lib, tools -> port -> lib, and within lib in the order of the data flow (lib/README.md)."""
 import re
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 WAY = ["map", "regions", "planes", "labels", "curbs"]
-# What a folder of lib/curbline may include besides itself and what all share.
+# What a folder of lib/curbline may include besides itself and the headers that all share.
 BEFORE = {folder: WAY[:k] for k, folder in enumerate(WAY)} | {"intake": [], "can": ["intake", "curbs"]}
-# Files that look ahead: a line is compared with what the lines before it have made.
+# Files that may include later stages: they compare a line with what earlier lines have produced.
 BACK = {"map_comparison", "line_intake"}
 
 

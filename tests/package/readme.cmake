@@ -1,4 +1,4 @@
-# The README's program, compiled as it stands there.
+# Compiles the program of the README as it is printed there.
 file(READ ${PROJECT_SOURCE_DIR}/README.md readme)
 string(REGEX MATCH "```cpp\n([^`]*)```" found "${readme}")
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/readme_program.cpp CONTENT "${CMAKE_MATCH_1}" @ONLY)

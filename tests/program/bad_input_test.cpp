@@ -6,7 +6,7 @@
 namespace curbline::tools::testing {
 namespace {
 
-/// Runs replay with one log replaced; all else in the directory must stay as it was.
+/// Runs replay with one log replaced. Everything else in the directory must stay as it was.
 Outcome replay_with(const Recording& logs, const std::string& replaced, const std::string& by) {
   const std::string curbs = logs.directory().write("curbs-before.csv", "as it was\n");
   const Words before = names_in(logs.folder());
@@ -246,7 +246,7 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
   CHECK(read_file(before) == "as it was\n");
 }
 
-/// A shell's line that runs the program.
+/// A shell command line that runs the program.
 std::string line_of(const Words& arguments) {
   std::string line = CURBLINE_PROGRAM;
   for (const std::string& word : arguments) line += " '" + word + "'";

@@ -1,4 +1,4 @@
-// The raw streams of the paper's data set give the maps that its clouds do.
+// The raw streams of the paper's data set give the same maps as its clouds.
 #include "evaluation/labels.hpp"
 #include "formats/csv.hpp"
 #include "formats/regions.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/";
 
-/// V-measure of a label file against the regions drawn by hand.
+/// V-measure of a label file against the hand-drawn regions.
 double v_of(const std::string& labels, const std::vector<Polygon>& regions) {
   std::vector<int> region, label;
   for (const LabelledCell& cell : read_labels(labels)) {

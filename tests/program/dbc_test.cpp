@@ -1,4 +1,4 @@
-// dbc: a signal of a DBC file as TOML, and a robot's as DBC.
+// dbc: converts a signal of a DBC file to TOML, and a robot's signal to DBC.
 #include "program.hpp"
 
 namespace curbline::tools::testing {

@@ -1,4 +1,4 @@
-// curbline-drive-log: logs to what boards are fed, and what they give back to curbs.
+// curbline-drive-log: converts logs to the input of boards, and the output of boards to curbs.
 #include <cstdlib>
 
 #include "drive_log/drive_log.hpp"
@@ -11,7 +11,7 @@ Outcome drive_log(const Words& arguments, const std::string& out_file = {}) {
   return run(CURBLINE_DRIVE_LOG, arguments, out_file);
 }
 
-/// The logs of a recording, without --out.
+/// Arguments with the logs of a recording, without --out.
 Words write_of(const Recording& logs) {
   Words arguments = logs.replay();
   arguments.front() = "write";
@@ -49,7 +49,7 @@ TEST_CASE("drive log: an empty file name is wrong usage") {
 TEST_CASE("drive log: nothing is left of what a signal ends") {
   const Recording logs("street", "utm30lx", {"--duration", "0.5"});
   const TemporaryDirectory dir;
-  // The scan lines are a pipe that stays open behind the last of them.
+  // The scan lines come through a pipe that stays open after the last line.
   const std::string fifo = dir.path("scans");
   std::filesystem::create_directory(dir.path("out"));
   REQUIRE(std::system(("mkfifo " + fifo).c_str()) == 0);
@@ -74,7 +74,7 @@ TEST_CASE("drive log: results that cannot be read or are none are refused") {
   check_refused(drive_log({"curbs", dir.write("cut", "1234")}), dir.path("cut") + ": ", "cut");
 }
 
-/// What a board says of a line without curbs.
+/// Result of a board for a line without curbs.
 std::string result_without_curbs() {
   const drive_log::Result<0> result({}, Status::ok, {}, {});
   return {reinterpret_cast<const char*>(result.bytes().data()), result.bytes().size()};

@@ -1,4 +1,4 @@
-// map: one cloud to labels, curbs, a picture and a summary.
+// map: from one cloud to labels, curbs, a picture and a summary.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -108,7 +108,7 @@ Recording::Recording(const std::string& scene, const std::string& robot, const W
   const Outcome outcome = curbline(simulate + more);
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);
-  REQUIRE(outcome.err.empty());  // progress is for terminals
+  REQUIRE(outcome.err.empty());  // progress is shown on terminals only
 }
 
 Words Recording::replay(const std::string& replaced, const std::string& by) const {

@@ -1,4 +1,4 @@
-// Starts the program and looks at what it leaves: exit status, output, files.
+// Starts the program and inspects its exit status, output and files.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -15,30 +15,30 @@ namespace curbline::tools::testing {
 
 using Words = std::vector<std::string>;
 
-/// Arguments, and more of them.
+/// Appends arguments.
 Words operator+(Words arguments, const Words& more);
 
-/// What a run of the program gave. Status is that of exit, or less the signal's number.
+/// Result of a run of the program. `status` is the exit status, or minus the number of the signal that ended it.
 struct Outcome {
   int status = 0;
   std::string out, err;
   double seconds = 0;
-  long peak_kib = 0;  ///< of memory
+  long peak_kib = 0;  ///< peak memory
 };
 
-/// Runs the program, or another one, to its end; its standard output goes to a file if one is given.
+/// Runs curbline, or another program, to its end. Its standard output goes to out_file if one is given.
 Outcome curbline(const Words& arguments, const std::string& out_file = {});
 Outcome run(const char* program, const Words& arguments, const std::string& out_file = {});
 
 Words lines_of(const std::string& text);
 
-/// The description of a robot that ships.
+/// The description of a shipped robot.
 std::string shipped_robot(const std::string& name);
 
-/// Names of all that lies in a directory, sorted.
+/// Sorted names of all entries of a directory.
 Words names_in(const std::string& directory);
 
-/// CHECKs exit status 1, nothing on standard output, and one line on standard error that begins with `start`, holds
+/// CHECKs exit status 1, nothing on standard output, and one line on standard error that begins with `start`, contains
 /// `part` and says what was expected.
 void check_refused(const Outcome& outcome, const std::string& start, const std::string& part);
 
@@ -48,15 +48,15 @@ void check_wrong_usage(const Outcome& outcome, const std::string& part);
 /// Logs of a simulated scene, in a directory that is removed at the end.
 class Recording {
  public:
-  /// robot: one that ships, by name, or a file (.toml).
+  /// robot: the name of a shipped robot, or a file (.toml).
   Recording(const std::string& scene, const std::string& robot, const Words& more = {});
 
   std::string path(const std::string& name) const { return directory_.path(name); }
   std::string folder() const { return std::filesystem::path(path("")).parent_path(); }
   const TemporaryDirectory& directory() const { return directory_; }
 
-  /// Arguments of replay with these logs; the log named `replaced`, "scans", "can", "poses" or "robot", is another
-  /// file.
+  /// Arguments of replay with these logs. The log named `replaced` ("scans", "can", "poses" or "robot") is replaced by
+  /// the file `by`.
   Words replay(const std::string& replaced = {}, const std::string& by = {}) const;
 
  private:
@@ -66,10 +66,10 @@ class Recording {
 /// Text with line `number`, from 1, replaced.
 std::string with_line(const std::string& text, std::size_t number, const std::string& line);
 
-/// 100 MB without a line end behind `start`, of which the disk holds little.
+/// A file of 100 MB: `start`, then no line end. It occupies little disk space.
 std::string long_line(const TemporaryDirectory& directory, const std::string& name, const std::string& start);
 
-/// Two level planes that meet at x = 2.0 with a step of 0.12 m, x in [0, 4], y in [-2, 2]: a cloud, and its file.
+/// A cloud, and its file: two level planes that meet at x = 2.0 with a step of 0.12 m, x in [0, 4], y in [-2, 2].
 std::string cloud_with_a_step(const TemporaryDirectory& directory);
 
 }  // namespace curbline::tools::testing

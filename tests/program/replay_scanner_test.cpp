@@ -1,4 +1,4 @@
-// replay from simulated scanners on this machine, against replay of the log that they play.
+// replay from simulated scanners on this machine, compared with replay of the log that they play.
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -13,7 +13,7 @@
 namespace curbline::tools::testing {
 namespace {
 
-/// A simulated scanner that plays a log beside the test.
+/// A simulated scanner that plays a log in a thread.
 class Playing {
  public:
   Playing(Protocol protocol, const std::string& scans, ServerOptions options = {.speed = 0})
@@ -35,7 +35,7 @@ Words results(const Recording& logs, const std::string& name) {
   return {"--labels", logs.path(name + ".labels.csv"), "--curbs", logs.path(name + ".curbs.csv"), "--json"};
 }
 
-/// What a scanner that has played its log leaves on stderr.
+/// What replay writes to stderr after a scanner has played its log.
 std::string played(const Playing& scanner, const nlohmann::json& summary) {
   return scanner.address() + ": closed the connection after " + summary.at("lines").dump() +
          " scan lines; taken as its end\n";
@@ -97,7 +97,7 @@ TEST_CASE("program: a scanner in a scene gives the lines that simulate writes") 
     CHECK(from_log->time_ns == from_scene->time_ns);
     REQUIRE(from_log->ranges_m.size() == from_scene->ranges_m.size());
     for (std::size_t beam = 0; beam < from_log->ranges_m.size(); ++beam) {
-      if (std::isnan(from_log->ranges_m[beam])) continue;  // out of range to the millimetre
+      if (std::isnan(from_log->ranges_m[beam])) continue;  // out of range once rounded to the millimetre
       REQUIRE(std::abs(from_log->ranges_m[beam] - from_scene->ranges_m[beam]) < 6e-4f);
     }
   }
@@ -130,7 +130,7 @@ TEST_CASE("program: live lines join poses too") {
   check_same(logs, Protocol::scip2);
 }
 
-/// Still and at a fixed tilt: a map that needs no times.
+/// A stationary robot with a fixed tilt: its map needs no times.
 TEST_CASE("program: lines of an LMS200 on a pty give the log's map") {
   const TemporaryDirectory directory;
   const std::string robot = directory.write(

@@ -1,7 +1,7 @@
-// simulate, replay and evaluate: logs through the program, and what it finds against the truth.
+// simulate, replay and evaluate: logs through the program, and its results compared with the truth.
 //
-// Tolerances: a curb's place is known to half a cell of 0.1 m, its height to the planes beside it; the medians allowed
-// are those and 1 cm.
+// Tolerances: a curb's position is known to half a cell of 0.1 m, its height depends on the planes beside it. The
+// medians may be up to half a cell and 1 cm.
 #include <cmath>
 #include <iomanip>
 #include <random>
@@ -16,7 +16,7 @@ namespace curbline::tools::testing {
 namespace {
 
 constexpr double place_m = 0.05, height_m = 0.01;
-constexpr double cell_m = 0.1;  ///< found within: a match
+constexpr double cell_m = 0.1;  ///< within this distance a curb counts as found
 constexpr double least_step_m = 0.04;
 
 Words results(const Recording& logs) {
@@ -59,8 +59,7 @@ TEST_CASE("program: curbs of 4 cm and more of the scenes are found, within half 
   }
 }
 
-/// Stamps of a CARMEN log as a host gives them on arrival: late by 5 ms on the mean, most lines by less, few by much
-/// more.
+/// Stamps the lines of a CARMEN log as a host does on arrival: 5 ms late on average, most lines less, a few much more.
 void stamp_on_arrival(const Recording& logs) {
   std::mt19937 random(2);
   double before_s = 0;
@@ -90,7 +89,7 @@ TEST_CASE("program: scan lines stamped 5 ms late on the mean tell the heights of
   }
 }
 
-/// The file of a shipped robot that has these lines of its tilt signal in place of its own.
+/// The file of a shipped robot, with `lines` in place of its tilt signal.
 std::string robot_with_signal(const TemporaryDirectory& dir, const std::string& shipped, const std::string& lines) {
   std::string text = read_file(shipped_robot(shipped));
   text.replace(text.find("node = 1\n"), 9, lines);
@@ -102,7 +101,7 @@ std::string with_key(std::string toml, const std::string& key, const std::string
   return toml.replace(begin, toml.find('\n', begin) - begin, key + " = " + value);
 }
 
-/// Labels of a recording by a robot whose description has these lines of its tilt signal.
+/// Labels of a recording by a robot whose description has `lines` as its tilt signal.
 std::string labels_by_signal(const std::string& lines) {
   const TemporaryDirectory dir;
   const std::string robot = robot_with_signal(dir, "utm30lx", lines);
@@ -151,7 +150,7 @@ TEST_CASE("program: a curb of 3 cm is found too") {
 }
 
 //                              __|
-//                     ________|    treads of 34 cm: seven cells of 5 cm or three of 10 cm, the risers in one of them
+//                     ________|    treads of 34 cm: seven cells of 5 cm or three of 10 cm, risers within one of them
 //            ________|
 //   ________|
 //   0       1.2     1.54     1.88
@@ -179,7 +178,7 @@ TEST_CASE("program: garden walls are no curbs, the pavement beside them has one"
 }
 
 //   ____________
-//               |       the first cells of the road lie in the step's shadow, and hold readings of the pavement
+//               |       the first cells of the road lie in the step's shadow and contain points of the pavement
 //               |_____
 TEST_CASE("program: cells beside a step down are told by the side that their middle is on") {
   const Recording logs("unfavourable_viewpoint", "utm30lx");
@@ -196,8 +195,8 @@ TEST_CASE("program: a ramp has edges and no step") {
   CHECK(evaluate(logs).at("height_rmse_m").get<double>() < height_m);
 }
 
-/// The robot's servo lags by 15 ms more than its file says: the first turn tells it, and what was mapped before is
-/// mended.
+/// The robot's servo lags by 15 ms more than its file states. The first turn reveals it, and what was mapped before is
+/// corrected.
 TEST_CASE("program: a servo that lags leaves one street, where it is") {
   const TemporaryDirectory directory;
   std::string robot = read_file(shipped_robot("utm30lx"));
@@ -219,7 +218,6 @@ TEST_CASE("program: a laser at a fixed tilt maps as the robot drives, without a 
   check_curbs(evaluate(logs));
 }
 
-/// The curb that the drive of `city` passes in its first 20 s: the near rim of a bed, 8 cm high, at the window's side.
 TEST_CASE("program: a CAN log beside a laser at a fixed tilt is told as not read") {
   const Recording drive("city", "fixed_tilt", {"--duration", "0.5"});
   const Outcome outcome = curbline(drive.replay() + Words{"--can", drive.path("none.log")});
@@ -238,6 +236,7 @@ TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind
 
   const std::vector<MapCurb> found = read_curbs(logs.path("curbs.csv"));
   for (const MapCurb& c : found) CHECK(std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m) > 0.02);
+  // The curb that the drive of `city` passes in its first 20 s: the near rim of a bed, 8 cm high, at the window's side.
   const Segment rim{10, 25, 13, 25};
   CHECK(curb_rates(found, std::span(&rim, 1), cell_m, [](double, double) { return true; }).recall > 0.9);
 }
@@ -253,7 +252,7 @@ TEST_CASE("program: a cambered road is one surface, and its kerbs are found, wit
   }
 }
 
-//   y      y = 1: a kerb along the way that grows from 2 cm to 10 cm
+//   y      y = 1: a curb along the path that rises from 2 cm to 10 cm
 //   0      ->
 //   0                        8 m
 TEST_CASE("program: what a drive has left behind of a curb is as high as the curb is there") {
@@ -321,7 +320,7 @@ TEST_CASE("program: evaluate says what the reference makes of the same sweep, an
 TEST_CASE("program: a kerb between the robot's middle and its laser is up or down as the laser sees it") {
   const TemporaryDirectory dir;
   std::string robot = read_file(shipped_robot("utm30lx"));
-  robot = with_key(with_key(robot, "from_rad", "0.6"), "to_rad", "1.5");  // looks down before its wheels
+  robot = with_key(with_key(robot, "from_rad", "0.6"), "to_rad", "1.5");  // looks down in front of its wheels
   const std::string scene = dir.write("beside.toml", R"(
 [ground]
 z = 0.12
@@ -346,7 +345,7 @@ TEST_CASE("program: evaluate draws the map with the truth and the robot") {
   const std::string with = read_file(logs.path("p.svg"));
   replay(logs, {"--picture", logs.path("q.svg")});
   CHECK(with.find("<desc>curbs: ") != std::string::npos);
-  CHECK(with.size() > read_file(logs.path("q.svg")).size());  // which has no truth
+  CHECK(with.size() > read_file(logs.path("q.svg")).size());  // the one without truth
 }
 
 TEST_CASE("program: a method that takes a whole cloud is refused for a drive") {
@@ -418,7 +417,7 @@ TEST_CASE("program: replay sums up in one JSON object") {
   CHECK(summary.at("latency_steps") == 0);
 }
 
-/// Of replay; the summary where it exits with 0.
+/// A run of replay that must exit with 0, and its summary.
 struct Replayed {
   explicit Replayed(const Recording& logs) : outcome(curbline(logs.replay() + Words{"--json"})) {
     INFO("standard error: " << outcome.err);
@@ -445,7 +444,7 @@ TEST_CASE("program: scan lines that are dropped are told, with the last reason")
   CHECK(curbline({"evaluate", logs.folder()}).err == told);
 }
 
-/// The log with one frame's time moved.
+/// Moves the time of one frame of the log.
 void move_frame(const Recording& logs, std::size_t number, double by_s) {
   const std::string log = read_file(logs.path("can.log"));
   std::string frame = lines_of(log).at(number - 1);
@@ -487,7 +486,7 @@ TEST_CASE("program: a window that no point falls in is told") {
   CHECK(outcome.err.ends_with(" points lies in the window\n"));
 }
 
-/// The recording's scan lines with all ranges put through `change`.
+/// The recording's scan lines with `change` applied to all ranges.
 std::string with_ranges(const Recording& logs, const std::function<double(double)>& change) {
   std::string text;
   for (const std::string& line : lines_of(read_file(logs.path("scans.carmen")))) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Scripts refuse wrong usage before they begin: one line, exit status 2, nothing written. What stops those that score many scenes later is one
-line too, exit status 1, and earlier figures stay."""
+"""Scripts refuse wrong usage before they begin: one line, exit status 2, nothing written. What stops a script that scores many scenes later
+is reported in one line too, with exit status 1, and earlier figures are kept."""
 import glob
 import os
 import signal
@@ -15,7 +15,7 @@ TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "to
 
 
 def program_in(folder, commands):
-    """A program of the shell's commands that stands for curbline."""
+    """A shell script of these commands that stands in for curbline."""
     program = os.path.join(folder, "curbline")
     with open(program, "w") as file:
         file.write("#!/bin/sh\n" + commands)
@@ -80,7 +80,7 @@ class Scripts(unittest.TestCase):
                 self.assertEqual(self.shell(script, word), (0, text, ""))
 
     def stopped(self, script, folder, status=1, program=sys.argv[1], stdout=subprocess.DEVNULL, interrupted_at=None):
-        """Its error output."""
+        """Runs a script that must stop with this status; returns its error output."""
         words = {"streets": ["1"], "paper": ["--seeds", "1"], "long-drive": ["200"]}[script]
         running = subprocess.Popen([sys.executable, os.path.join(TOOLS, script), *words, "--out", folder], text=True, stdout=stdout,
                                    env={**os.environ, "CURBLINE": program}, stderr=subprocess.PIPE, start_new_session=True)

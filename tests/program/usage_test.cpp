@@ -21,7 +21,7 @@ TEST_CASE("program: the help of every program says what each option is, and what
   const auto check = [](const char* program, const Words& command) {
     const std::string help = run(program, command + Words{"--help"}).out;
     INFO(help);
-    // The line of an option of which nothing is said ends in blanks.
+    // The line of an option without a description ends in blanks.
     for (const std::string& line : lines_of(help)) CHECK_FALSE(line.ends_with(' '));
     if (command.empty()) CHECK(help.find("Exit status: 0 done; 1 the input is bad") != std::string::npos);
   };
@@ -238,7 +238,7 @@ TEST_CASE("program: a window of more than 512 cells is refused") {
     check_wrong_usage(curbline({"map", cloud, "--origin", "0", "0", "--size", size, "4"}), "512");
   }
   CHECK(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "51.2"}).status == 0);
-  // float's 0.7 is below 0.7, so that 512 cells of it would be less than 358.4 m
+  // As a float, 0.7 is below 0.7, so 512 cells of it would be less than 358.4 m.
   CHECK(curbline({"map", cloud, "--origin", "0", "0", "--size", "4", "358.4", "--cell", "0.7"}).status == 0);
 }
 

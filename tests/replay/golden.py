@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""golden.py BUILD [--keep]: are the desk's results of the drives, every curb and counter, those on record in tests/replay/golden.csv?
+"""golden.py BUILD [--keep]: compares the desk's results of the drives, every curb and counter, with those on record in tests/replay/golden.csv.
 
-A change of the algorithm is meant to change some, a change of its form none: the record tells which of both a commit is. --keep runs the desk and
-writes anew what it gives. The drives are those of tools/boards/drives.py; where the recorded ones are absent theirs are not compared, nor written
-anew, and that is said.
+A change of the algorithm is meant to change some results, a change of the code's form none: the record shows which of the two a commit is. --keep
+runs the desk and rewrites the record with its results. The drives are those of tools/boards/drives.py. Where the recorded drives are absent, a
+message says so, and their results are neither compared nor rewritten.
 """
 import csv
 import hashlib

@@ -1,4 +1,4 @@
-// Steps across the way, up and down, high and low.
+// Steps across the robot's path, up and down, high and low.
 #include <catch2/catch.hpp>
 
 #include "scene.hpp"
@@ -50,15 +50,15 @@ TEST_CASE("scene: a curb is as high as from the bottom of its gutter, which is t
   for (const Curb& curb : across_the_window(pipeline->curbs(), x)) CHECK(curb.height_m == Approx(0.15).margin(0.01));
 }
 
-//       ########     a street that falls by 2 %, a kerb of 18 mm askew in it and nothing else:
-//     ##########     as long as one plane has it all, its cells err alike
+//       ########     a street that falls by 2 %, with an oblique curb of 18 mm and nothing else:
+//     ##########     while one plane covers all of it, its cells have errors in common
 TEST_CASE("scene: a kerb of 2 cm is found where it is all there is") {
   const auto pipeline = seen([](double x, double y) { return -0.02 * x + (x + y < 2.0 ? 0.0 : 0.018); });
   double found_m = 0.0;
   for (const Curb& c : pipeline->curbs()) {
     if (c.kind != CurbKind::step_up) continue;
     CHECK(std::abs(c.x0_m + c.y0_m - 2.0) < 2 * half_cell_m);
-    CHECK(c.height_m == Approx(0.018).margin(0.005));  // low: cells that hold both sides do not show it
+    CHECK(c.height_m == Approx(0.018).margin(0.005));  // low: cells with points of both sides do not show it
     found_m += length_m(c);
   }
   CHECK(found_m > 5.0);
@@ -88,7 +88,7 @@ TEST_CASE("scene: an island goes up and down again") {
 
 //                 ______________  falls by 2 % to the road for the rain to run off
 //   ____________ |
-//  /            \|                road: crown in the middle, falls by 3 %, climbs with the street by 5 % along y
+//  /            \|                road: crown in the middle, falls by 3 %; the street climbs by 5 % along y
 TEST_CASE("scene: a sloping street has the curb of a flat one") {
   const auto pipeline =
       seen([](double x, double y) { return 0.05 * y + (x < 2.0 ? -0.03 * x : -0.06 + 0.12 + 0.02 * (x - 2.0)); });
@@ -101,7 +101,7 @@ TEST_CASE("scene: a sloping street has the curb of a flat one") {
 }
 
 //          map:  . . . . ######
-//                . . ##########   an oblique border, 30 degrees from the way
+//                . . ##########   an oblique border, 30 degrees from the robot's path
 //                ##############
 TEST_CASE("scene: an oblique curb lies on its line") {
   const double nx = std::cos(0.6), ny = std::sin(0.6);

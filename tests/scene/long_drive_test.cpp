@@ -1,4 +1,4 @@
-// A drive of 1 km with a simulated laser, of which the end must be as good as the beginning.
+// A drive of 1 km with a simulated laser. Its end must be as good as its beginning.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -24,7 +24,8 @@ using namespace curbline::tools;
 
 constexpr double pitch_m = 50.0, way_m = 1000.0, stretch_m = 100.0;
 
-/// Twenty times the same block, seen at the same phase of the servo (5 s): what differs is where on the way it lies.
+/// Twenty copies of the same block, each seen at the same phase of the servo (5 s): only their distance from the start
+/// differs.
 //
 //   y      strip +12 cm            x = 0           21    29          50 m
 //   1.32   ___________|            ____block___ ramp        ramp ______
@@ -48,14 +49,14 @@ Scene street() {
     add("region", west, -0.7, west + 1.5, 0.7, "corner_z = [0.0, 0.1, 0.1]");  // 6.7 %
     add("region", east - 1.5, -0.7, east, 0.7, "corner_z = [0.1, 0.0, 0.0]");
     text += "[[box]]\nsize = [4.2, 1.8]\nheight = 1.45\nat = [" + std::to_string(middle - 8.0) + ", -2.5]\n";
-    walk(2.2 * (middle + 10.0), 0.8, -1.2, 0.0);            // comes along: the robot is at x at the time x
+    walk(2.2 * (middle + 10.0), 0.8, -1.2, 0.0);            // oncoming: the robot is at x at time x
     walk(middle + 26.0, -1.0 * (middle + 23.0), 0.0, 1.0);  // crosses 3 m ahead
   }
   return parse_scene(text + "[robot]\npath = [[0, 0], [" + std::to_string(way_m) + ", 0]]\nattitude = 'terrain'\n",
                      "street.toml");
 }
 
-/// The robot of lms200.toml at a third of its scan lines and with beams as thin as a thread: a tenth of the work.
+/// The robot of lms200.toml with a third of its scan lines and infinitely thin beams: a tenth of the work.
 Robot cheap_robot() {
   Robot robot = read_robot(CURBLINE_SOURCE_DIR "/tools/robots/lms200.toml");
   robot.pose.still = false;
@@ -64,7 +65,7 @@ Robot cheap_robot() {
   return robot;
 }
 
-/// What a stretch of the way showed.
+/// Results of a stretch of the drive.
 struct Stretch {
   int samples = 0, found = 0;
   Counters begin, end;
@@ -115,7 +116,7 @@ class LongDrive {
     judging_ = heap_count() - before;
   }
 
-  /// The next metre of the way, 0.4 m before the robot: seen as often as it will be.
+  /// Scores the next metre of the path, from 0.4 m ahead of the robot: it has been seen as often as it ever will be.
   void judge() {
     Stretch& stretch = stretches_[static_cast<std::size_t>(judged_m_ / stretch_m)];
     if (stretch.begin.lines == 0) stretch.begin = pipeline_->counters();
@@ -153,7 +154,8 @@ TEST_CASE("long drive: the last 100 m of 1 km are found as well as the first") {
   const Counters& c = drive.pipeline().counters();
   CHECK(c.lines_dropped + c.tilt_dropped + c.poses_dropped == 0);
   CHECK(c.regions_full + c.links_full + c.planes_full + c.borders_full + c.curbs_full == 0);
-  // Stretches of 50 m differ by 0.02 in recall and 3 % in work, by the noise and the people: neither more at the end.
+  // Stretches of 50 m differ by 0.02 in recall and 3 % in work because of the noise and the people; the end may not
+  // differ by more.
   CHECK(first.recall() > 0.8);
   CHECK(last.recall() == Approx(first.recall()).margin(0.03));
   CHECK(last.work_a_line() == Approx(first.work_a_line()).epsilon(0.05));

@@ -1,8 +1,8 @@
-// What scene tests share: a window of 4 x 4 m before the robot, filled from near to far as a laser that nods up does.
+// Common to the scene tests: a window of 4 x 4 m before the robot, filled from near to far as by a laser that nods up.
 //
-// Tolerances. Points have noise of 5 mm; a height is that of two planes, so its error is that of their posteriors,
-// Curb::height_sd_m: four of them are allowed. A border lies between two cells: half a cell of 0.1 m is allowed, and
-// the cells in which a step falls may go to either side.
+// Tolerances. Points have noise of 5 mm. A height comes from two planes, so its error is that of their posteriors,
+// Curb::height_sd_m; four of them are allowed. A border lies between two cells: half a cell of 0.1 m is allowed, and
+// the cells that a step crosses may go to either side.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline constexpr double noise_sd_m = 0.005, half_cell_m = 0.05;
 
 using ScenePipeline = Pipeline<Limits{}>;
 
-/// The ground as seen in a hundred strips, each followed by inference, and then at rest.
+/// The ground seen in a hundred strips, each followed by inference, then settled.
 template <typename Height>
 std::unique_ptr<ScenePipeline> seen(Height&& height_m, std::uint32_t seed = 1) {
   auto pipeline = std::make_unique<ScenePipeline>();
@@ -39,7 +39,7 @@ inline double length_m(const Curb& c) {
   return std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
 }
 
-/// Pieces along a line x = constant, as the window's whole width shows them.
+/// Pieces that lie along the line x = x_m.
 inline std::vector<Curb> across_the_window(std::span<const Curb> curbs, double x_m) {
   std::vector<Curb> out;
   for (const Curb& c : curbs) {
@@ -54,7 +54,7 @@ inline double total_length_m(std::span<const Curb> curbs) {
   return sum;
 }
 
-/// REQUIREs a curb across the whole window at x, of this height, and nothing else there.
+/// REQUIREs a curb of this height across the whole window at x, and nothing else there.
 inline void check_curb_at(std::span<const Curb> all, double x_m, double height_m, CurbKind kind) {
   const std::vector<Curb> curbs = across_the_window(all, x_m);
   INFO("curb at " << x_m << " of " << height_m << " m");

@@ -1,4 +1,4 @@
-// Slopes: ramps, creases and gutters, which are no steps.
+// Slopes without steps: ramps, creases and gutters.
 #include <catch2/catch.hpp>
 
 #include "scene.hpp"
@@ -26,7 +26,7 @@ TEST_CASE("scene: the foot of a ramp is the edge of a ramp, not a step") {
   REQUIRE_FALSE(pipeline->curbs().empty());
   for (const Curb& c : pipeline->curbs()) {
     CHECK(c.kind == CurbKind::ramp_edge);
-    CHECK(c.x0_m == Approx(2.0).margin(0.3));  // a cell's height of 2 mm tells slopes of 12 % apart after two cells
+    CHECK(c.x0_m == Approx(2.0).margin(0.3));  // heights good to 2 mm tell slopes 12 % apart after two cells
     CHECK(std::abs(c.height_m) < 0.12 * 0.3);
   }
 }

@@ -8,7 +8,7 @@ namespace {
 
 std::atomic<long> count{0};
 
-// operator new is counted by the malloc that it calls.
+// operator new is counted through the malloc that it calls.
 void* take(std::size_t size) noexcept {
   return std::malloc(size > 0 ? size : 1);
 }
@@ -25,8 +25,8 @@ void* or_throw(void* p) {
 
 }  // namespace
 
-// What C code and Eigen ask directly. The linker turns calls into these (--wrap), those of libraries that are shared
-// excepted.
+// What C code and Eigen call directly. The linker redirects calls to these functions (--wrap), except those from shared
+// libraries.
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t count, std::size_t size);
@@ -60,7 +60,8 @@ long curbline::test::heap_count() {
   return count.load(std::memory_order_relaxed);
 }
 
-// Every form is replaced, not only the one that the others call by default: a sanitizer brings its own of each.
+// Every form is replaced, not only the one that the others call by default, because a sanitizer brings its own version
+// of each.
 void* operator new(std::size_t n) {
   return or_throw(take(n));
 }

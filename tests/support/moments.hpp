@@ -1,4 +1,4 @@
-// Moments of points, each as if it were a cell of its own.
+// Moments of points, each point as a cell of its own.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// A nodding laser on a mast before a step, as the pipeline sees it: tilt readings, poses and scan lines of a street
-// that is flat but for one vertical step across x. Exact but for the noise asked for.
+// A nodding laser on a mast in front of a step, as the pipeline sees it: tilt readings, poses and scan lines of a
+// street that is flat except for one vertical step across x. Exact apart from the noise requested.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ inline double range_to(const Street& street, double ox, double oz, double dx, do
   return second;
 }
 
-/// 40 lines a second over 180 degrees ahead at steps of half a degree, nodding from 15 to 75 degrees down and back in
+/// 40 lines a second over 180 degrees ahead in steps of half a degree, nodding from 15 to 75 degrees down and back in
 /// 10 s.
 class NoddingLaser {
  public:
@@ -53,7 +53,7 @@ class NoddingLaser {
   static std::int64_t ns(double time_s) { return epoch_ns + static_cast<std::int64_t>(std::llround(time_s * 1e9)); }
   static double line_time_s(int line) { return line_s * line; }
 
-  /// Triangular, tilt > 0 looks down.
+  /// A triangle wave; tilt > 0 looks down.
   static double tilt_rad(double time_s) {
     const double phase = std::fmod(time_s + 20.0 * sweep_s, 2.0 * sweep_s) / sweep_s;
     return 0.26 + 1.05 * (phase < 1.0 ? phase : 2.0 - phase);

@@ -1,4 +1,4 @@
-// The pipeline of a robot with a nodding laser, for tests of the whole way.
+// The pipeline of a robot with a nodding laser, for tests of the whole chain.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline std::unique_ptr<FullPipeline> started(const Settings& settings = NoddingL
   return pipeline;
 }
 
-/// Tilt readings of 100 Hz up to `line` and one beyond its end, each late by lag_s(its time).
+/// Tilt readings at 100 Hz up to `line` and one beyond its end, each delayed by lag_s(its time).
 template <typename Lag>
 void add_tilts(FullPipeline& pipeline, int line, Lag&& lag_s) {
   const double end = NoddingLaser::line_time_s(line) + 0.03;

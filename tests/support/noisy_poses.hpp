@@ -1,4 +1,4 @@
-// Poses of a robot that drives, with noise that its settings tell of.
+// Poses of a moving robot, with noise that its settings state.
 #pragma once
 
 #include "curbline/settings.hpp"

@@ -16,7 +16,7 @@ namespace curbline::test {
 
 inline constexpr Limits small_limits{.rows = 24, .cols = 24, .planes = 6, .beams = 181};
 
-/// A fixed window with its lowest corner in the origin and cells of 0.1 m.
+/// A fixed window with its lowest corner at the origin and cells of 0.1 m.
 inline Settings small_settings(int rows = 24, int cols = 24) {
   Settings settings;
   settings.window = {.rows = rows, .cols = cols, .origin_x_m = 0.0f, .origin_y_m = 0.0f, .fixed = true};
@@ -24,8 +24,8 @@ inline Settings small_settings(int rows = 24, int cols = 24) {
   return settings;
 }
 
-/// Gives each cell of a window four points about its centre at height_m(x, y) +- spread, so that cells have the same
-/// variance.
+/// Gives each cell of a window four points around its centre at height_m(x, y) +- spread, so that all cells have the
+/// same variance.
 template <Limits limits, typename Height>
 void fill(Dem<limits>& dem, Height&& height_m, double spread_m = 0.002) {
   const double dx = dem.cell_x_m(), dy = dem.cell_y_m();
@@ -41,7 +41,7 @@ void fill(Dem<limits>& dem, Height&& height_m, double spread_m = 0.002) {
   }
 }
 
-/// The stages from cells to curbs, as Pipeline has them, each open to the test.
+/// The stages from cells to curbs, as in Pipeline, each accessible to the test.
 template <Limits limits = small_limits>
 struct Stages {
   explicit Stages(const Settings& s) {
@@ -57,7 +57,7 @@ struct Stages {
         dem, *segmented, mixture.largest_ground(), [this](int slot) { return mixture.obstructed(dem, slot); },
         counters);
   }
-  /// What it changes can be asked until the next one.
+  /// Its changes can be queried until the next call.
   void mix() {
     mixture.forget_changes();
     mixture.update(
@@ -71,13 +71,13 @@ struct Stages {
     dem.clear_touched();
     return changed;
   }
-  /// One call of each, as a scan line makes them.
+  /// One call of each stage, as for a scan line.
   void infer(bool all = false) {
     segment();
     mix();
     label(all);
   }
-  /// As often as labels take to stay as they are on such a map.
+  /// As many passes as the labels of such a map need to settle.
   void settle() {
     for (int pass = 0; pass < 3; ++pass) infer(true);
   }
@@ -90,7 +90,7 @@ struct Stages {
   Viewpoint view{0.0f, 0.0f, 1.0f};
   Counters counters{};
   Workspace<limits> work{};
-  typename Segmentation<limits>::Work* segmented = nullptr;  ///< until label()
+  typename Segmentation<limits>::Work* segmented = nullptr;  ///< valid until label()
   Dem<limits> dem{};
   Segmentation<limits> segmentation{};
   PlaneMixture<limits> mixture{};

@@ -1,5 +1,4 @@
-// Synthetic ground for tests: points of a height field with noise, the same in every run and with every standard
-// library.
+// Synthetic ground for tests: noisy points of a height field, the same in every run and with every standard library.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,8 @@
 
 namespace curbline::test {
 
-/// Random numbers. Normal ones are sums of twelve uniform ones: std::normal_distribution differs between libraries.
+/// Random numbers. Normal ones are sums of twelve uniform ones, because std::normal_distribution differs between
+/// libraries.
 class Noise {
  public:
   explicit Noise(std::uint32_t seed = 1) : engine_(seed) {}
@@ -33,8 +33,7 @@ struct Patch {
   double x0_m, x1_m, y0_m, y1_m;
 };
 
-/// One point somewhere in each square of a grid over the patch, row by row away from x0, with Gaussian noise of its
-/// height.
+/// One random point in each square of a grid over the patch, row by row away from x0, with Gaussian noise in height.
 template <typename Height>
 std::vector<Point> sample(const Patch& patch, double spacing_m, double noise_sd_m, Noise& noise, Height&& height_m) {
   std::vector<Point> points;

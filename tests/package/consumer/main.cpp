@@ -1,4 +1,4 @@
-// A street of two planes in synthetic scan lines: the user's program of the README, with data.
+// The user's program of the README, with data: synthetic scan lines of a street of two planes.
 #include <curbline/curbline.hpp>
 
 #include <array>
