@@ -1,4 +1,4 @@
-// A firmware that asks for the heap. Nothing on a board gives memory, so it must not link.
+// A firmware that uses the heap. Nothing on a board provides one, so it must not link.
 #include <cstdlib>
 
 int main() {

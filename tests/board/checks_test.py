@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The checks of tools/boards on small programs that they must refuse, and on some they must not."""
+"""Runs the checks of tools/boards on small programs that they must refuse, and on some that they must not refuse."""
 import subprocess
 import sys
 import tempfile
@@ -22,7 +22,7 @@ class Built(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def build(self, text):
-        """A program of one file, as an object and its call graph."""
+        """Compiles a program of one file to an object and its call graph."""
         (self.folder / "program.cpp").write_text(text)
         program = self.folder / "program.o"
         subprocess.run([ARM + "g++", *FLAGS, "-c", "program.cpp", "-o", program], cwd=self.folder, check=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The manifests for other build systems are well formed and say what the project says: its version, its sources, its flags."""
+"""The manifests for other build systems are well formed and agree with the project in version, sources and flags."""
 import json
 import re
 import unittest
@@ -12,7 +12,7 @@ FLAGS = {"EIGEN_NO_MALLOC", "EIGEN_DONT_VECTORIZE", "EIGEN_MAX_ALIGN_BYTES=8"}
 
 
 def yaml(path):
-    """Maps of scalars, as these files are; anything else is refused."""
+    """Reads nested maps of scalars, which is what these files contain; refuses anything else."""
     top, inner = {}, None
     for number, line in enumerate(path.read_text().splitlines(), 1):
         if not line or line.startswith("#"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""memories_test.py BUILD: a firmware whose memories are changed, in the linker script of its board or in the part that boards share, is
-linked anew: both are among what the build says it is made of. Else the next image is flashed to where the last one lay."""
+"""memories_test.py BUILD: a firmware is linked again when its memories change, in the linker script of its board or in the part that
+boards share: the build lists both as dependencies. Otherwise the next image would be flashed to the old addresses."""
 import re
 import sys
 import unittest
@@ -13,7 +13,7 @@ FIRMWARE = [("template", "robot.elf", "board.ld"), ("template", "drive.elf", "bo
 
 
 def made_of(board, program):
-    """What a link of the program waits for, as Ninja or make is told."""
+    """The dependencies of the program's link step, from the files of Ninja or make."""
     ninja, make = BOARDS / board / "build.ninja", BOARDS / board / f"CMakeFiles/{program}.dir/build.make"
     text = (ninja if ninja.exists() else make).read_text().replace("$\n", "")
     start = "build " if ninja.exists() else ""

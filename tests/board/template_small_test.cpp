@@ -1,5 +1,5 @@
-// The template's settings fit limits smaller than the template's: the pipeline starts, its window in the middle ahead,
-// the laser looks as far to the left as to the right.
+// The template's settings fit limits smaller than the template's own: the pipeline starts, its window is centred ahead,
+// and the laser looks equally far to the left and right.
 #include <cstdio>
 
 #include "curbline/pipeline.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that gives it a drive, tells the motors after each scan
-line of the curbs that the desk's own run over that drive has: as many of them, and the height of the one ahead. Where the servo is silent
-for a second the counter stands, with each line that is dropped."""
+"""template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that feeds it a drive, informs the motors after each
+scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead. While the servo is silent
+for a second, each line is dropped and the counter does not advance."""
 import os
 import struct
 import subprocess
@@ -16,13 +16,13 @@ import run_drives  # noqa: E402
 
 CURB = struct.Struct("<9f4H")
 COUNTERS = 4 * (Path(__file__).resolve().parents[2] / "lib/curbline/counters.hpp").read_text().count("std::uint32_t")
-AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # of lib/curbline/can/curb_frames.hpp
-HALF_WIDTH = 0.5  # of template_robot/robot.hpp
-FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # in a record of a frame
+AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # from lib/curbline/can/curb_frames.hpp
+HALF_WIDTH = 0.5  # from template_robot/robot.hpp
+FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # offsets in the record of a frame
 
 
 def ahead_at(x0, y0, x1, y1):
-    """x of the point of a segment on the way of a robot at the origin that is nearest to it, or None."""
+    """x of the nearest point of a segment within the path of a robot at the origin, or None."""
     low, high = 0.0, 1.0
     for at_first, at_last in [(x0, x1), (HALF_WIDTH - y0, HALF_WIDTH - y1), (HALF_WIDTH + y0, HALF_WIDTH + y1)]:
         if at_first < 0 and at_last < 0:
@@ -36,7 +36,7 @@ def ahead_at(x0, y0, x1, y1):
 
 
 def told_by_results(path):
-    """(curbs, height of the nearest ahead in mm or None) after each line that was taken."""
+    """(curbs, height of the nearest ahead in mm or None) after each accepted line."""
     for _, record in run_bus.records(path):
         status, = struct.unpack_from("<I", record, 16)
         count_at = 20 + COUNTERS
@@ -52,7 +52,7 @@ def told_by_results(path):
 
 
 def lines_told(path):
-    """(AHEAD or None, STATUS) after each scan line, of the frames that the robot sent."""
+    """(AHEAD or None, STATUS) after each scan line, from the frames that the robot sent."""
     ahead = None
     for _, record in run_bus.records(path):
         frame_id, data = struct.unpack_from("<I", record, FRAME_ID)[0], record[FRAME_DATA:]
@@ -66,7 +66,7 @@ def lines_told(path):
 
 
 def told_by_frames(path):
-    """The same as told_by_results() of the frames that the robot sent."""
+    """The same as told_by_results(), from the frames that the robot sent."""
     for ahead, status in lines_told(path):
         if ahead is not None:
             yield status[2], struct.unpack_from("<h", ahead, 4)[0] if ahead[7] & 3 else None
@@ -77,7 +77,7 @@ def run(program, drive, sent):
 
 
 def silence_servo(drive, out):
-    """Writes the drive without the CAN frames of its second second."""
+    """Writes the drive without the CAN frames between 1 s and 2 s."""
     start_ns = next(run_bus.frame_time(record) for kind, record in run_bus.records(drive) if kind == run_bus.CAN_FRAME)
     with out.open("wb") as file:
         for kind, record in run_bus.records(drive):
@@ -86,7 +86,7 @@ def silence_servo(drive, out):
 
 
 def check_silence(program, drive, folder):
-    """A line that is dropped is told too, by a counter that stands; one that is taken by an AHEAD and a counter that is one more."""
+    """A dropped line is reported too, by a counter that does not advance; an accepted one by an AHEAD and a counter that is one higher."""
     silent, sent = folder / "silent.drive", folder / "silent.sent"
     silence_servo(drive, silent)
     run(program, silent, sent)

@@ -44,7 +44,7 @@ inline can::Frame frame_of(std::uint32_t id, bool extended = false, std::vector<
   return frame;
 }
 
-/// What a controller's driver says.
+/// Sends an error message as a controller's driver does.
 inline void say_error(SocketCan& by, canid_t what, std::uint8_t controller = 0) {
   can_frame frame{};
   frame.can_id = CAN_ERR_FLAG | what;
@@ -53,7 +53,7 @@ inline void say_error(SocketCan& by, canid_t what, std::uint8_t controller = 0) 
   REQUIRE(::write(by.descriptor(), &frame, sizeof frame) == sizeof frame);
 }
 
-/// Everything that comes until nothing has for 50 ms.
+/// Receives until nothing has arrived for 50 ms.
 inline std::vector<can::Frame> receive_all(SocketCan& bus) {
   std::vector<can::Frame> all;
   std::array<can::Frame, 64> some{};
@@ -61,7 +61,7 @@ inline std::vector<can::Frame> receive_all(SocketCan& bus) {
   return all;
 }
 
-/// Calls receive() until the link is in a state, 2 s at most.
+/// Calls receive() until the link reaches a state, for at most 2 s.
 inline bool reaches(SocketCan& bus, LinkState state) {
   std::array<can::Frame, 4> frames{};
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(2);

@@ -1,4 +1,4 @@
-// The daemon on the kernel's CAN: the curbs of the same logs, and what a bus may do to it.
+// The daemon on the kernel's CAN: it gives the same curbs as replay of the logs, and survives what may happen on a bus.
 #include <linux/can/error.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ Words daemon_words(const Words& more = {}) {
          more;
 }
 
-/// Of an undisturbed run.
+/// The curbs of an undisturbed run.
 const std::vector<nlohmann::json>& undisturbed() {
   static const std::vector<nlohmann::json> curbs = replayed_curbs(recording().replay());
   return curbs;
@@ -52,12 +52,12 @@ nlohmann::json end_of(const Recording& recording) {
   return curbs;
 }
 
-/// Of a run that ended by itself, well: the last status.
+/// The last status of a run that ended by itself and without an error.
 nlohmann::json status_of(const Outcome& outcome) {
   INFO("standard error: " << outcome.err);
   REQUIRE(outcome.status == 0);
   const nlohmann::json status = nlohmann::json::parse(outcome.out).at("status");
-  CHECK(status.at("heap_calls").at("before_start") > 100);  // the trap sees
+  CHECK(status.at("heap_calls").at("before_start") > 100);  // the trap works
   CHECK(status.at("heap_calls").at("since_start") == 0);
   return status;
 }
@@ -66,7 +66,7 @@ void send_well(SocketCan& bus, const can::Frame& frame) {
   REQUIRE(bus.send(frame) == socketcan::Status::ok);
 }
 
-/// Plays the recording's log as `send` has it; gives the client's lines, and how it ended.
+/// Plays the recording's log through `send`. Returns the client's lines and how the daemon ended.
 struct Drive {
   std::vector<nlohmann::json> lines;
   Outcome outcome;
@@ -133,7 +133,7 @@ TEST_CASE("daemon: a flood of other ids, requests and error messages changes no 
   const nlohmann::json status = status_of(flooded.outcome);
   check_same(distinct_curbs(flooded.lines), undisturbed());
   CHECK(status.at("can").at("bus_errors") == 4 * status.at("can").at("frames").get<int>());
-  CHECK(status.at("tilt").at("others") == 0);  // the kernel keeps them away
+  CHECK(status.at("tilt").at("others") == 0);  // the kernel filters them out
   CHECK(times_said(flooded.outcome.err, "errors on the CAN bus") == 1);
 }
 
@@ -158,7 +158,7 @@ TEST_CASE(
   check_alike(last_curbs(cut.lines), end_of(recording()));
 }
 
-/// A scene through which a robot drives up to a kerb of 10 cm, from 3 m before it to 1 m.
+/// A scene in which a robot drives toward a curb of 10 cm, from 3 m away to 1 m.
 std::string kerb_ahead() {
   static const TemporaryDirectory directory;
   return directory.write("kerb.toml",
@@ -177,7 +177,7 @@ std::string make_fifo(const Recording& recording) {
   return path;
 }
 
-/// Writes a recording's poses into a FIFO, as they come.
+/// Writes a recording's poses into a FIFO as time passes.
 class Localisation {
  public:
   Localisation(const std::string& fifo, const Recording& recording)
@@ -274,7 +274,7 @@ TEST_CASE(
     if (can::read_curb_ahead(frame, ahead)) last = ahead;
   }
   REQUIRE(last);
-  CHECK(double{last->distance_m} == Approx(1.0).margin(0.05));  // before the robot
+  CHECK(double{last->distance_m} == Approx(1.0).margin(0.05));  // ahead of the robot
   CHECK(status.at("poses").at("times_lost") == 1);
   CHECK(status.at("poses").at("damaged") == 1);
   CHECK(times_said(outcome.err, "no pose since the start") == 1);
@@ -351,7 +351,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
     sent.insert(read.tilt);
     ++(renewed ? taken : dropped);
     counter = static_cast<std::uint8_t>(counter + renewed);
-    CHECK(read.counter == counter);  // it stands with a line that was dropped
+    CHECK(read.counter == counter);  // it does not advance with a dropped line
     renewed = false;
   }
   CHECK(status.at("pipeline").at("lines") == taken);
@@ -369,10 +369,10 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
     if (since_s > 1.5) return send_well(bus, frame);
     can::Frame changed = frame;
     switch (number % 12) {
-      case 1:  // twice
+      case 1:  // sent twice
         send_well(bus, frame);
         break;
-      case 3:  // after the next
+      case 3:  // swapped with the next
         held = frame;
         return;
       case 4:
@@ -382,7 +382,7 @@ TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are
       case 6:  // late
         std::this_thread::sleep_for(25ms);
         break;
-      case 8:  // a bit of the angle's lowest byte
+      case 8:  // a flipped bit in the angle's lowest byte
         changed.data[2] ^= 0x10;
         break;
       case 10:

@@ -1,5 +1,5 @@
-// Frames through the kernel: filters, times, CAN FD, error messages, overflow. A virtual interface has no controller:
-// its error messages are written by the tests, bit for bit as a driver does (linux/can/error.h).
+// Frames through the kernel: filters, times, CAN FD, error messages, overflow. A virtual interface has no controller,
+// so the tests write its error messages themselves, bit for bit as a driver does (linux/can/error.h).
 #include <ctime>
 #include <memory>
 
@@ -72,7 +72,7 @@ TEST_CASE("socketcan: a frame's time is the kernel's, between before and after i
     const std::int64_t before_ns = system_time_ns();
     REQUIRE(bus.sender.send(frame_of(0x181)) == Status::ok);
     const std::int64_t after_ns = system_time_ns();
-    ::usleep(500);  // the time is not that of reading
+    ::usleep(500);  // so that the time of reading differs from the frame's
     std::array<can::Frame, 2> got{};
     REQUIRE(bus.receiver.receive(got, 1000) == 1);
     REQUIRE(got[0].time_ns >= before_ns);
@@ -173,11 +173,11 @@ TEST_CASE("socketcan: a flood of error messages hides no frame and holds no call
 
 TEST_CASE("socketcan: frames that nobody read in time are counted as lost", "[frames]") {
   Pair bus;
-  const int small = 0;  // the kernel's least
+  const int small = 0;  // the kernel raises it to its minimum
   REQUIRE(::setsockopt(bus.receiver.descriptor(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small) == 0);
   for (int i = 0; i < 200; ++i) REQUIRE(bus.sender.send(frame_of(0x181)) == Status::ok);
   const auto kept = receive_all(bus.receiver);
-  REQUIRE(bus.sender.send(frame_of(0x182)) == Status::ok);  // the kernel tells with the next frame
+  REQUIRE(bus.sender.send(frame_of(0x182)) == Status::ok);  // the kernel reports the loss with the next frame
   REQUIRE(receive_all(bus.receiver).size() == 1);
   CHECK(kept.size() < 200);
   CHECK(bus.receiver.counters().frames_lost == 200 - kept.size());
@@ -210,7 +210,7 @@ TEST_CASE("socketcan: after open() nothing asks the heap for memory", "[frames]"
   CHECK(asked == 0);
   CHECK(got == 100);
   const auto counted = std::make_unique<int>(1);
-  CHECK(test::heap_count() > before);  // the counter counts
+  CHECK(test::heap_count() > before);  // the counter works
 }
 
 }  // namespace

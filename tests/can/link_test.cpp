@@ -1,4 +1,4 @@
-// The interface goes and comes back.
+// The interface goes down or away, and comes back.
 #include <poll.h>
 
 #include "bus.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array<Filter, 1> tilt{Filter{0x181, 0x7FF, false}};
 
-/// Sends a frame of another id and one of the tilt, and expects the tilt's alone.
+/// Sends a frame with another id and a tilt frame, and expects only the tilt frame.
 void check_carries(SocketCan& bus, const char* interface_name) {
   SocketCan sender;
   REQUIRE(sender.open(interface_name, {}) == Status::ok);

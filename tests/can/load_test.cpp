@@ -16,7 +16,7 @@ constexpr double rate_hz = 8000.0;
 
 const can::Signal signal = can::cia402_position(1);
 
-/// Every eighth frame is the tilt's; bytes that its signal does not use number the frames.
+/// Every eighth frame is a tilt frame. Bytes that its signal does not use number the frames.
 can::Frame frame_number(std::uint32_t n) {
   can::Frame frame;
   frame.id = 0x200 + n % 500;
@@ -37,7 +37,7 @@ std::uint32_t number_of(const can::Frame& frame) {
          std::uint32_t{frame.data[7]} << 24;
 }
 
-/// In bursts of a millisecond.
+/// Sends in bursts of a millisecond.
 void send_all(SocketCan& bus, std::atomic<bool>& sent) {
   const auto start = std::chrono::steady_clock::now();
   for (std::uint32_t n = 0; n < frames; ++n) {
@@ -48,7 +48,7 @@ void send_all(SocketCan& bus, std::atomic<bool>& sent) {
   sent = true;
 }
 
-/// Scan lines of 40 Hz, each taken when the tilt of its last beam is there.
+/// Scan lines at 40 Hz, each taken when the tilt of its last beam is available.
 class Lines {
  public:
   Lines() {

@@ -1,4 +1,4 @@
-// `curbline replay --can can:vcan0` beside canplayer, as a user types it.
+// `curbline replay --can can:vcan0` beside canplayer, as a user runs it.
 #include <fstream>
 #include <thread>
 
@@ -8,7 +8,7 @@
 namespace curbline::tools::testing {
 namespace {
 
-/// Whether a program listens on vcan0, as the kernel's lists of receivers have it.
+/// Does a program listen on the interface, according to the kernel's lists of receivers?
 bool heard(const std::string& interface_name) {
   for (const char* list : {"rcvlist_sff", "rcvlist_eff", "rcvlist_fil"}) {
     std::ifstream text(std::string("/proc/net/can/") + list);
@@ -30,7 +30,7 @@ Outcome beside_canplayer(const Words& replay, const std::string& log) {
   return outcome;
 }
 
-/// Scan lines with their CAN log beside them, as a recording has them.
+/// Scan lines with their CAN log beside them, as in a recording.
 struct Drive {
   std::string scans, can, robot;
 };
@@ -40,7 +40,7 @@ Words replay_of(const Drive& drive, const std::string& can, const std::string& c
           drive.robot, "--curbs", curbs,       "--labels", labels, "--json"};
 }
 
-/// Curbs, labels and counters from the log, and from the bus while `played` is played there, which `read` says too.
+/// Compares curbs, labels and counters of the log `read` with those of the bus while the log `played` is played on it.
 Outcome check_same(const Drive& drive, const std::string& played, const std::string& read) {
   const TemporaryDirectory out;
   const Outcome direct = curbline(replay_of(drive, read, out.path("log.csv"), out.path("log-labels.csv")));
@@ -60,7 +60,7 @@ Drive drive_of(const Recording& recording) {
   return {recording.path("scans.carmen"), recording.path("can.log"), recording.path("robot.toml")};
 }
 
-/// The lines of a log that `keep(number)` wants.
+/// The lines of a log for which `keep(number)` is true.
 template <typename Keep>
 std::string some_lines(const std::string& log, Keep&& keep) {
   std::string text;
@@ -119,7 +119,7 @@ TEST_CASE("replay: frames with bits flipped are read as they came, at the time o
   std::string flipped;
   int number = 0, flips = 0;
   for (std::string line : lines_of(read_file(drive.can))) {
-    char& digit = line[line.find('#') + 5];  // of the angle's lowest byte
+    char& digit = line[line.find('#') + 5];  // in the angle's lowest byte
     if (number++ % 20 == 10 && number < 150) ++flips, digit = digit == '0' ? '1' : '0';
     flipped += line + "\n";
   }
@@ -136,7 +136,7 @@ TEST_CASE("replay: without the recording's CAN log a frame's time is that of its
           "[replay]") {
   const Recording recording("straight_curb", "utm30lx", {"--duration", "4"});
   const TemporaryDirectory alone;
-  const std::string start = "1700000000";  // of the scan lines; the bus begins with them
+  const std::string start = "1700000000";  // time of the scan lines; the bus begins with them
   std::string log;
   for (const std::string& line : lines_of(read_file(recording.path("can.log")))) {
     if (line.substr(1, start.size()) >= start) log += line + "\n";
@@ -153,7 +153,7 @@ TEST_CASE("replay: without the recording's CAN log a frame's time is that of its
                         ": no lines.candump or can.log beside it; expected one, to know when tilt frames were "
                         "recorded: the first is taken for one of the first scan line's time, and curbs are wrong if it "
                         "is not\n");
-  // How well the curbs are met depends on how evenly a busy machine lets canplayer send.
+  // How accurate the curbs are depends on how evenly a busy machine lets canplayer send.
   CHECK(nlohmann::json::parse(live.out).at("lines") > 140);
   CHECK(lines_of(read_file(out.path("labels.csv"))).size() > 500);
 }

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Within 10 s.
+/// Waits until `what` is true, for at most 10 s.
 bool comes_true(const std::function<bool()>& what) {
   for (int i = 0; i < 500; ++i) {
     if (what()) return true;

@@ -1,4 +1,4 @@
-// Clients come and go and sleep; nobody waits for them.
+// Clients come, go and stall; the server waits for none of them.
 #include "curb_server.hpp"
 
 #include <arpa/inet.h>

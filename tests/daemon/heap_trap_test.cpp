@@ -1,4 +1,4 @@
-// The trap sees every way to the heap; a daemon that reports 0 calls makes none.
+// The trap sees every way to the heap, so a daemon that reports 0 calls makes none.
 #include "heap_trap.hpp"
 
 #include <malloc.h>
@@ -17,7 +17,7 @@ namespace {
 
 void* volatile kept;
 
-/// A compiler may leave out what nobody looks at.
+/// Keeps the compiler from removing an allocation whose result is unused.
 void give_back(void* memory) {
   kept = memory;
   std::free(kept);

@@ -1,4 +1,4 @@
-// What the daemon says on standard error, whoever reads it.
+// What the daemon writes to standard error, whether or not anyone reads it.
 #include "journal.hpp"
 
 #include <fcntl.h>
@@ -13,7 +13,7 @@
 namespace curbline::daemon {
 namespace {
 
-/// A pipe in place of standard error as long as it lives.
+/// Replaces standard error by a pipe as long as it lives.
 class ErrorPipe {
  public:
   ErrorPipe() : kept_(::dup(STDERR_FILENO)) {
@@ -29,7 +29,7 @@ class ErrorPipe {
     const std::array<char, 4096> bytes{};
     while (::write(ends_[1], bytes.data(), bytes.size()) > 0) {
     }
-    ::fcntl(ends_[1], F_SETFL, 0);  // from now on a write waits, as one of standard error does
+    ::fcntl(ends_[1], F_SETFL, 0);  // from now on a write blocks, as on standard error
   }
   std::string read() {
     std::array<char, 1 << 17> bytes{};
@@ -54,7 +54,7 @@ TEST_CASE("journal: who stops to read standard error does not stop the daemon") 
   {
     ErrorPipe standard_error;
     standard_error.fill();
-    std::thread reader([&] {  // lets go in the end, so that a test that fails ends too
+    std::thread reader([&] {  // reads in the end, so that a failing test ends too
       std::this_thread::sleep_for(std::chrono::seconds(1));
       standard_error.read();
     });

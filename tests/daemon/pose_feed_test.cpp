@@ -31,7 +31,7 @@ class Fifo {
   void write(std::string_view text) const {
     REQUIRE(::write(writer_, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
   }
-  /// The writer goes, another comes.
+  /// The writer closes the FIFO, another one opens it.
   void change_writer() {
     ::close(writer_);
     connect();
@@ -47,7 +47,7 @@ class Fifo {
   int writer_ = -1;
 };
 
-/// A descriptor that is standard input for a while.
+/// Replaces standard input by a descriptor for a while.
 class StandardInput {
  public:
   explicit StandardInput(int descriptor) : before_(::dup(STDIN_FILENO)) {

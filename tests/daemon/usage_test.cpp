@@ -1,4 +1,4 @@
-// What curblined refuses: bad input with one line and status 1, wrong usage with status 2.
+// What curblined refuses: bad input with one line and exit status 1, wrong usage with status 2.
 #include "formats/decimals.hpp"
 #include "program.hpp"
 

@@ -1,5 +1,5 @@
-// In place of port/_template and the template's robot.hpp: a drive's records are what bus and scanner give, in their
-// order, and time is theirs. What the robot sends is written to a file, as records.
+// Replaces port/_template and the template's robot.hpp. The records of a drive, in order, stand for the bus and the
+// scanner, and define the time. What the robot sends is written to a file, as records.
 #pragma once
 
 #include <algorithm>
