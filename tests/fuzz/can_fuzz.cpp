@@ -1,4 +1,4 @@
-// Any frames, any signals, any line of a candump log.
+// Arbitrary frames, signals and lines of a candump log.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -74,7 +74,7 @@ void signals(Numbers& numbers) {
     frame.length = std::min(frame.length, signal.max_bytes);
     can::encode(signal, value, frame);
     const std::optional<double> back = can::decode(signal, frame);
-    if (signal.multiplexor) continue;  // whose bits may be those of the value
+    if (signal.multiplexor) continue;  // its bits may overlap those of the value
     claim(can::carries(signal, frame), "a frame that a value was written into bears it");
     claim(back || signal.is_float || !std::isfinite(value), "and gives it back, if it is finite");
   }

@@ -1,4 +1,4 @@
-// What must hold, whatever comes. A fuzzer stops where it does not, and keeps the input.
+// What must hold for every input. Otherwise the fuzzer stops and keeps the input.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Any file, read as the format that FORMAT names: it is read to its end, or refused with one line that names the file.
-// Nothing else is thrown, and what has been read is what the format's reader promises.
+// An arbitrary file, read as the format named by FORMAT: it is read to its end, or refused with one line that names the
+// file. Nothing else is thrown, and what has been read satisfies what the format's reader promises.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -40,11 +40,11 @@ class File {
   int descriptor_;
 };
 
-/// A second name of it, with an ending: where that tells the format.
+/// A second name of the file, with an ending, for readers that choose the format by it.
 class Named {
  public:
   Named(const File& file, const char* ending) : path_("/tmp/curbline-fuzz-" + std::to_string(::getpid()) + ending) {
-    ::unlink(path_.c_str());  // of one that was stopped
+    ::unlink(path_.c_str());  // left over from a process that was killed
     claim(::symlink(file.path().c_str(), path_.c_str()) == 0, "it has a second name");
   }
   ~Named() { ::unlink(path_.c_str()); }

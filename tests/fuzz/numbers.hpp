@@ -1,4 +1,4 @@
-// Numbers from the bytes of a fuzzer: likely ones, and those that nobody thinks of.
+// Numbers from the bytes of a fuzzer: likely ones, and ones that nobody expects.
 #pragma once
 
 #include <fuzzer/FuzzedDataProvider.h>
@@ -20,7 +20,7 @@ class Numbers {
   bool seldom() { return data_.ConsumeIntegralInRange(0, 15) == 15; }
   int whole(int low, int high) { return data_.ConsumeIntegralInRange(low, high); }
   float number(float low, float high) { return data_.ConsumeFloatingPointInRange(low, high); }
-  /// Any float there is, those that are no number too.
+  /// Any float, including NaN and infinities.
   float any() {
     using Floats = std::numeric_limits<float>;
     constexpr std::array<float, 8> odd{Floats::quiet_NaN(),
@@ -38,10 +38,10 @@ class Numbers {
   std::uint32_t bits32() { return data_.ConsumeIntegral<std::uint32_t>(); }
   std::uint8_t byte() { return data_.ConsumeIntegral<std::uint8_t>(); }
   std::string text() { return data_.ConsumeRandomLengthString(); }
-  /// Any time of 146 years, to either side of 0 and mostly near it.
+  /// Any time within 146 years of 0, mostly near it.
   std::int64_t time_ns() { return data_.ConsumeIntegral<std::int64_t>() >> whole(1, 40); }
 
-  /// Leaves it, or makes it one in its range, or any.
+  /// Leaves the value, replaces it by one in its range, or by any.
   void change(float& value, float low, float high) {
     const int how = whole(0, 7);
     if (how == 7) value = any();

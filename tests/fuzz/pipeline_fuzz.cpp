@@ -1,5 +1,5 @@
-// Any settings, any readings, poses, points and lines, in any order: settings are refused by name or taken; whatever
-// comes then, what the pipeline gives out can be used.
+// Arbitrary settings, readings, poses, points and lines, in any order: settings are accepted or refused by name.
+// Whatever comes then, the pipeline's output can be used.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,7 +33,7 @@ MountSettings some_mount(Numbers& numbers) {
   return mount;
 }
 
-/// Those of a robot that stands 1 m above the ground or drives, some of them changed.
+/// Settings of a robot that stands 1 m above the ground or drives, some of them changed.
 Settings some_settings(Numbers& numbers) {
   Settings s;
   s.window.rows = s.window.cols = 12;
@@ -101,7 +101,7 @@ Settings some_settings(Numbers& numbers) {
   return s;
 }
 
-/// What a robot sees: a line of the ground, a step across it, its noise; and some readings that are anything.
+/// What a robot sees: a scan line of the ground with a step across it and noise, and some arbitrary readings.
 class Street {
  public:
   explicit Street(Numbers& numbers) : numbers_(numbers) {}
@@ -111,7 +111,7 @@ class Street {
     angle_rad_ += numbers_.number(-0.1f, 0.1f);
     if (!(angle_rad_ > 0.3f && angle_rad_ < 1.4f)) angle_rad_ = 0.7f;
     x_m_ += numbers_.number(0.0f, 0.05f);
-    if (numbers_.seldom()) z_m_ = numbers_.number(-0.2f, 0.2f);  // a kerb, or its localisation thinks better of itself
+    if (numbers_.seldom()) z_m_ = numbers_.number(-0.2f, 0.2f);  // a curb, or its localisation corrects itself
   }
   TiltReading reading() { return {time_ns_, numbers_.rarely_any(angle_rad_)}; }
   Pose pose() {

@@ -1,5 +1,5 @@
-// Any bytes from a scanner, among its own telegrams, whole or changed, with sums that fit or not: a session gives out
-// lines that can be used, goes on, and says what it drops.
+// Arbitrary bytes from a scanner among its own telegrams, intact or changed, with or without a matching checksum: a
+// session returns lines that can be used, goes on, and reports what it drops.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -15,7 +15,7 @@ namespace {
 
 using tools::Bytes;
 
-/// The sums of a telegram that has been changed, made anew: what a device sends that means something else.
+/// Recomputes the checksums of a changed telegram, as if a device had sent other contents.
 void sum_up_scip2(Bytes& bytes) {
   std::size_t begin = 0;
   for (std::size_t end = 0; end < bytes.size(); ++end) {

@@ -1,4 +1,4 @@
-// Lines, readings and clocks at any time: what stands before the pipeline keeps count of what it is given.
+// Lines, readings and clocks at arbitrary times: the stages before the pipeline account for all that they are given.
 #include <array>
 #include <optional>
 

@@ -1,4 +1,4 @@
-// A scanner by a name that has several addresses, as "localhost" has ::1 and 127.0.0.1.
+// A scanner whose name has several addresses, as "localhost" has ::1 and 127.0.0.1.
 #include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@
 extern "C" {
 int __real_getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found);
 
-/// The linker puts it in getaddrinfo's place: whatever this machine calls its addresses, two.test is 127.0.0.2 first,
-/// then 127.0.0.1.
+/// The linker replaces getaddrinfo by this. Whatever this machine resolves, two.test is first 127.0.0.2, then
+/// 127.0.0.1.
 int __wrap_getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found) {
   if (std::strcmp(host, "two.test") != 0) return __real_getaddrinfo(host, service, wanted, found);
   const int failed = __real_getaddrinfo("127.0.0.2", service, wanted, found);
@@ -27,7 +27,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Answers no more: its queue of connections is full.
+/// Does not answer, because its queue of connections is full.
 class SilentListener {
  public:
   SilentListener(const char* host, std::uint16_t at_port) : listener_(host, at_port, 0) {

@@ -1,4 +1,4 @@
-// A scanner's clock against the host's. Delays are drawn as they come on a network: a least one, and more at random.
+// A scanner's clock against the host's. Delays are drawn as on a network: a minimum plus a random part.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -42,8 +42,8 @@ TEST_CASE("clock: the time of a log is found from its counter for hours around")
   CHECK(counter.nearest_ns(device_ns + 0x1000000 * ms, time_ns) == time_ns);
 }
 
-/// Lines of 40 Hz with a delay of 20 ms and up to 30 more; the scanner's clock is `ppm` fast. Largest error after the
-/// first second.
+/// Lines at 40 Hz with a delay of 20 ms plus up to 30 ms; the scanner's clock is `ppm` fast. Returns the largest error
+/// after the first second.
 std::int64_t worst_error_ns(scanner::DeviceClock& clock, double ppm, int seconds, std::int64_t true_offset_ns) {
   std::mt19937 random(3);
   std::int64_t worst_ns = 0;
@@ -97,8 +97,8 @@ TEST_CASE("turn clock: a gap is made up for") {
   CHECK(std::abs(clock.sent_ns(after_ns, 1) - after_ns) < lms200::turn_ns);
 }
 
-/// Largest change of what a line's time is before its arrival, over 80 lines that all take the same time to come; the
-/// host's clock is set to another time before the 41st.
+/// Largest change of the time from a line's stamp to its arrival, over 80 lines that all take the same time to arrive.
+/// The host's clock is set by `by_ns` before the 41st.
 std::int64_t worst_change_ns(Scanner& scanner, std::int64_t by_ns) {
   start(scanner);
   const std::vector<Bytes> telegrams = telegrams_of(scanner, 80);

@@ -1,4 +1,5 @@
-// An LMS1xx by script: what the simulated one never says (faults, encoders, offsets, other channels, no confirmation).
+// A scripted LMS1xx, for what the simulated one never sends: faults, encoders, offsets, other channels, no
+// confirmation.
 #include <bit>
 #include <catch2/catch.hpp>
 
@@ -17,7 +18,7 @@ bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-/// A scan telegram: what its fields are where nothing is said of them.
+/// A scan telegram, with the default values of its fields.
 struct Scan {
   std::uint16_t status = 0;
   std::vector<std::uint16_t> encoders{};

@@ -1,4 +1,4 @@
-// A live scanner's connection: how long calls wait, when it is made anew, what is told of it, and how it is left.
+// A live scanner's connection: how long calls wait, when it is made again, what is reported, and how it is closed.
 #include <pty.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -28,7 +28,7 @@ port::ByteStream stream_to(std::uint16_t port) {
   return *port::ByteStream::tcp("127.0.0.1", port, error);
 }
 
-/// A connection as the scanner has it.
+/// The scanner's end of a connection.
 class Accepted {
  public:
   explicit Accepted(const Listener& listener) : fd_(::accept(listener.fd(), nullptr, nullptr)) { REQUIRE(fd_ >= 0); }
@@ -38,7 +38,7 @@ class Accepted {
 
   void send(const Bytes& bytes) const { ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL); }
 
-  /// What comes until the other side closes.
+  /// Receives until the other side closes.
   Bytes rest() const {
     Bytes bytes(1000);
     std::size_t size = 0;
@@ -57,7 +57,7 @@ class Accepted {
   int fd_;
 };
 
-/// A line that a CoLa session takes at any time.
+/// A line that a CoLa session accepts at any time.
 Bytes cola_line() {
   Scanner scanner = std::move(small_scanners()[1]);
   start(scanner);
@@ -128,7 +128,7 @@ TEST_CASE("connection: a loss is told once, and again when there has been a line
   }
 }
 
-/// A protocol of which only the reading matters.
+/// A protocol in which only reading matters.
 class ReadingSession final : public scanner::Session {
  public:
   using Take = bool (*)(std::span<const std::uint8_t>& bytes);
@@ -149,7 +149,7 @@ class ReadingSession final : public scanner::Session {
   scanner::Counters counters_{};
 };
 
-/// Finds no line, and is slow about it: more bytes are always there.
+/// Finds no line and is slow, so that more bytes are always available.
 bool no_line(std::span<const std::uint8_t>& bytes) {
   std::this_thread::sleep_for(2ms);
   bytes = {};
@@ -181,7 +181,7 @@ TEST_CASE("connection: bytes that are no line do not keep a reader for longer th
   CHECK(took >= 45ms);
   CHECK(took < 1s);
   stop = true;
-  while (!stopped) live.read(0ms);  // it may be waiting for room
+  while (!stopped) live.read(0ms);  // it may be waiting for space in the socket
   noise.join();
 }
 

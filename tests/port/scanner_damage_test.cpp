@@ -1,4 +1,5 @@
-// What a noisy line does to telegrams, for each protocol: whatever comes, a line that is given is one that was sent.
+// What a noisy line does to the telegrams of each protocol. Whatever arrives, a line that is passed on is one that was
+// sent.
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
@@ -13,7 +14,7 @@ bool contains(const std::vector<int>& lines, int line) {
   return std::find(lines.begin(), lines.end(), line) != lines.end();
 }
 
-/// Enough to fill the largest telegram that a damaged length can promise.
+/// Enough telegrams to fill the largest one that a damaged length can announce.
 constexpr int followers(const std::string& name) {
   return name == "cola" ? 120 : 8;
 }
@@ -36,7 +37,7 @@ TEST_CASE("scanner: every range and the geometry come back as the simulated scan
 
 TEST_CASE("scanner: the stamp and a time of the log give the line's time in the log") {
   for (Scanner& s : whole_scanners()) {
-    if (s.name == "lms200") continue;  // its telegrams bear no time
+    if (s.name == "lms200") continue;  // its telegrams contain no time
     INFO(s.name);
     start(s);
     lines_read(s, joined(telegrams_of(s, 6)));
@@ -78,7 +79,7 @@ TEST_CASE(
       next_lost += !contains(lines, 2);
     }
     INFO(s.name << ": next line lost at " << next_lost << " of " << whole.size());
-    CHECK(next_lost <= whole.size() / 32);  // a sum of six bits is right by chance once in 64
+    CHECK(next_lost <= whole.size() / 32);  // a checksum of six bits is right by chance once in 64
     if (s.name != "scip2") CHECK(next_lost == 0);
   }
 }
@@ -106,7 +107,8 @@ TEST_CASE("scanner: a bit that flips anywhere costs that line, and once in 64 th
     INFO(s.name << ": next line lost " << next_lost << " times, the damaged one given " << given);
     CHECK(next_lost <= whole.size() / 8);
     if (s.name == "lms200") CHECK(given == 0);
-    if (s.name == "cola") CHECK(given <= 1);  // a length of 4 more ends in the next start, where the XOR is right again
+    if (s.name == "cola")
+      CHECK(given <= 1);  // a length larger by 4 ends within the next start, where the XOR is right again
   }
 }
 
@@ -188,7 +190,7 @@ TEST_CASE("scanner: a counter that starts anew is followed after three lines") {
     CHECK(lines_read(s, joined(telegrams_of(s, 3, 500))).size() == 3);
     CHECK(lines_read(s, joined(telegrams_of(s, 3))).empty());
     CHECK(s.session->counters().stamps_back == 3);
-    start(s);  // the session asks to be set up again
+    start(s);  // the session requests to be set up again
     CHECK(lines_read(s, joined(telegrams_of(s, 3))) == std::vector<int>{0, 1, 2});
   }
 }

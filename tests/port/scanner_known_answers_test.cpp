@@ -1,4 +1,4 @@
-// Telegrams and numbers as the manufacturers' manuals print them.
+// Telegrams and numbers as printed in the manufacturers' manuals.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -19,7 +19,7 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// Hokuyo C-42-03320B, chapter 6, and its example of a sum.
+// Hokuyo C-42-03320B, chapter 6, with its example of a checksum.
 TEST_CASE("scip2: numbers of 2, 3 and 4 characters and the sum are those of the manual") {
   CHECK(scip2::decode("CB") == 1234);
   CHECK(scip2::decode("1Dh") == 5432);
@@ -34,7 +34,7 @@ TEST_CASE("scip2: numbers of 2, 3 and 4 characters and the sum are those of the 
   CHECK_FALSE(scip2::sum_is_right("00Q"));
 }
 
-// As a UTM-30LX-EW gives them.
+// As a UTM-30LX-EW sends them.
 TEST_CASE("scip2: the parameters of a UTM-30LX are read, sums behind semicolons") {
   scanner::Counters counters;
   scip2::Decoder decoder(counters);
@@ -70,7 +70,7 @@ TEST_CASE("scip2: clustered steps are not taken for single ones") {
   CHECK(counters.unsupported == 1);
 }
 
-// SICK 8014631 and 8023198 print these.
+// From SICK 8014631 and 8023198.
 TEST_CASE("cola: telegrams are framed and summed as in the manual") {
   const auto framed = [](std::string_view content, const Bytes& data = {}) {
     Bytes telegram(cola::Format::header + content.size() + data.size() + 1);
@@ -104,7 +104,7 @@ TEST_CASE("cola: the scan of 21 values that the manual prints is read, the scann
   session.restart({});
   std::span<const std::uint8_t> bytes(telegram);
   CHECK_FALSE(
-      session.take(bytes, {1'000'000'000'000, 0}));  // the sum that is printed, 2B, is not that of the bytes printed
+      session.take(bytes, {1'000'000'000'000, 0}));  // the printed checksum, 2B, is not that of the printed bytes
   CHECK(session.counters().bad_checksum == 1);
   telegram.back() = 0xCB;
   bytes = telegram;
@@ -183,7 +183,7 @@ TEST_CASE("cola: a scanner that answers in CoLa A, or refuses, is a problem that
   CHECK(session.problem().find("refuses") != std::string_view::npos);
 }
 
-// SICK 8007954 and the LMS200 quick manual print these.
+// From SICK 8007954 and the LMS200 quick manual.
 TEST_CASE("lms200: telegrams and sums are those of the manual") {
   const auto framed = [](const std::string& content, std::uint8_t address = 0) {
     const Bytes bytes = from_hex(content);
@@ -203,7 +203,7 @@ TEST_CASE("lms200: telegrams and sums are those of the manual") {
   CHECK(framed("A0 00 10", 0x81) == from_hex("02 81 03 00 A0 00 10 36 1A"));
 }
 
-/// A telegram B0h of `count` values, all of them `value`.
+/// A telegram B0h of `count` values, all equal to `value`.
 Bytes scan_content(std::uint16_t count, std::uint16_t flags, std::uint16_t value) {
   Bytes content{0xB0, static_cast<std::uint8_t>(count), static_cast<std::uint8_t>((count | flags) >> 8)};
   for (int i = 0; i < count; ++i) {
@@ -220,7 +220,7 @@ TEST_CASE("lms200: the manual's scan of 361 values has 732 bytes") {
   CHECK(lms200::frame(0x80, content, telegram) == 732);
   CHECK(telegram[2] == 0xD6);
   CHECK(telegram[3] == 0x02);
-  CHECK(telegram[5] == 0x69);  // as a recorded one begins: 02 80 d6 02 b0 69 41
+  CHECK(telegram[5] == 0x69);  // a recorded one begins 02 80 d6 02 b0 69 41
   CHECK(telegram[6] == 0x41);
 }
 
@@ -257,7 +257,7 @@ TEST_CASE("lms200: interlaced partial scans, other units and other counts are re
         lms200::ScanResult::wrong_length);
   Bytes cut = scan_content(181, 1 << 14, 1000);
   while (!cut.empty()) {
-    cut = Bytes(cut.begin(), cut.end() - 1);  // and no byte behind it: a sanitizer sees
+    cut = Bytes(cut.begin(), cut.end() - 1);  // no byte after the end: a sanitizer would see reads beyond it
     CHECK(lms200::parse_scan_data(cut, 13, ranges_m, count) == lms200::ScanResult::wrong_length);
   }
 }

@@ -1,11 +1,11 @@
-// A TCP port of this machine that is open and says nothing.
+// A TCP port of this machine that is open and sends nothing.
 #pragma once
 
 #include <cstdint>
 
 namespace curbline::test {
 
-/// Listens on an address of this machine; nobody accepts, the kernel connects as many as `queue` all the same.
+/// Listens on an address of this machine. Nobody accepts, but the kernel still connects as many clients as `queue`.
 class Listener {
  public:
   explicit Listener(const char* host = "127.0.0.1", std::uint16_t at_port = 0, int queue = 4);

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using scanner::LiveScanner;
 
-/// A simulated scanner that runs beside the test.
+/// A simulated scanner that runs in a thread.
 class Running {
  public:
   Running(const Scanner& s, int lines, tools::ServerOptions options)
@@ -50,7 +50,7 @@ struct Heard {
   std::vector<std::int64_t> host_ns, device_ns;
 };
 
-/// Reads until `last` came, or the end, or ten seconds.
+/// Reads until line `last` has arrived or, if `last` is negative, the scanner has ended; for at most ten seconds.
 Heard listen(const Scanner& s, LiveScanner& live, int last) {
   Heard heard;
   const auto give_up = std::chrono::steady_clock::now() + 10s;
@@ -139,7 +139,7 @@ TEST_CASE("live: an LMS200 is found at each of its speeds, and brought to 38400 
     LiveScanner live(*s.session, running.stream(), {.silence = 10s});
     REQUIRE(live.open() == 0);
     const Heard heard = listen(s, live, -2);
-    CHECK(heard.lines.size() == (end == 500'000 ? 40 : 8));  // at 38400 baud, 212 bytes are on the wire for 4.1 turns
+    CHECK(heard.lines.size() == (end == 500'000 ? 40 : 8));  // at 38400 baud, 212 bytes take 4.1 turns on the wire
     CHECK(s.session->baud() == end);
   }
 }
@@ -159,7 +159,7 @@ TEST_CASE("live: what is not there cannot be opened, and why is told") {
   CHECK(serial.open() == ENOENT);
 }
 
-/// A server of one telegram, over and over; it closes after every fifth. It asks the heap for nothing.
+/// A server that sends the same telegram again and again and closes after every fifth. It does not use the heap.
 class FiveAndOut {
  public:
   explicit FiveAndOut(Bytes telegram) : telegram_(std::move(telegram)), thread_([this] { run(); }) {}

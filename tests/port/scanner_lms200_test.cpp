@@ -1,5 +1,5 @@
-// An LMS200 by script: what the simulated one never says (refusals, errors, other measuring modes, power-on), and the
-// times of its lines to the nanosecond.
+// A scripted LMS200, for what the simulated one never does (refusals, errors, other measuring modes, power-on), and for
+// the times of its lines to the nanosecond.
 #include <catch2/catch.hpp>
 
 #include "lms200/session.hpp"
@@ -11,9 +11,9 @@ namespace {
 using lms200::turn_ns;
 
 constexpr std::int64_t ms = 1'000'000, s = 1000 * ms;
-constexpr std::int64_t host_ahead_ns = 1'700'000'000 * s;  // of the steady clock
+constexpr std::int64_t host_ahead_ns = 1'700'000'000 * s;  // ahead of the steady clock
 constexpr unsigned millimetres = 1u << 14, partial = 1u << 13, other_unit = 2u << 14;
-constexpr int reflectivity = 0x3F;  // of the measuring modes
+constexpr int reflectivity = 0x3F;  // a measuring mode
 
 scanner::Now at(std::int64_t steady_ns) {
   return {host_ahead_ns + steady_ns, steady_ns};
@@ -37,7 +37,7 @@ Bytes scan_of(std::size_t count, std::uint8_t status = 0x10, unsigned flags = mi
   return telegram_of(content, status);
 }
 
-/// Every other byte is a measuring mode that is refused.
+/// Every byte but the measuring mode is a mode that is refused, so that reading a wrong byte shows.
 Bytes configuration_of(int measuring_mode) {
   Bytes content(36, reflectivity);
   content[0] = 0xF4;
@@ -49,11 +49,11 @@ std::int64_t wire_ns(std::size_t values, int baud) {
   return 10 * s * static_cast<std::int64_t>(2 * values + 10) / baud;
 }
 
-/// Hears one speed. It does as it is told, but to the command `scripted` its reply is another.
+/// Understands one speed. It obeys every command, but its reply to the command `scripted` is `reply`.
 struct Sick {
   int baud = 500'000;
   Bytes scripted{}, reply{};
-  std::int64_t now_ns = 60 * s;  ///< steady
+  std::int64_t now_ns = 60 * s;  ///< of the steady clock
   lms200::Session session;
 
   explicit Sick(std::size_t beams = 181) : session(beams) { session.restart(at(now_ns)); }
@@ -71,7 +71,7 @@ struct Sick {
     return session.take(left, at(now_ns));
   }
 
-  /// Commands and replies to and fro until there is nothing to say. The contents of the commands.
+  /// Exchanges commands and replies until the session has nothing to send. Returns the contents of the commands.
   std::vector<Bytes> talk() {
     std::vector<Bytes> said;
     while (said.size() < 40) {
@@ -85,7 +85,7 @@ struct Sick {
     return said;
   }
 
-  /// When the line's first beam was measured, if the scan ended and its telegram left just now.
+  /// When the line's first beam was measured, if the scan ended and its telegram was sent just now.
   std::int64_t line_time_ns() const { return session.line().host_ns - host_ahead_ns; }
 };
 

@@ -1,5 +1,5 @@
-// A Hokuyo by script: what the simulated one never says (refusals, faults, steps that do not begin at 0), and the times
-// of its lines to the nanosecond.
+// A scripted Hokuyo, for what the simulated one never does (refusals, faults, steps that do not begin at 0), and for
+// the times of its lines to the nanosecond.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -12,7 +12,7 @@ namespace curbline::test {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000, s = 1000 * ms;
-constexpr std::int64_t host_ahead_ns = 1'700'000'000 * s;  // of the steady clock
+constexpr std::int64_t host_ahead_ns = 1'700'000'000 * s;  // ahead of the steady clock
 constexpr std::int64_t least_delay_ns = 2 * ms;
 constexpr std::int64_t first_step_ns = 100 * 50 * ms / 1440;
 constexpr double step_rad = 2 * 3.14159265358979 / 1440;
@@ -33,20 +33,21 @@ std::string reply(const std::string& command, const std::string& status, const s
   return command + "\n" + summed(status) + body + "\n";
 }
 
-/// Numbers in `width` characters each.
+/// Encodes each number in `width` characters.
 std::string encoded(const std::vector<std::uint32_t>& numbers, std::size_t width) {
   std::string text(width * numbers.size(), '0');
   for (std::size_t i = 0; i < numbers.size(); ++i) scip2::encode(numbers[i], std::span(text).subspan(i * width, width));
   return text;
 }
 
-/// Steps 100 to 103 of 1440, 20 turns a second. It answers 00 unless its script has another status for the command.
+/// Steps 100 to 103 of 1440, 20 turns a second. It replies with status 00 unless `status` has another one for the
+/// command.
 struct Hokuyo {
   std::map<std::string, std::string> status{};
   std::map<std::string, int> parameters{{"DMIN", 20},  {"DMAX", 5600}, {"ARES", 1440}, {"AMIN", 100},
                                         {"AMAX", 103}, {"AFRT", 540},  {"SCAN", 1200}};
   std::string measure = "MD0100010300000";
-  std::int64_t now_ns = 60 * s, power_on_ns = 10 * s;  ///< steady
+  std::int64_t now_ns = 60 * s, power_on_ns = 10 * s;  ///< of the steady clock
   std::vector<std::int64_t> delays_ns{9 * ms, 7 * ms, 4 * ms, least_delay_ns, 5 * ms};
   scip2::Session session{};
 
@@ -76,10 +77,10 @@ struct Hokuyo {
 
   std::string command() {
     const auto bytes = session.to_send(at(now_ns));
-    return {bytes.begin(), bytes.empty() ? bytes.end() : bytes.end() - 1};  // without its line end
+    return {bytes.begin(), bytes.empty() ? bytes.end() : bytes.end() - 1};  // without the line end
   }
 
-  /// Commands and replies to and fro until there is nothing to say. The commands.
+  /// Exchanges commands and replies until the session has nothing to send. Returns the commands.
   std::vector<std::string> talk() {
     std::vector<std::string> said;
     for (std::string text = command(); !text.empty() && said.size() < 40; text = command()) {
@@ -238,7 +239,7 @@ TEST_CASE("scip2: a scanner's clock that is 100 ppm fast is followed") {
     hokuyo.now_ns = step_0_ns + 30 * ms;
     REQUIRE(hokuyo.hear(hokuyo.scan(static_cast<std::uint32_t>((step_0_ns - hokuyo.power_on_ns + fast_ns) / ms))));
     const std::int64_t error_ns = hokuyo.session.line().host_ns - host_ahead_ns - step_0_ns - first_step_ns;
-    REQUIRE(std::abs(error_ns - least_delay_ns) <= ms + 1000);  // 6 ms, if it were not
+    REQUIRE(std::abs(error_ns - least_delay_ns) <= ms + 1000);  // 6 ms if it were not followed
   }
 }
 

@@ -21,7 +21,7 @@ CarmenLine geometry(int beams, double start_deg, double step_deg, double maximum
   line.angular_resolution_rad = step_deg * degree;
   line.field_of_view_rad = line.angular_resolution_rad * (beams - 1);
   line.maximum_range_m = maximum_range_m;
-  line.accuracy_m = static_cast<double>(period_ns) * 1e-9;  // where line_of() finds the period
+  line.accuracy_m = static_cast<double>(period_ns) * 1e-9;  // line_of() reads the period from here
   line.ranges_m.assign(static_cast<std::size_t>(beams), 1.0f);
   return line;
 }

@@ -1,4 +1,4 @@
-// The three scanners, small ones, with a session and a simulated device each, joined in memory.
+// Small versions of the three scanners, each with a session and a simulated device, connected in memory.
 #pragma once
 
 #include <cstdint>
@@ -17,38 +17,38 @@ using tools::Bytes, tools::CarmenLine;
 struct Scanner {
   std::string name;
   tools::Protocol protocol;
-  CarmenLine first;  ///< a line of its geometry
+  CarmenLine first;  ///< a line with its geometry
   std::shared_ptr<scanner::Session> session;
   std::unique_ptr<tools::Device> device;
 };
 
-/// UTM-30LX of 41 beams, LMS1xx of 21, LMS200 of 101: telegrams of 100 to 200 bytes.
+/// UTM-30LX with 41 beams, LMS1xx with 21, LMS200 with 101: telegrams of 100 to 200 bytes.
 std::vector<Scanner> small_scanners();
 
-/// Those of the robots that ship: 1081, 541 and 181 beams.
+/// The scanners of the shipped robots: 1081, 541 and 181 beams.
 std::vector<Scanner> whole_scanners();
 
-/// Line `index`: each beam of each has a range of its own, to the millimetre, one in eleven none.
+/// Line `index`: each beam of each line has its own range, to the millimetre; one in eleven has no return.
 CarmenLine line_of(const CarmenLine& geometry, int index);
 
-/// Sets the scanner up to measure: commands and replies go to and fro until there is nothing to say.
+/// Sets the scanner up to measure: exchanges commands and replies until the session has nothing to send.
 void start(Scanner& scanner);
 
-/// The telegrams of lines from `first` on.
+/// The telegrams of `count` lines from `first` on.
 std::vector<Bytes> telegrams_of(Scanner& scanner, int count, int first = 0);
 
 Bytes joined(const std::vector<Bytes>& telegrams);
 
-/// The lines that a session reads from bytes, as indices of line_of(); -1 for one that is none of the first 1000.
+/// The lines that a session reads from bytes, as indices of line_of(); -1 for a line that is not among the first 1000.
 std::vector<int> lines_read(Scanner& scanner, const Bytes& bytes);
 
-/// Index of a line, by its ranges.
+/// Index of a line, found by its ranges.
 int index_of(const CarmenLine& geometry, std::span<const float> ranges_m);
 
-/// What was dropped, of any kind.
+/// Sum of everything dropped, of any kind.
 std::uint64_t dropped(const scanner::Counters& counters);
 
-/// A log of `count` lines in a scan feed's form.
+/// A log of `count` lines, in the format of a scan feed.
 std::string carmen_text(const CarmenLine& geometry, int count);
 
 Bytes from_hex(const std::string& text);

@@ -1,6 +1,6 @@
-// The driver against a controller of software that keeps the manual's rules. Its registers, bits and frames are numbers
-// of UG1087, never the driver's names for them, so that a slip in registers.hpp shows. The emulated controller has its
-// own tests: ctest -L board. One file, though a long one: the controller is of use to these tests alone.
+// The driver against a software model of the controller that follows the manual's rules. Registers, bits and frames are
+// numbers from UG1087, never the driver's names for them, so that a slip in registers.hpp shows. The emulated
+// controller has its own tests: ctest -L board. This is one long file because only these tests use the model.
 #include "xilinx_can/xilinx_can.hpp"
 
 #include <catch2/catch.hpp>
@@ -14,19 +14,19 @@ namespace {
 
 using namespace curbline;
 using namespace curbline::xilinx_can;
-using Words = std::array<std::uint32_t, 4>;  // of a frame: id, length, data
+using Words = std::array<std::uint32_t, 4>;  // a frame: id, length, data
 
 class Controller {
  public:
-  bool dead = false;                ///< it answers nothing but zeros
-  bool muted = false;               ///< what is sent stays in the FIFO
+  bool dead = false;                ///< reads of all registers return zero
+  bool muted = false;               ///< frames to send stay in the FIFO
   bool never_joins = false;         ///< the bus is never quiet: it stays between configuration and normal mode
-  bool filters_stay_busy = false;   ///< it never lets go of them
-  bool joins_amid_a_frame = false;  ///< of which it hears the rest, broken
-  Words damage{};                   ///< of what comes back
-  int echo_after = 0;               ///< looks at what has happened until that comes back
+  bool filters_stay_busy = false;   ///< the filters never become writable
+  bool joins_amid_a_frame = false;  ///< it hears the rest of the frame, broken
+  Words damage{};                   ///< bits that are flipped in echoed frames
+  int echo_after = 0;               ///< number of looks at the interrupt flags until the echo arrives
   std::vector<Words> sent;
-  std::uint32_t flags_after_look = 0;  ///< what happens as soon as the driver has looked at what has happened
+  std::uint32_t flags_after_look = 0;  ///< set as soon as the driver has read the interrupt flags
   int resets = 0, status_reads = 0;
 
   void arrive(const Words& frame) {
@@ -107,7 +107,7 @@ class Controller {
   static constexpr std::size_t depth = 64;
   static constexpr int lag = 3;  // reads of the status before a change shows in it
 
-  /// What a reset puts back. TX FIFO empty is flagged from the start.
+  /// State that a reset restores. TX FIFO empty is flagged from the start.
   struct Core {
     bool enabled = false;
     std::uint32_t mode = 0, prescaler = 0, timing = 0, error_status = 0, interrupts = 0x6000, interrupt_enable = 0;
@@ -167,7 +167,7 @@ class Controller {
     if (word == 3) core_.fifo.pop_front();
     return value;
   }
-  /// Filters outlive a reset, as in QEMU: the driver must not count on their being off.
+  /// Filters survive a reset, as in QEMU, so the driver must not rely on their being off.
   void write_filter(std::uint32_t offset, std::uint32_t value) {
     REQUIRE((offset >= 0x64 && offset <= 0x80));
     REQUIRE((busy_ == 0 && !filters_stay_busy));
@@ -185,14 +185,14 @@ class Controller {
       core_.interrupts |= 0x40;  // RXOFLW
       return;
     }
-    frame[1] |= 0xBEEF;  // the controller's stamp lies beside the length
+    frame[1] |= 0xBEEF;  // the controller's timestamp, beside the length
     core_.fifo.push_back(frame);
     core_.interrupts |= 0x90;  // RXNEMP, which stays until it is cleared; RXOK
   }
 
   Core core_;
   std::uint32_t filters_on_ = 0;
-  std::array<std::uint32_t, 8> filters_{};  // mask, id of each
+  std::array<std::uint32_t, 8> filters_{};  // mask and id of each
   int settling_ = 0, busy_ = 0;
   Words echo_{};
   int echo_left_ = 0;
@@ -210,7 +210,7 @@ struct Bench {
   Settings settings{.clock_hz = 100'000'000};
   std::array<can::Frame, 8> frames{};
 
-  /// On the bus, and thrown off it at time 0.
+  /// Joins the bus and goes bus-off at time 0.
   void go_off() {
     REQUIRE(bus.open(settings, {}) == Status::ok);
     controller.become(0x100);
@@ -353,7 +353,7 @@ TEST_CASE("xilinx_can: the interrupt's line is up while a frame waits, and falls
   for (std::uint32_t id = 0; id < 20; ++id) b.controller.arrive(standard(id));
   int calls = 0;
   while (b.controller.line() && ++calls < 10) b.bus.receive(b.frames, 0);
-  CHECK(calls == 3);  // 8, 8 and 4
+  CHECK(calls == 3);  // 8, 8 and 4 frames
   CHECK(b.bus.counters().frames == 20);
 }
 
@@ -365,7 +365,7 @@ TEST_CASE("xilinx_can: beside an interrupt that takes the frames, the main loop 
   CHECK(b.bus.receive({}, 0) == 0);
   CHECK(b.controller.line());
   CHECK(b.bus.receive(b.frames, 0) == 1);
-  CHECK(before.frames == 0);  // what main looks at no longer changes under it
+  CHECK(before.frames == 0);  // what main reads no longer changes during its access
   b.controller.become(0x100);
   b.bus.receive({}, 0);
   b.bus.receive({}, 100'000'000);
@@ -502,7 +502,8 @@ TEST_CASE("xilinx_can: a controller that never answers is left in reset, its int
   CHECK(b.bus.bus() == BusState::closed);
   b.controller.never_joins = false;
   b.controller.arrive(standard(1));
-  CHECK_FALSE(b.controller.line());  // whose handler nothing would quiet: receive() of a closed bus does nothing
+  CHECK_FALSE(
+      b.controller.line());  // its handler could not clear the interrupt: receive() of a closed bus does nothing
 }
 
 TEST_CASE("xilinx_can: a call that is refused leaves an open controller in reset") {
