@@ -1,4 +1,4 @@
-// Labels, planes and curbs against the truth of a scene.
+// Scores of labels, planes and curbs against the truth of a scene.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -18,7 +18,7 @@ Truth step_of(double height_m) {
   truth.planes = {{"road", {0, 0, 0}}, {"pavement", {height_m, 0, 0}}};
   truth.regions = {{"road", rectangle({0, -2}, {2, 2}), 0}, {"pavement", rectangle({2, -2}, {4, 2}), 1}};
   TruthCurb curb;
-  curb.from = {2, -2};  // so that left is the road
+  curb.from = {2, -2};  // so that the road is to the left
   curb.to = {2, 2};
   curb.from_step_m = curb.to_step_m = -height_m;
   curb.kind = "step";
@@ -144,7 +144,7 @@ TEST_CASE("scores: a plane that leans and lies too high has the errors that it h
   for (LabelledCell& cell : cells) cell.cell.height_m = 0.02 + 0.01 * (cell.x_m - 1.0);
   const PlaneScores planes = score_planes({{cells}, {}, {}}, truth);
   CHECK(planes.slope_rad.median == Approx(0.01).margin(1e-5));
-  CHECK(planes.height_m.median == Approx(0.0195).margin(1e-6));  // the middle of the cells is x = 0.95
+  CHECK(planes.height_m.median == Approx(0.0195).margin(1e-6));  // the mean x of the cells is 0.95
 }
 
 TEST_CASE("scores: cells on the edge of a kerb, which hold both sides, do not lean the plane whose label they bear") {
@@ -209,7 +209,7 @@ TEST_CASE("scores: up told as down is an error of twice the height, for a robot 
 }
 
 TEST_CASE("scores: calibration is by each piece's own sd, and by length") {
-  // 3 m half an sd off, 1 m one and a half sd off
+  // 3 m deviate by half an sd, 1 m by one and a half
   const Calibration c = scores_of({piece(2, -2, 1, 0.105), piece(2, 1, 2, 0.085)}).calibration;
   CHECK(c.pieces == 2);
   CHECK(c.mean_square == Approx((3 * 0.25 + 2.25) / 4));
@@ -221,7 +221,7 @@ TEST_CASE("scores: positions are calibrated by the distance of each piece's midd
   MapCurb half = piece(2.01, -2, 1, 0.1), three_halves = piece(1.97, 1, 2, 0.1);
   half.position_sd_m = three_halves.position_sd_m = 0.02;
   const Calibration c = scores_of({half, three_halves, piece(2.05, -2, 2, 0.1)}).position_calibration;
-  CHECK(c.pieces == 2);  // the third states none
+  CHECK(c.pieces == 2);  // the third states no sd
   CHECK(c.mean_square == Approx((3 * 0.25 + 2.25) / 4));
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("regions of cells: a cell belongs by its centre, to the first region t
   CHECK(regions_of_cells(grid, std::vector{left, wide}) == Labels{0, 1, -1});
 }
 
-/// Cells in a row along x with planes of label 0 (z = 0) and 1 (z = 1 + 0.5 x).
+/// Cells in a row along x, with the planes of label 0 (z = 0) and label 1 (z = 1 + 0.5 x).
 Map row_of(const std::vector<MapCell>& cells) {
   Map map;
   map.grid = {0, 0, 1, 1, static_cast<int>(cells.size()), 1};

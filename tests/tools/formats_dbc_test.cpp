@@ -1,4 +1,4 @@
-// DBC files: what is read of them, what is refused and where, and that what is written is read again as it was.
+// DBC files: what is read from them, what is refused and where, and that written files read back unchanged.
 #include "formats/dbc.hpp"
 
 #include <bit>
@@ -14,7 +14,7 @@ using namespace curbline::tools::testing;
 
 namespace {
 
-/// As Vector's editor writes one: every section, comments over lines, a signal of no message.
+/// As Vector's editor writes one: every section, comments over several lines, a signal that belongs to no message.
 const std::string good = R"(VERSION "1.0 \"beta\""
 
 
@@ -92,7 +92,7 @@ std::string error_in(const std::string& text) {
   return error_of([&] { parsed(text); });
 }
 
-/// The good file with the first `part` replaced.
+/// The good file with the first occurrence of `part` replaced.
 std::string changed(const std::string& part, const std::string& by) {
   std::string text = good;
   const std::size_t at = text.find(part);

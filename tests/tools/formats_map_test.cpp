@@ -1,4 +1,4 @@
-// Regions, labels and curbs, out and in.
+// Regions, labels and curbs, written and read.
 #include <nlohmann/json.hpp>
 #include <sstream>
 

@@ -1,5 +1,4 @@
-// Files for tests: written to a directory of their own that is removed at the end, and the errors that reading them
-// gives.
+// Files for tests, written to a separate directory that is removed at the end, and the errors from reading them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -49,7 +48,7 @@ inline bool says_what_was_expected(const BadInput& error) {
   return std::string(error.what()).find("expected") != std::string::npos;
 }
 
-/// What BadInput says, without the directory; empty if nothing is thrown. CHECKs that it says what was expected.
+/// The message of BadInput, without the directory; empty if nothing is thrown. CHECKs that it says what was expected.
 inline std::string error_of(const std::function<void()>& read) {
   try {
     read();
@@ -62,7 +61,8 @@ inline std::string error_of(const std::function<void()>& read) {
   return {};
 }
 
-/// Reads thousands of damaged copies of a good file: each must be taken or refused with BadInput, and nothing else.
+/// Reads thousands of damaged copies of a good file. Each must be accepted or refused with BadInput; nothing else may
+/// happen.
 inline void survive_damage(const std::string& good, const std::string& file_name,
                            const std::function<void(const std::string&)>& read, int trials = 2000) {
   const TemporaryDirectory directory;

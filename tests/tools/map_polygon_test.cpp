@@ -1,4 +1,4 @@
-// What lies in a polygon.
+// Which points and parts of segments lie in a polygon.
 #include <catch2/catch.hpp>
 #include <cmath>
 

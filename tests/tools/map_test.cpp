@@ -1,4 +1,4 @@
-// A map as a whole.
+// The map as a whole.
 #include "map/map.hpp"
 
 #include <catch2/catch.hpp>

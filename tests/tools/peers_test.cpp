@@ -1,4 +1,4 @@
-// Curbs by gradient and by Canny's edges with polynomials.
+// Curbs by gradients, and by Canny's edges with polynomials.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -26,7 +26,7 @@ std::vector<MapCurb> curbs_of(Method method, const std::function<double(double, 
   return map_cloud(cloud_of(height), grid, 1e9, method).curbs;
 }
 
-/// Length of the pieces within 6 cm of a line, and of all.
+/// Length of the pieces within 6 cm of a line, and of all pieces.
 struct Lengths {
   double near_m = 0, all_m = 0;
 };

@@ -47,7 +47,7 @@ std::string drawn(const Map& map, const std::string& name, const PictureExtras& 
   return read_file(dir.path(name));
 }
 
-/// What stands between <desc> and </desc>: the heights that were written.
+/// The text between <desc> and </desc>, which states the heights drawn.
 std::string described(const Map& map) {
   const std::string svg = drawn(map, "a.svg");
   const std::size_t from = svg.find("<desc>") + 6;
@@ -72,7 +72,7 @@ bool same(const Colour& a, const Colour& b) {
   return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) < 0.02;
 }
 
-/// A picture that was written and read back.
+/// A picture, written and read back.
 class Seen {
  public:
   Seen(const Map& map, const PictureExtras& extras = {}) : page(lay_out(map, extras)) {
@@ -97,7 +97,7 @@ double seven_pixels_a_letter(const std::string& words) {
   return 7.0 * static_cast<double>(words.size());
 }
 
-/// 400 x 400 pixels of 4 x 4 m, y from -2 m.
+/// 400 x 400 pixels for 4 x 4 m, y from -2 m.
 const View view{0, 4, -2, 2, {0, 0, 400, 400}};
 
 std::vector<std::string> words_of(const std::vector<PlacedText>& texts) {
@@ -165,7 +165,7 @@ TEST_CASE("picture: in either layout a curb's height stands on both panels") {
     const double middle = map.grid.y0_m + 0.05 * cols;
     map.curbs = {{2, middle - 1.9, 2, middle + 1.9, 0.12, 0.01, 1, "step_up"}};
     const Seen with(map);
-    map.curbs[0].height_m = 0.001;  // no text
+    map.curbs[0].height_m = 0.001;  // too low for a text
     const Seen without(map);
     for (const View* panel : {&with.page.heights, &with.page.planes}) {
       int differ = 0;
@@ -313,7 +313,7 @@ TEST_CASE("picture: truth is drawn beneath the curbs, and the robot where it sta
   const View& panel = seen.page.planes;
   const auto is_red = [](const Colour& c) { return c.r > 0.8 && c.g < 0.1; };
   Pixel ahead = panel.at(1, -1);
-  ahead.x -= 10;  // heads left
+  ahead.x -= 10;  // heading left
   CHECK(is_red(seen.at(ahead)));
   CHECK_FALSE(is_red(without.at(ahead)));
   int dashes = 0;

@@ -1,4 +1,4 @@
-// The reference's belief propagation against enumeration of every labelling.
+// The reference's belief propagation against enumeration of all labellings.
 #include "reference/belief_propagation.hpp"
 
 #include <catch2/catch.hpp>
@@ -44,7 +44,7 @@ struct Enumeration {
   std::vector<int> best;
 };
 
-/// Every labelling with its weight.
+/// All labellings, each with its weight.
 Enumeration enumerate(const Dem& dem, const Eigen::MatrixXd& log_node, const std::vector<EdgeFactor>& factors) {
   Enumeration out{Eigen::MatrixXd::Zero(log_node.rows(), log_node.cols()), {}};
   const int labels = static_cast<int>(log_node.cols());

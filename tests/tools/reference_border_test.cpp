@@ -1,4 +1,4 @@
-// The reference's curbs: borders between labels, from maps made by hand.
+// The reference's curbs, which are borders between labels, from maps made by hand.
 #include "reference/border.hpp"
 
 #include <algorithm>
@@ -73,7 +73,7 @@ TEST_CASE("reference borders: planes that meet anywhere between the cells' centr
 
 TEST_CASE("reference borders: a step within two sd is a crease, one beyond is a step") {
   const auto kind_of = [](double z_m) { return borders(map_of(1, 2, {0, 1}, {level(0, 0), level(z_m, 1)}))[0].kind; };
-  CHECK(kind_of(0.028) == "crease");  // sd 0.0141
+  CHECK(kind_of(0.028) == "crease");  // its sd is 0.0141
   CHECK(kind_of(0.029) == "step_up");
 }
 

@@ -1,4 +1,4 @@
-// The reference's planes: least squares for components, EM for cells that do not know their neighbours.
+// The reference's planes: least squares for components, EM for cells that ignore their neighbours.
 #include "reference/mixture.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Grid grid{2, -1, 0.1, 0.1, 20, 20};
 
-/// Road and pavement, a step of 12 cm between them at x = 3 m.
+/// Road and pavement with a step of 12 cm between them at x = 3 m.
 double street(double x, double y) {
   return 0.02 * x + 0.01 * y + (x < 3 ? 0 : 0.12);
 }
@@ -62,7 +62,7 @@ TEST_CASE("reference mixture: responsibilities share a cell between planes as th
   log_likelihood << std::log(0.3), std::log(0.1), -2000, -2000 - std::log(3.0);
   const double total = independent_responsibilities(log_likelihood, responsibility);
   CHECK(responsibility(0, 0) == Approx(0.75));
-  CHECK(responsibility(1, 1) == Approx(0.25));  // far below what exp() can tell
+  CHECK(responsibility(1, 1) == Approx(0.25));  // far below what exp() can represent
   CHECK(total == Approx(std::log(0.4) - 2000 + std::log(4.0 / 3)));
 }
 

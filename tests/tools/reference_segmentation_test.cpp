@@ -1,4 +1,4 @@
-// The reference's cells and where EM starts: posterior of a cell, graph of the cells, components.
+// The reference's cells and the starting point of EM: posterior of a cell, graph of the cells, components.
 #include "reference/segmentation.hpp"
 
 #include <catch2/catch.hpp>
@@ -62,7 +62,7 @@ TEST_CASE("reference segmentation: the weight of an edge is the divergence one w
   CHECK(divergence(a, a) == 0);
 }
 
-/// Four cells in a row whose edges weigh 1, 5.9 and 2: with variance v on both sides, d^2 / v.
+/// Four cells in a row whose edges weigh 1, 5.9 and 2. With variance v on both sides, the weight is d^2 / v.
 Dem chain_of_four() {
   const double v = 3e-4 / 4;
   const double b = std::sqrt(1 * v), c = b + std::sqrt(5.9 * v), d = c + std::sqrt(2 * v);
@@ -70,7 +70,7 @@ Dem chain_of_four() {
 }
 
 TEST_CASE("reference segmentation: components join when the edge is within both sides' limits") {
-  // The pairs join first: Int 1 and 2, two cells each. The edge between them, 5.9, needs 1 + s/2 and 2 + s/2.
+  // The pairs join first: Int is 1 and 2, with two cells each. The edge between them, 5.9, needs 1 + s/2 and 2 + s/2.
   CHECK(segment(chain_of_four(), 10) == std::vector<int>{0, 0, 0, 0});
 }
 

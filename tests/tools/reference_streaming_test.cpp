@@ -1,4 +1,5 @@
-// The streaming pipeline against the batch: a still street, seen in chunks of 200 points with inference after each.
+// The streaming pipeline against the batch algorithm: a stationary scene, seen in chunks of 200 points with inference
+// after each.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,9 +17,9 @@ namespace {
 
 constexpr double noise_sd_m = 0.007;
 constexpr std::size_t chunk = 200;
-constexpr Grid window{0, -2, 0.1, 0.1, 40, 40};  // that of Settings{}
+constexpr Grid window{0, -2, 0.1, 0.1, 40, 40};  // as in Settings{}
 
-/// Every call visits Settings::labels.refresh_rows rows, touched or not.
+/// Every call visits Settings::labels.refresh_rows rows, whether or not they have changed.
 const int one_round = window.rows / Settings{}.labels.refresh_rows;
 
 using Streaming = Pipeline<Limits{}>;
@@ -26,7 +27,7 @@ using Streaming = Pipeline<Limits{}>;
 //            ________  +12 cm, from x = step_x_m on
 //   ________|
 //   0       2       4 m
-/// Six points a cell, from near to far as a laser that nods up gives them, or in any order.
+/// Six points a cell, from near to far as from a laser that nods up, or shuffled.
 std::vector<Point> street(double step_x_m, bool swept, std::uint32_t seed) {
   test::Noise noise(seed);
   auto points =
@@ -55,7 +56,7 @@ std::vector<int> labels_of(const Streaming& pipeline) {
   return out;
 }
 
-/// The paper's algorithm with its code's settings: CRF and EM, Potts 10, s = 100.
+/// The paper's algorithm with the settings of its code: CRF and EM, Potts 10, s = 100.
 std::vector<int> batch_labels(std::span<const Point> points) {
   std::vector<Point3> cloud;
   for (const Point& p : points) cloud.push_back({p.x_m, p.y_m, p.z_m});
@@ -64,7 +65,7 @@ std::vector<int> batch_labels(std::span<const Point> points) {
   return out;
 }
 
-/// Without the row of cells in which the step falls: road and pavement alike may have them.
+/// Drops the row of cells that the step crosses: they may belong to either road or pavement.
 std::vector<int> beside_the_step(std::vector<int> labels, double step_x_m) {
   const auto row = static_cast<std::ptrdiff_t>(std::floor(step_x_m / window.dx_m));
   labels.erase(labels.begin() + row * window.cols, labels.begin() + (row + 1) * window.cols);
@@ -84,8 +85,8 @@ TEST_CASE("streaming and batch: after the last chunk the labels agree, but where
       const std::vector<int> stream = labels_of(*pipeline);
       const double v = v_measure(batch, stream);
       CAPTURE(seed, calls);
-      // Where 40 of 1600 cells hold points of both planes, batch and stream may leave them to different ones: V 0.91
-      // then.
+      // 40 of 1600 cells contain points of both planes; batch and stream may assign them differently, which makes V
+      // 0.91.
       CHECK(v >= (step_x_m == 2.0 ? 1 - 1e-9 : 0.9));
       CHECK(v_measure(beside_the_step(batch, step_x_m), beside_the_step(stream, step_x_m)) == Approx(1));
     }

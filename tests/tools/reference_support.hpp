@@ -1,4 +1,4 @@
-// Ground for tests of the reference: clouds over a grid with a few points a cell, noise the same on every machine.
+// Ground for tests of the reference: clouds over a grid with a few points a cell and the same noise on every machine.
 #pragma once
 
 #include <random>
@@ -9,14 +9,14 @@
 
 namespace curbline::tools::reference::testing {
 
-/// Twelve uniforms make a normal that does not depend on the standard library.
+/// The sum of twelve uniform numbers approximates a normal one without depending on the standard library.
 inline double normal(std::mt19937& random) {
   double sum = -6;
   for (int n = 0; n < 12; ++n) sum += static_cast<double>(random()) / 4294967296.0;
   return sum;
 }
 
-/// Four points in each cell at height(x, y) plus noise. A height of NaN leaves the cell out.
+/// Four points in each cell at height(x, y) plus noise. Where the height is NaN the cell is left out.
 template <typename Height>
 std::vector<Point3> cloud_of(const Grid& grid, double noise_sd_m, Height height) {
   std::mt19937 random(3);
@@ -35,7 +35,7 @@ std::vector<Point3> cloud_of(const Grid& grid, double noise_sd_m, Height height)
   return cloud;
 }
 
-/// A row of cells along y, one point in each: every variance is 3e-4 / 4.
+/// A row of cells along y with one point in each: every variance is 3e-4 / 4.
 inline Dem row_of(const std::vector<double>& heights_m) {
   const Grid grid{0, 0, 1, 1, 1, static_cast<int>(heights_m.size())};
   std::vector<Point3> cloud;

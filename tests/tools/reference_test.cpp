@@ -1,4 +1,4 @@
-// The published algorithm as a whole: on ground that the test makes, and on the paper's own clouds.
+// The published algorithm as a whole, on synthetic ground and on the paper's own clouds.
 #include "reference/reference.hpp"
 
 #include <algorithm>
@@ -110,7 +110,7 @@ TEST_CASE("reference: cells too few for a plane keep the labels of their compone
   CHECK(map.planes.empty());
   CHECK(map.cells[ahead.at(0, 10)].label != map.cells[ahead.at(1, 10)].label);
   REQUIRE(map.curbs.size() == 1);
-  CHECK(map.curbs[0].height_sd_m == 1);  // no planes: nothing is known of the step
+  CHECK(map.curbs[0].height_sd_m == 1);  // without planes nothing is known of the step
 }
 
 TEST_CASE("reference: one point is a cell without a plane, with every method") {
@@ -199,13 +199,13 @@ TEST_CASE("reference: segment gives out components and stops before EM") {
   options.method = Method::segment;
   options.segment_scale = 0.1;
   const Map map = map_of(ahead, 0.03, options);
-  CHECK(labels_in(map, 0, 20).size() > map.planes.size());  // components of one or two cells have labels, not planes
+  CHECK(labels_in(map, 0, 20).size() > map.planes.size());  // components of one or two cells have labels but no planes
   CHECK(std::all_of(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.probability == 1; }));
 }
 
 const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/";
 
-/// V-measure in the paper's window: 4 x 4 m, cells of 0.1 m, points up to 0.3 m.
+/// V-measure in the paper's window: 4 x 4 m, cells of 0.1 m, points up to 0.3 m high.
 double paper_v(const std::string& scan, const Options& method) {
   const Grid grid{0, 0, 0.1, 0.1, 40, 40};
   Options options = method;
@@ -214,7 +214,7 @@ double paper_v(const std::string& scan, const Options& method) {
   return v_measure(map, regions_of_cells(grid, read_regions(data + scan + ".gt")));
 }
 
-/// Of scan-03 to scan-12, which were taken from one place.
+/// Mean over scan-03 to scan-12, which were recorded at one place.
 double mean_paper_v(const Options& options) {
   double sum = 0;
   for (const char* scan : {"03", "04", "05", "06", "07", "08", "09", "10", "11", "12"})

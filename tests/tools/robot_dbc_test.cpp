@@ -1,4 +1,4 @@
-// A robot's description to DBC and back, and the DBC of the curb frames that ships.
+// Conversion of a robot's description to DBC and back, and the shipped DBC of the curb frames.
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -19,7 +19,7 @@ std::string text_of(const Dbc& dbc) {
   return text.str();
 }
 
-/// The robot, written as DBC and read from the TOML made of that.
+/// Writes the robot as DBC, converts that to TOML, and reads the TOML.
 Robot through_dbc(const Robot& robot) {
   const TemporaryDirectory dir;
   const std::string path = dir.write("r.dbc", text_of(dbc_of(robot)));

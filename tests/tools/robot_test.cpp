@@ -158,7 +158,7 @@ const std::vector<std::string> tables_of_numbers{"laser",         "tilt",       
                                                  "window",        "sweep",         "simulated",   "tuning.segmentation",
                                                  "tuning.planes", "tuning.labels", "tuning.curbs"};
 
-/// The keys that are read from a table, as the error about another one lists them.
+/// The keys that can appear in a table, as the error about an unknown one lists them.
 std::vector<std::string> keys_of(const std::string& table) {
   const std::string error = error_in("[" + table + "]\nnone = 0\n"),
                     listed = error.substr(error.find("expected one of") + 15) + ",";
@@ -302,7 +302,7 @@ TEST_CASE("robot: a key is as deep behind a string of any kind, and what is in t
   std::string deep = "k";
   for (int i = 0; i < 200'000; ++i) deep += ".k";
   const std::vector<std::string> strings{R"("")",       R"("\\")",     R"("\"#")",        R"("'")",
-                                         "''",          R"('\')",      R"('"')",  // of one line, and of several
+                                         "''",          R"('\')",      R"('"')",  // single-line, then multi-line
                                          R"("""""")",   R"(""""""")",  R"("""""""")",     R"("""" "" """)",
                                          R"("""\"""")", R"("""\\""")", "\"\"\"\nx\"\"\"", "\"\"\"\\\n#\"\"\"",
                                          "''''''",      "'''''''",     "''''''''",        R"('''\''')",
@@ -364,10 +364,10 @@ TEST_CASE("robot: clausius.toml turns the raw stream into the published cloud, p
   CarmenReader scans(data + "scan-03.carmen");
   CanLogReader frames(data + "scan-03.candump");
   std::size_t next = 0;
-  double worst_m = 0.0, worst_far_m = 0.0;  // far: from 10 m on the cloud, of four digits, is in centimetres
+  double worst_m = 0.0, worst_far_m = 0.0;  // far: beyond 10 m the cloud, with four digits, is in centimetres
   while (const auto scan = scans.next()) {
     check_geometry(*scan, robot.laser, scans.path(), scans.line());
-    auto frame = frames.next();  // one frame bears the line's own time
+    auto frame = frames.next();  // one frame has the line's own time
     while (frame && frame->time_ns < scan->time_ns) frame = frames.next();
     REQUIRE((frame && frame->time_ns == scan->time_ns));
     const auto tilt = decode(robot.tilt_signal, *frame);

@@ -27,7 +27,7 @@ double cast(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector
   return world.cast(from, direction);
 }
 
-// A road of which the crown lies on x = y, seen from a robot that is turned.
+// A road whose crown lies on x = y, seen from a robot that is turned.
 const std::string cambered =
     "[ground]\nz = 0.1\nslope = [0.02, 0.0]\ncamber = 0.04\ncrown = [[0, 0], [1, 1]]\n"
     "[robot]\nat = [2.0, 0.0]\nyaw_deg = 45\n";
@@ -229,7 +229,7 @@ TEST_CASE("truth: a bump is bounded by four steps of its height, each once") {
 }
 
 //   ______________
-//  |  a  |  b | a |   b covers a part of a; where both are as high there is no curb
+//  |  a  |  b | a |   b covers a part of a; where both are equally high there is no curb
 TEST_CASE("truth: what a later region covers has no curb, nor has a join of equal planes") {
   const Truth covered = make_truth(scene_of(bump + "[[region]]\nrectangle = [1, -2, 5, 2]\nz = 0.05\n"), 0);
   CHECK(covered.curbs.size() == 4);
@@ -357,7 +357,7 @@ TEST_CASE(
   CHECK(motion.T_map_base(2).translation().x() == Approx(1));
   CHECK(motion.T_map_base(2.001).translation().x() == Approx(1.0005));
   const auto z_m = [&](double time_s) { return motion.T_map_base(time_s).translation().z(); };
-  CHECK(z_m(3.18) == Approx(0).margin(1e-9));  // 0.41 m before the bump: its wheels reach 0.4 m ahead
+  CHECK(z_m(3.18) == Approx(0).margin(1e-9));  // 0.41 m before the bump: the wheels reach 0.4 m ahead
   CHECK(z_m(3.5) == Approx(0.06));             // the front wheels are on it
   CHECK(z_m(4.18) == Approx(0.06));
   CHECK(z_m(4.5) == Approx(0.12));
@@ -371,9 +371,10 @@ TEST_CASE("motion: a wheel rolls up a curb as its rim does over the edge, and th
   for (double to_edge_m = 0.16; to_edge_m >= 0; to_edge_m -= 0.005) {
     const Eigen::Isometry3d T = motion.T_map_base((2 - 0.25 - to_edge_m) / 0.5);
     const double inside = std::max(0.0, 0.15 * 0.15 - to_edge_m * to_edge_m);
-    const double wheel_m = std::max(0.0, 0.12 - 0.15 + std::sqrt(inside));  // 0.15 m in radius, 12 cm high
+    const double wheel_m = std::max(0.0, 0.12 - 0.15 + std::sqrt(inside));  // radius 0.15 m, curb 12 cm high
     INFO(to_edge_m);
-    CHECK(T.translation().z() == Approx(wheel_m / 2).margin(0.012));  // felt every cm, where it is steepest
+    CHECK(T.translation().z() ==
+          Approx(wheel_m / 2).margin(0.012));  // the path is sampled every cm; this allows for the steepest part
     CHECK(T.linear()(2, 0) == Approx(wheel_m / 0.5).margin(0.05));
   }
 }

@@ -1,4 +1,4 @@
-// What the simulator's tests share: scenes from text, and directories that go when the test ends.
+// Common to the simulator's tests: scenes from text, and paths that are removed when the test ends.
 #pragma once
 
 #include "simulator/scene.hpp"
@@ -9,7 +9,7 @@
 
 namespace curbline::tools {
 
-/// A place of this process alone, removed at the end.
+/// A path that only this process uses, removed at the end.
 struct TemporaryPath {
   std::filesystem::path path;
   explicit TemporaryPath(const std::string& name)

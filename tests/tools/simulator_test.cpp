@@ -1,4 +1,4 @@
-// The simulated sensors, and the directory that they are written to.
+// The simulated sensors, and the directory to which their data are written.
 #include "curbline/can/signal.hpp"
 #include "curbline/can/tilt_decoder.hpp"
 #include "formats/bad_input.hpp"
@@ -105,7 +105,7 @@ TEST_CASE("simulation: range noise has the laser's standard deviation") {
   Robot robot = plain_robot();
   robot.laser.range_sd_m = 0.02f;
   robot.tilt.fixed = true;
-  robot.tilt.fixed_tilt_rad = 1.5707963f;  // straight ahead of it is the ground below
+  robot.tilt.fixed_tilt_rad = 1.5707963f;  // the ground below is straight ahead
   robot.laser.first_bearing_rad = 0;
   robot.laser.bearing_step_rad = 1e-9f;
   double sum = 0, squares = 0;
@@ -141,7 +141,7 @@ TEST_CASE("simulation: a beam with a width gives mixed pixels at edges and nowhe
   const Scene scene = scene_of(flat + "[[wall]]\nfrom = [2, -0.5]\nto = [2, 0.5]\nthickness = 0.01\nheight = 0.5\n");
   int mixed = 0;
   for (const Eigen::Vector3d& p : run(scene, robot, 2.0).points) {
-    if (p.head<2>().norm() > 5) continue;  // further off, the footprint on the ground is long
+    if (p.head<2>().norm() > 5) continue;  // farther away, the footprint on the ground is long
     const bool on_ground = std::abs(p.z()) < 0.01;
     const bool on_wall = std::abs(p.x() - 2) < 0.02 && std::abs(p.y()) < 0.51 && p.z() < 0.51;
     if (on_ground || on_wall) continue;
@@ -168,7 +168,7 @@ TEST_CASE("simulation: so many returns are lost as the robot's description says"
 
 TEST_CASE("simulation: a tilt frame bears the angle of its latency ago, rounded to the encoder's count") {
   Robot robot = plain_robot();
-  robot.tilt.latency_s = 0.01f;  // what the robot knows of
+  robot.tilt.latency_s = 0.01f;  // known to the robot
   robot.simulated.tilt_latency_s = 0.02;
   robot.tilt_signal.scale = 0.01;  // a coarse encoder
   const Samples samples = run(scene_of(flat), robot, 0.5);
@@ -191,7 +191,7 @@ TEST_CASE("simulation: each sweep's frames have a latency of their own, if the r
   std::map<int, std::vector<double>> of_sweep;
   for (const can::Frame& frame : samples.frames) {
     const double t = seconds_of(frame.time_ns), in_sweep = t - std::floor(t);
-    if (in_sweep < 0.3 || in_sweep > 0.7) continue;  // the servo's rate is even
+    if (in_sweep < 0.3 || in_sweep > 0.7) continue;  // where the servo's rate is constant
     const double rate = (sweep_angle_rad(robot.sweep, t + 0.01) - sweep_angle_rad(robot.sweep, t - 0.01)) / 0.02;
     const double angle = can::decode(robot.tilt_signal, frame).value();
     of_sweep[static_cast<int>(std::floor(t))].push_back((sweep_angle_rad(robot.sweep, t) - angle) / rate);
@@ -326,7 +326,7 @@ TEST_CASE("simulation: a localisation that thinks better of itself does so every
     if (seconds_of(pose.time_ns) < 2) CHECK((z_m == 0 && pose.T_map_base.linear().isIdentity()));
     if (std::abs(z_m - last_z_m) < 1e-9) continue;
     CHECK(std::abs(z_m - last_z_m) == Approx(0.02));
-    CHECK(std::fmod(seconds_of(pose.time_ns), 2.0) < 0.06);  // the next pose
+    CHECK(std::fmod(seconds_of(pose.time_ns), 2.0) < 0.06);  // shows in the next pose
     last_z_m = z_m;
     ++jumps;
   }
@@ -349,7 +349,8 @@ TEST_CASE("simulation: an obstacle that moves is seen where it is at the time of
   for (const Eigen::Vector3d& p : samples.points) {
     if (std::abs(p.y()) < 0.01) first = std::min(first, p.x()), last = std::max(last, p.x());
   }
-  CHECK(first == Approx(4.5 + 2 * 0.5 * 25e-3 * 0.75).margin(0.01));  // the middle beam is 9.4 ms after the first
+  CHECK(first ==
+        Approx(4.5 + 2 * 0.5 * 25e-3 * 0.75).margin(0.01));  // the middle beam is measured 9.4 ms after the first
   CHECK(last == Approx(first + 2 * 39.0 / 40).margin(0.01));
 }
 
@@ -463,7 +464,7 @@ TEST_CASE("simulate: of a path that takes most of a day no more is laid out than
       scene_of("[[region]]\nz = 0\nrectangle = [-1, -1, 2, 1]\n[robot]\npath = [[0, 0], [80, 0]]\nspeed = 0.001\n");
   Robot robot = plain_robot();
   robot.scan_rate_hz = 1;
-  const Simulation simulation(scene, robot, 1, 2);  // the way leaves the ground after half an hour
+  const Simulation simulation(scene, robot, 1, 2);  // the path leaves the ground after half an hour
   CHECK(simulation.true_T_map_base(2 + simulated_margin_s).translation().x() == Approx(0.00225));
   CHECK(simulation.true_T_map_base(3).translation().x() == Approx(0.003));  // the last beam of a line
   CHECK_THROWS_AS(Simulation(scene, robot, 1), BadInput);

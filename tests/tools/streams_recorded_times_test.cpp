@@ -1,4 +1,4 @@
-// Recorded times for frames that come over a bus again.
+// Recorded times for frames that are played on a bus.
 #include "program/recorded_times.hpp"
 
 #include "curbline/can/servo_presets.hpp"
@@ -16,7 +16,7 @@ can::Frame position(std::int64_t time_ns, double angle_rad) {
   return frame;
 }
 
-/// A frame each 10 ms, of the angle that `angle_of` has for its number.
+/// A log with a frame every 10 ms; frame k has the angle angle_of(k).
 template <typename AngleOf>
 LogClock clock_of(const TemporaryDirectory& directory, int frames, AngleOf angle_of) {
   std::ostringstream log;
@@ -25,7 +25,7 @@ LogClock clock_of(const TemporaryDirectory& directory, int frames, AngleOf angle
   return LogClock(std::move(recorded));
 }
 
-/// Number of the recorded frame whose time one is given that comes `late_ms` after its own.
+/// Number of the recorded frame whose time is assigned to frame k when it arrives `late_ms` after its own time.
 template <typename AngleOf>
 double given(LogClock& clock, int k, AngleOf angle_of, int late_ms = 0) {
   can::Frame frame = position(bus0 + 10 * ms * k + late_ms * ms, angle_of(k));
@@ -43,7 +43,7 @@ TEST_CASE("recorded times: a log whose times go back is refused with its line") 
 
 TEST_CASE("recorded times: after a gap in which the servo turned, a frame is not taken for one of the way before") {
   const TemporaryDirectory directory;
-  const auto nods = [](int k) { return 0.01 * std::abs(k - 30); };  // 45 is 15 again
+  const auto nods = [](int k) { return 0.01 * std::abs(k - 30); };  // 45 has the angle of 15
   LogClock clock = clock_of(directory, 100, nods);
   for (int k = 0; k < 10; ++k) REQUIRE(given(clock, k, nods) == k);
   for (int k = 45; k < 100; ++k) REQUIRE(given(clock, k, nods) == k);
@@ -57,7 +57,7 @@ TEST_CASE("recorded times: a frame that comes twice is not taken for the one of 
   LogClock clock = clock_of(directory, 120, nods);
   for (int k = 0; k < 120; ++k) {
     REQUIRE(given(clock, k, nods) == k);
-    if (k == 20) CHECK(given(clock, k, nods, 1) == Approx(20.1));  // 100 is 20 again
+    if (k == 20) CHECK(given(clock, k, nods, 1) == Approx(20.1));  // 100 has the angle of 20
   }
   CHECK(clock.not_recorded() == 1);
   CHECK(clock.recorded()->missed() == 0);
