@@ -107,8 +107,7 @@ TEST_CASE("scanner: a bit that flips anywhere costs that line, and once in 64 th
     INFO(s.name << ": next line lost " << next_lost << " times, the damaged one given " << given);
     CHECK(next_lost <= whole.size() / 8);
     if (s.name == "lms200") CHECK(given == 0);
-    if (s.name == "cola")
-      CHECK(given <= 1);  // a length larger by 4 ends within the next start, where the XOR is right again
+    if (s.name == "cola") CHECK(given <= 1);  // a length 4 larger ends in the next start, where the XOR is right again
   }
 }
 

@@ -502,8 +502,7 @@ TEST_CASE("xilinx_can: a controller that never answers is left in reset, its int
   CHECK(b.bus.bus() == BusState::closed);
   b.controller.never_joins = false;
   b.controller.arrive(standard(1));
-  CHECK_FALSE(
-      b.controller.line());  // its handler could not clear the interrupt: receive() of a closed bus does nothing
+  CHECK_FALSE(b.controller.line());  // no handler could clear it: receive() of a closed bus does nothing
 }
 
 TEST_CASE("xilinx_can: a call that is refused leaves an open controller in reset") {

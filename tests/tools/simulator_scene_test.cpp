@@ -373,8 +373,7 @@ TEST_CASE("motion: a wheel rolls up a curb as its rim does over the edge, and th
     const double inside = std::max(0.0, 0.15 * 0.15 - to_edge_m * to_edge_m);
     const double wheel_m = std::max(0.0, 0.12 - 0.15 + std::sqrt(inside));  // radius 0.15 m, curb 12 cm high
     INFO(to_edge_m);
-    CHECK(T.translation().z() ==
-          Approx(wheel_m / 2).margin(0.012));  // the path is sampled every cm; this allows for the steepest part
+    CHECK(T.translation().z() == Approx(wheel_m / 2).margin(0.012));  // the ground is sampled every cm
     CHECK(T.linear()(2, 0) == Approx(wheel_m / 0.5).margin(0.05));
   }
 }

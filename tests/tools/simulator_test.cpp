@@ -349,8 +349,7 @@ TEST_CASE("simulation: an obstacle that moves is seen where it is at the time of
   for (const Eigen::Vector3d& p : samples.points) {
     if (std::abs(p.y()) < 0.01) first = std::min(first, p.x()), last = std::max(last, p.x());
   }
-  CHECK(first ==
-        Approx(4.5 + 2 * 0.5 * 25e-3 * 0.75).margin(0.01));  // the middle beam is measured 9.4 ms after the first
+  CHECK(first == Approx(4.5 + 2 * 0.5 * 25e-3 * 0.75).margin(0.01));  // the middle beam comes 9.4 ms after the first
   CHECK(last == Approx(first + 2 * 39.0 / 40).margin(0.01));
 }
 

@@ -1,4 +1,4 @@
-// What the cells of two planes say: is the ground bent from the one to the other, or creased between them?
+// What the cells of two planes show: is the ground bent from one to the other, or creased between them?
 #include "curbline/curbs/bend.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ using test::of_points;
 
 constexpr float noise_m2 = square(0.005f);
 
-//   __-----__       a road of 4 m, cut in halves at x = 2
+//   __-----__       a road of 4 m, cut into halves at x = 2
 //  -         -
 struct Halves {
   std::vector<Point> before, behind;
@@ -48,7 +48,7 @@ float likelier_bent(const std::vector<Point>& points, const Bend& bend, float va
   return sums_of(points).likelier_bent(bend, variance_m2);
 }
 
-/// By cells of one point each, which err by `sd_m`.
+/// For cells of one point each with errors of `sd_m`.
 bool one_bend(const Halves& road, float sd_m = 0.005f) {
   Plane before = plane_of(road.before), behind = plane_of(road.behind);
   before.fit_variance_m2 = behind.fit_variance_m2 = square(sd_m);
@@ -83,7 +83,7 @@ TEST_CASE("bend: a half that is bent along another way is no part of it") {
 }
 
 TEST_CASE("bend: it is told alike along the axes and across them") {
-  // Points of a disc, of which the way is (x, y) turned by `turn`.
+  // Points of a disc, bent along the direction `turn`.
   const auto of_disc = [](double turn) {
     const double across_x = std::cos(turn), across_y = std::sin(turn);
     BendSums sums;

@@ -1,5 +1,5 @@
-// What the cells beside a border say of a side of a step: that its ground lies elsewhere, or how wrong its plane may
-// be.
+// What the cells beside a border show about a side of a step: that its ground deviates from its plane, or how wrong the
+// plane may be.
 #include "curbline/curbs/beside.hpp"
 
 #include <catch2/catch.hpp>
@@ -15,7 +15,7 @@ TEST_CASE("beside: the ground beside a border is carried on to it, and found by 
   const auto away = [&](float further_cells) { return deviation(beside, plane, -1.0f, further_cells, common_m2); };
   CHECK(away(0.0f).found());
   CHECK(away(0.0f).away_m == Approx(0.016));
-  CHECK(away(0.0f).height_variance_m2() == Approx(5e-6));  // (2, -1) of two cells
+  CHECK(away(0.0f).height_variance_m2() == Approx(5e-6));  // two cells with weights 2 and -1
   CHECK(away(0.5f).away_m == Approx(0.019));
   beside.add(beside);
   CHECK(away(0.0f).away_m == Approx(0.016));
@@ -37,10 +37,10 @@ TEST_CASE(
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
   CHECK(lying(0.004f).height_variance_m2() == Approx((1.6e-5 - 5e-6) / 12));
-  CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side lies below
+  CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side is below
   CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 5e-6) / 12));
   CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
-  CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // by chance
+  CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // within chance
   CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
 }

@@ -1,4 +1,4 @@
-// Where edges are found, and how far before their shadow.
+// Where edges are found, and how far they lie before their shadow.
 #include "curbline/curbs/border_finder.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// A line at right angles to (cos, sin) of an angle, `away` from the origin.
+/// A line perpendicular to the direction `angle`, `away` from the origin.
 LineFit::Segment line_at(double angle, double away) {
   const double c = std::cos(angle), s = std::sin(angle);
   const auto at = [&](double along) {
@@ -57,8 +57,8 @@ TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no 
   CHECK(line.x0_m == Approx(1.8));
 }
 
-/// The one curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up, and there only
-/// one point in `thinner`; none for 0.
+/// The only curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up. Between them
+/// there are points only if face_seen.
 Curb curb_of(double drop, double from, double to, bool face_seen) {
   auto stages = std::make_unique<Stages<small_limits>>(small_settings());
   for (int i = 0; i < 24; ++i) {
@@ -81,7 +81,7 @@ Curb curb_of(double drop, double from, double to, bool face_seen) {
 }
 
 //  ______________
-//                |               the shadow of a laser 1 m above: 12 cm high, 14 % of the way long
+//                |               seen from a laser 1 m above: the step is 12 cm high, the shadow 14 % of the distance
 //                |  shadow
 //                '.......________
 TEST_CASE("border finder: a step down lies before its shadow, wherever cells part it") {
@@ -100,13 +100,13 @@ TEST_CASE("border finder: a sloped face that is seen is told half its shadow bef
   }
 }
 
-/// A street up to where a face begins, which rises by `slope` a metre; nothing is seen beyond `to`. Along x, from the
-/// laser, unless it is turned to come from the window's other end.
+/// A street up to the start of a face that rises by `slope` a metre; nothing is seen beyond `to`. It runs along x, away
+/// from the laser, unless it is turned to run along y, from the window's other end.
 struct Street {
-  double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< from `top` on it is level again
+  double slope = 0.4, from = 1.2, to = 1.5, top = 9.0;  ///< level again from `top` on
   bool turned = false;
   float laser_x_m = 0.0f, laser_z_m = 1.0f;
-  double waver = 0.0;        ///< every other half metre ends so much earlier
+  double waver = 0.0;        ///< every other half metre ends earlier by this much
   double unseen_from = 9.0;  ///< a cell that begins there shows nothing
 
   double height(double x) const { return slope * (std::clamp(x, from, top) - from); }
@@ -127,12 +127,12 @@ struct Street {
     stages->trace(stages->view.x_m, stages->view.y_m);
     return stages;
   }
-  /// A curb that lies across the street, and how far along it.
+  /// A curb across the street, and its distance along the street.
   struct Across {
     double at;
     Curb curb;
   };
-  /// The curbs beyond which no ground is seen.
+  /// The curbs with no ground in view beyond them.
   std::vector<Across> one_sided() const {
     const auto stages = traced();
     std::vector<Across> found;
@@ -149,7 +149,7 @@ struct Street {
     }
     return found;
   }
-  /// Where faces end.
+  /// The places where faces end.
   std::vector<double> ends() const {
     std::vector<double> found;
     for (const Across& end : one_sided()) {
@@ -162,7 +162,7 @@ struct Street {
 };
 
 //            /
-//           /         the face of a kerb; what lies beyond is not seen
+//           /         the face of a curb; nothing beyond it is seen
 //  ________/
 TEST_CASE("border finder: a face beyond which nothing is seen ends at an edge, in any direction") {
   const bool turned = GENERATE(false, true);
@@ -200,7 +200,7 @@ TEST_CASE("border finder: a face that the window cuts has no end") {
 
 //  o
 //  ________
-//          \\           readings that mix the edge and what lies behind it, on the rays or less steep; no more is seen
+//          \\           readings that mix the edge and what is behind it, along the rays or less steep; no more is seen
 TEST_CASE("border finder: where a veil follows the ground and nothing is seen behind it, a step goes down as far") {
   const bool turned = GENERATE(false, true);
   for (const double slope : {-1 / 1.4, -0.5}) {  // at 1.4 m the laser's rays fall by 1 in 1.4
@@ -216,7 +216,7 @@ TEST_CASE("border finder: where a veil follows the ground and nothing is seen be
 
 //  o
 //  _________   ____
-//           .           as the veil, but of three cells, in the middle of the way; or a drain, behind which it goes on
+//           .           the same veil with only three cells in the middle; or a drain with ground seen behind it
 TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain does not") {
   const auto curbs = [](double to_m) {
     Stages<small_limits> stages(small_settings());
@@ -242,12 +242,12 @@ TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, 
 }
 
 //  o             |
-//  ________      |       a car, before which the edge and a row of the road are seen
+//  ________      |       a car; before it the edge and one row of the road are seen
 //          \\    |
 //            \\__|
 TEST_CASE("border finder: a veil before an obstacle hides a step as one beside it does") {
   Stages<small_limits> stages(small_settings());
-  // The road, lower and seen to its end beside the car, is the largest plane: what mixes lies above it.
+  // The road, lower and seen to its end beside the car, is the largest plane. The mixed readings lie above it.
   test::fill(stages.dem, [](double x, double y) {
     if (x < 0.8) return 0.0;
     if (y < 1.6) return -0.2;
@@ -267,7 +267,7 @@ TEST_CASE("border finder: a veil before an obstacle hides a step as one beside i
 }
 
 //  o             |
-//  ________      |       a car on a road of which nothing is seen; its wheels and the edge share the cells between
+//  ________      |       a car on a road that is not seen; its wheels and the edge share the cells between them
 //          \\    |
 //            \\  |
 TEST_CASE("border finder: a step down right before an obstacle is told by what lies below the ground") {
@@ -292,7 +292,7 @@ TEST_CASE("border finder: a step down right before an obstacle is told by what l
 }
 
 //             _______
-//   o  ->    :       o   what is left of a step that a robot has climbed: its upper side, and a row that mixes both
+//   o  ->    :       o   what remains of a step that a robot has climbed: its upper side, and a row that mixes both
 TEST_CASE("border finder: the face of a step up is no step down for a robot that has climbed it") {
   Stages<small_limits> stages(small_settings());
   test::Noise noise;
@@ -311,9 +311,9 @@ TEST_CASE("border finder: a veil at the window's end hides a step all the same")
   CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
 }
 
-//  .............       seen from above: the rays pass the edge askew and fall along it, not across, and their spots are
-//  _____________       wider than the two rows are that the window holds of what they mix; seen from near by the spot
-//  o                   is small, and a bank is a bank
+//  .............       seen from above: the rays cross the edge obliquely and fall along it, not across it, and their
+//  _____________       spots are wider than the two rows of mixed readings in the window; from near by the spot is
+//  o                   small, and a bank is a bank
 TEST_CASE("border finder: an edge that the spots of rays askew blur is a step down, from near by a bank") {
   const auto steps_down = [](const Viewpoint& view) {
     Stages<small_limits> stages(small_settings());
@@ -329,8 +329,8 @@ TEST_CASE("border finder: an edge that the spots of rays askew blur is a step do
   CHECK(steps_down({1.2f, 1.2f, 1.0f}) == 0);
 }
 
-// ____________          from far away the shadow of a step of 6 cm and the laser's spot are as long together as
-//             \____     the 40 cm over which the ground falls; from near by they are not, and it is a ramp
+// ____________          from far away the shadow of a step of 6 cm and the laser's spot together are as long as the
+//             \____     40 cm over which the ground falls; from near by they are shorter, and it is a ramp
 TEST_CASE("border finder: what falls over the shadow of an edge and the spot on it is a step, from near by a ramp") {
   const auto kinds = [](float laser_y_m) {
     Stages<small_limits> stages(small_settings());
@@ -355,8 +355,8 @@ TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
 
-/// A platform up to `edge`, and ground `drop` below it from where the laser sees it, or `gap` beyond, along x or
-/// turned.
+/// The curbs of a platform up to `edge` and ground `drop` below it, which begins where the laser sees it, or `gap`
+/// beyond the edge, along x or turned.
 std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool turned) {
   Stages<small_limits> stages(small_settings());
   for (int i = 0; i < 24; ++i) {
@@ -378,7 +378,7 @@ std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool t
 //  o
 //  _______
 //         ' .
-//             ' ._____    the edge of a platform, 0.5 m high, hides 0.6 m: more than the reach of links
+//             ' ._____    the edge of a platform, 0.5 m high, hides 0.6 m, which is more than the reach of links
 TEST_CASE("border finder: a step down is told, however wide what it hides") {
   const bool turned = GENERATE(false, true);
   const double edge = GENERATE(1.2, 1.25);
@@ -434,7 +434,7 @@ TEST_CASE("border finder: a veil hides a step on whichever half of the window it
   }
 }
 
-/// The curbs of a window 1 m below the laser at (0, 1.2).
+/// The curbs of a window 1 m below a laser at (0, 1.2).
 template <typename Height>
 std::unique_ptr<Stages<small_limits>> traced(Height&& height_m) {
   auto stages = std::make_unique<Stages<small_limits>>(small_settings());
@@ -447,7 +447,7 @@ std::unique_ptr<Stages<small_limits>> traced(Height&& height_m) {
 
 //  o
 //  _________
-//           .            two rows, of two cells and of one: too few for a plane
+//           .            two rows, of two cells and of one cell: too few for a plane
 TEST_CASE("border finder: a few readings below the end of what is seen hide a step, above it they do not") {
   const auto ground = [](double off_m) {
     return [=](double x, double y) {
@@ -464,7 +464,7 @@ TEST_CASE("border finder: a few readings below the end of what is seen hide a st
 }
 
 //  o
-//  _________    ________     the foot of a ramp, of which what lies about it is not seen
+//  _________    ________     the foot of a ramp, with the ground around it not seen
 TEST_CASE("border finder: planes that meet in what is not seen part in its middle") {
   const auto stages =
       traced([](double x, double) { return x > 1.1 && x < 1.5 ? std::nan("") : 0.2 * std::max(x - 1.3, 0.0); });
@@ -474,7 +474,7 @@ TEST_CASE("border finder: planes that meet in what is not seen part in its middl
   CHECK(stages->tracer.curbs()[0].x1_m == Approx(1.3).margin(0.01));
 }
 
-/// How many borders of a window's one chain are open.
+/// Number of open borders; REQUIREs that the window's only chain has `of` borders.
 int open_borders(const Stages<small_limits>& stages, int of) {
   const auto& borders = const_cast<Stages<small_limits>&>(stages).work.curbs().borders;
   REQUIRE(borders.size() == of);
@@ -506,7 +506,7 @@ TEST_CASE("border finder: what is mixed at the edge of a step down is no obstacl
 }
 
 //  o
-//  __-___                    a bump that bears the ground's plane
+//  __-___                    a bump that has the ground's label
 //        ____
 TEST_CASE("border finder: a bump on the ground is no obstacle before what an edge hides") {
   const auto stages = traced([](double x, double y) {
@@ -517,7 +517,7 @@ TEST_CASE("border finder: a bump on the ground is no obstacle before what an edg
   CHECK(open_borders(*stages, 24) == 0);
 }
 
-/// What a robot at (0, 1.2) has seen, traced when it has driven on.
+/// What a robot at (0, 1.2) has seen, traced after it has driven on.
 template <typename Height>
 std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& height_m) {
   auto stages = std::make_unique<Stages<small_limits>>(small_settings());
@@ -548,7 +548,7 @@ TEST_CASE("border finder: an edge behind what hid it is open for a robot that ha
       if (y > 1.6 && x > 1.1 && x < 1.2) return 0.4;
       return y > 1.6 && x > 1.1 && x < 1.5 ? std::nan("") : x < 1.4 ? 0.0 : 0.12;
     });
-    CHECK(open_borders(*stages, 24) == 7);  // to the first row behind it the rays pass beside it
+    CHECK(open_borders(*stages, 24) == 7);  // toward the first row behind it, the rays pass beside it
   }
 }
 
@@ -575,7 +575,7 @@ TEST_CASE("border finder: a step down is told, however much it hides and however
 
 //  y     -0.1 m  |  not seen           | -0.5 m
 //  2.1 __________|___________          |
-//        0 m                 |         |          hides from the laser what lies behind both
+//        0 m                 |         |          hides from the laser what is behind both
 TEST_CASE("border finder: what the edge of another plane hides tells no step between those on both sides of it") {
   const auto stages = traced([](double x, double y) {
     if (x > 1.8) return -0.5;
@@ -595,7 +595,7 @@ TEST_CASE("border finder: where in a cell an edge lies is told by readings that 
     Stages<small_limits> stages(small_settings());
     for (int i = 0; i < 24; ++i) {
       for (int j = 0; j < 24; ++j) {
-        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {  // across the edge; along it all on one side
+        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {  // spread across the edge; along it all to one side
           const double across = 0.1 * i + at, along = 0.1 * j + 0.01 + 0.1 * at;
           const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
           stages.dem.add({x, y, across < 1.26 ? 0.0f : 0.12f, 1e-4f});
@@ -637,7 +637,7 @@ TEST_CASE("borders: a chain goes on to the next border within reach, of the same
       CHECK(two(0.6) == 1);
       CHECK(two(1.6) == 1);
       CHECK(two(0.1, true) == 1);
-      // One between them, where the chain is begun: what lies beyond the reach of one end is no part of it.
+      // One between them, from which the chain starts: what is beyond the reach of one end does not belong to it.
       const double toward = from < 1.0 ? 0.1 : -0.1, next = from + toward, away = from + 7.0 * toward;
       using Places = std::vector<std::array<double, 2>>;
       CHECK(chained(along_x ? Places{{next, 1.25}, {from, 1.25}, {away, 1.25}}

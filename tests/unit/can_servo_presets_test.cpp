@@ -1,4 +1,4 @@
-// The presets of servos against frames of their manuals and of real buses.
+// The servo presets against frames from manuals and from real buses.
 #include "curbline/can/servo_presets.hpp"
 
 #include <catch2/catch.hpp>
@@ -28,7 +28,7 @@ TEST_CASE("servo presets: a CiA 402 position is read behind the statusword") {
   const auto angle = decode(cia402_position(1), frame(0x181, false, {0x37, 0x06, 0xCC, 0x17, 0xFD, 0xFF}));
   REQUIRE(angle);
   CHECK(*angle == Approx(-190516.0 * 2.0 * pi / 1048576.0).epsilon(1e-15));
-  // Whatever is mapped behind it.
+  // Whatever else is mapped after it.
   CHECK(decode(cia402_position(1), frame(0x181, false, {0x37, 0x06, 0xCC, 0x17, 0xFD, 0xFF, 8, 0})) == angle);
 }
 
@@ -39,7 +39,7 @@ TEST_CASE("servo presets: TPDO2, where Faulhaber drives have the same layout, is
 }
 
 TEST_CASE("servo presets: an ODrive's id is node << 5 | 9 and its position a float of turns") {
-  CHECK(odrive_encoder_estimates(1).id == 0x29);  // the manual's example: node 1, command 0x0C is 0x2C
+  CHECK(odrive_encoder_estimates(1).id == 0x29);  // in the manual's example, node 1 and command 0x0C give 0x2C
   const auto angle = decode(odrive_encoder_estimates(3), frame(0x69, false, {0, 0, 0x80, 0xBE, 1, 2, 3, 4}));
   REQUIRE(angle);
   CHECK(*angle == Approx(-pi / 2).epsilon(1e-15));
@@ -69,7 +69,7 @@ TEST_CASE("servo presets: a CubeMars position spans -3200 to 3200 degrees") {
 TEST_CASE("servo presets: a CubeMars position is not read from the host's commands to the same motor") {
   const Signal signal = cubemars_servo(0x68);
   CHECK(carries(signal, frame(0x2968, true, {0x03, 0x84, 0, 0, 0, 0, 0, 0})));
-  // Duty, current, brake, speed and position are four bytes, the origin one, position with speed eight.
+  // Duty, current, brake, speed and position commands are four bytes, the origin is one, position with speed is eight.
   for (const std::uint32_t mode : {0u, 1u, 2u, 3u, 4u}) {
     CHECK_FALSE(carries(signal, frame(mode << 8 | 0x68, true, {0x00, 0x03, 0x84, 0x00})));
   }
@@ -108,7 +108,7 @@ TEST_CASE(
   const Frame cut = frame(1, false, {1, 0x80, 0, 0, 0});
   CHECK(carries(signal, cut));
   CHECK_FALSE(decode(signal, cut));
-  Signal clone = signal;  // replies with temperature and error behind: told apart by the motor's number at best
+  Signal clone = signal;  // its reply also has temperature and error; at best the motor's number identifies it
   clone.max_bytes = 8;
   CHECK(carries(clone, command));
 }

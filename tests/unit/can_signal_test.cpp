@@ -1,4 +1,4 @@
-// Signals of servos: known frames to known angles, and round trips over every layout.
+// Signals of servos: known frames to known angles, and round trips over all layouts.
 #include "curbline/can/signal.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace curbline::can;
 
 namespace {
 
-/// Four bytes behind a statusword.
+/// Four bytes after a statusword.
 constexpr Signal position{.id = 0x181, .start_bit = 16, .scale = 1e-3};
 constexpr Signal turns{.id = 0x69, .is_float = true};
 
@@ -59,7 +59,7 @@ TEST_CASE("can signal: a float that is not finite gives nothing") {
 }
 
 TEST_CASE("can signal: bits are numbered as in a DBC file") {
-  // The same twelve bits, 0xABC, across the bytes 1 and 2.
+  // The same twelve bits, 0xABC, across bytes 1 and 2.
   const Signal little{.id = 1, .start_bit = 12, .length = 12, .is_signed = false};
   const Signal big{.id = 1, .start_bit = 11, .length = 12, .order = ByteOrder::big, .is_signed = false};
   CHECK(*decode(little, frame(1, false, {0, 0xC0, 0xAB})) == 0xABC);
@@ -72,11 +72,11 @@ TEST_CASE("can signal: any place, length, order and sign round-trips, and other 
   for (int trial = 0; trial < 20000; ++trial) {
     Signal signal{.id = static_cast<std::uint32_t>(random() % 0x800)};
     signal.length = static_cast<std::uint8_t>(1 + random() % 64);
-    signal.start_bit = static_cast<std::uint16_t>(random() % 440);  // 64 more fit in any order
+    signal.start_bit = static_cast<std::uint16_t>(random() % 440);  // 64 more bits fit in any order
     signal.order = random() % 2 != 0 ? ByteOrder::big : ByteOrder::little;
     signal.is_signed = random() % 2 != 0;
     REQUIRE(valid(signal));
-    const int bits = std::min<int>(signal.length, 52);  // what a double holds
+    const int bits = std::min<int>(signal.length, 52);  // the bits that a double holds
     const double span = std::ldexp(1.0, signal.is_signed ? bits - 1 : bits);
     const double value = std::floor(std::ldexp(static_cast<double>(random()), -32) * span) -
                          (signal.is_signed && random() % 2 ? span : 0.0);
@@ -222,7 +222,7 @@ TEST_CASE("can signal: a frame longer than the signal's is another one, a shorte
   encode(signal, 1.0, written);
   CHECK(written.length == 6);
   signal.max_bytes = 64;
-  signal.min_bytes = 65;  // no frame is as long
+  signal.min_bytes = 65;  // longer than any frame
   CHECK_FALSE(valid(signal));
   signal.min_bytes = 6;
   signal.max_bytes = 5;

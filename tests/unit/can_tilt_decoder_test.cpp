@@ -1,4 +1,4 @@
-// Frames to tilt readings: what is given out, what is dropped and counted, and the time that SYNC gives.
+// Frames to tilt readings: what is passed on, what is dropped and counted, and the time that SYNC defines.
 #include "curbline/can/tilt_decoder.hpp"
 
 #include <atomic>
@@ -62,7 +62,7 @@ TEST_CASE("tilt decoder: every frame is counted once, by what became of it") {
   CHECK_FALSE(tilt.take(cut));
   CHECK_FALSE(tilt.take(request));
   CHECK_FALSE(tilt.take(position(t0, 0.5, 2)));
-  CHECK_FALSE(tilt.take(sync(t0)));  // of no meaning to a servo that sends by itself
+  CHECK_FALSE(tilt.take(sync(t0)));  // has no meaning for a servo that sends by itself
   const TiltDecoderCounters c = tilt.counters();
   CHECK(c.frames == 5);
   CHECK(c.readings == 1);
@@ -87,11 +87,11 @@ TEST_CASE("tilt decoder: a float that is no angle of a servo is malformed") {
 TEST_CASE("tilt decoder: without a valid signal nothing is decoded") {
   TiltDecoder tilt;
   CHECK_FALSE(tilt.take(position(t0, 0.5)));
-  CHECK_FALSE(tilt.take(Frame{.time_ns = t0, .length = 8}));  // of id 0, as an NMT command
+  CHECK_FALSE(tilt.take(Frame{.time_ns = t0, .length = 8}));  // id 0, as of an NMT command
   CHECK_FALSE(tilt.init(Signal{.id = 0x800}));
   CHECK_FALSE(tilt.take(position(t0, 0.5)));
   CHECK_FALSE(tilt.init(cia402_position(1), 0x800));
-  CHECK_FALSE(tilt.init(cia402_position(1), 0x181));  // no frame is both
+  CHECK_FALSE(tilt.init(cia402_position(1), 0x181));  // no frame can be both
   CHECK_FALSE(tilt.take(position(t0, 0.5)));
   CHECK(tilt.init(cia402_position(1)));
   CHECK(tilt.counters().frames == 0);
@@ -184,7 +184,7 @@ TEST_CASE("tilt decoder: a position whose SYNC was not seen is dropped and count
   SECTION("the same just after another SYNC was lost") {
     tilt.take(sync(t0 - 20 * ms + 10 * ms));
     tilt.take(position(t0 - 10 * ms + 300 * us, 0.5));
-    tilt.take(sync(t0 + 10 * ms));  // 20 ms after the one before
+    tilt.take(sync(t0 + 10 * ms));  // 20 ms after the last one
     CHECK_FALSE(tilt.take(position(t0 + 20 * ms + 300 * us, 0.5)));
   }
   SECTION("the same just after a SYNC was repeated") {
@@ -223,7 +223,7 @@ TEST_CASE("tilt decoder: after a silence of the bus positions are taken as befor
   for (int k = 0; k < 5; ++k) tilt.take(sync(t0 + 10 * ms * k));
   tilt.take(sync(t0 + 9000 * ms));
   CHECK(tilt.take(position(t0 + 9000 * ms + 300 * us, 0.5)));
-  CHECK_FALSE(tilt.take(position(t0 + 9010 * ms + 300 * us, 0.5)));  // whose SYNC was lost
+  CHECK_FALSE(tilt.take(position(t0 + 9010 * ms + 300 * us, 0.5)));  // its SYNC was lost
 }
 
 TEST_CASE("tilt decoder: a damaged position uses its SYNC up") {

@@ -1,5 +1,5 @@
-// A cell against the posterior of a Gaussian with unknown mean and variance, computed from all points at once in
-// double.
+// A cell against the posterior of a Gaussian with unknown mean and variance, computed from all points at once in double
+// precision.
 #include "curbline/map/cell.hpp"
 
 #include <algorithm>
@@ -93,7 +93,7 @@ TEST_CASE("cell: the variance starts at the prior and ends at that of the points
 
   std::vector<Reading> all = readings(20000, 0.0, 0.05);
   for (Reading& r : all) r.weight = 1.0;
-  // The relative standard deviation of a variance from n points is sqrt(2 / n); four of them.
+  // The relative standard deviation of a variance from n points is sqrt(2 / n); four of them are allowed.
   CHECK(cell_of(all).variance_m2(prior) == Approx(0.05 * 0.05).epsilon(4.0 * std::sqrt(2.0 / 20000.0)));
 }
 

@@ -1,4 +1,4 @@
-// The share of a cell's noise that is common to its points, found again from fields of known variance and correlation.
+// The share of a cell's noise that is common to its points, recovered from fields of known variance and correlation.
 #include "curbline/planes/common_noise.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Settings map_settings() {
   return test::small_settings(side, side);
 }
 
-/// How far each cell lies off its plane: a first-order autoregression along both axes.
+/// Deviation of each cell from its plane: a first-order autoregression along both axes.
 class Unevenness {
  public:
   Unevenness(double sd_m, double r_x, double r_y, std::uint32_t seed = 1) {
@@ -48,7 +48,7 @@ class Unevenness {
   std::array<std::array<double, side>, side> at_{};
 };
 
-/// Once every patch has been looked at.
+/// The estimate after every patch has been examined.
 CommonNoise<limits> noise_of(const Stages<limits>& stages) {
   CommonNoise<limits> common_noise;
   common_noise.init();
@@ -62,7 +62,7 @@ float share_of(const Stages<limits>& stages, const PlanePrior& prior, float late
   return noise_of(stages).common_m2(prior, latency_sd_s) / prior.noise_m2;
 }
 
-/// Share found on a map of such heights, where it may be anything.
+/// Share found on a map of these heights, with no limit from the settings.
 template <typename Height>
 float share_of(Height&& height_m) {
   Stages<limits> stages(map_settings());
@@ -73,7 +73,7 @@ float share_of(Height&& height_m) {
   return share_of(stages, prior);
 }
 
-/// The middle one of many patches, each on a plane that slopes.
+/// Median of many patches, each on a sloping plane.
 double of_patches(double r_x, double r_y) {
   constexpr auto patch_side = static_cast<std::size_t>(PatchResiduals::side);
   std::vector<double> found;
@@ -163,7 +163,7 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
     }
   }
   stages.infer(true);
-  CHECK(share_of(stages, PlanePrior{}) == Approx(0.12).epsilon(0.4));  // 0.16 of all patches, 0.48 with correlations
+  CHECK(share_of(stages, PlanePrior{}) == Approx(0.12).epsilon(0.4));  // 0.16 from all patches, 0.48 with correlations
 }
 
 TEST_CASE("common noise: what grows with the distance is found as that, not as what the evenest, near patches share") {
@@ -187,7 +187,7 @@ TEST_CASE("common noise: ground that is uneven alike everywhere is not taken for
   test::fill(stages.dem, even);
   stages.infer(true);
   const float there_m2 = noise_of(stages).line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
-  CHECK(there_m2 < 1.5f * 1e-6f);  // as the middle one of patches that weigh alike has it, twice as much
+  CHECK(there_m2 < 1.5f * 1e-6f);  // the median of equally weighted patches would make it twice as much
 }
 
 TEST_CASE("common noise: cells err by the less, the more points they hold, of a robot that drives at any distance") {

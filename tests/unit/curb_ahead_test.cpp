@@ -1,4 +1,4 @@
-// The curb that a robot meets first, of several, from several poses.
+// The curb that a robot meets first, among several and from several poses.
 #include "curbline/curbs/curb_ahead.hpp"
 
 #include <array>
@@ -50,7 +50,7 @@ TEST_CASE("curb ahead: the gutter before a kerb does not hide it, alone it is to
 }
 
 TEST_CASE("curb ahead: of a robot that drives it is told in the base frame, curbs being in the map frame") {
-  Curb across{};  // 2 m before a robot at (10, 5) that heads along y
+  Curb across{};  // 2 m ahead of a robot at (10, 5) that heads along y
   across.x0_m = 8.0f, across.y0_m = 7.0f, across.x1_m = 12.0f, across.y1_m = 7.2f;
   const Pose pose{.x_m = 10.0f, .y_m = 5.0f, .qz = std::sqrt(0.5f), .qw = std::sqrt(0.5f)};
   const auto ahead = nearest_ahead(std::array{across}, pose, 0.5f);

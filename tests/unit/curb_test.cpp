@@ -1,4 +1,4 @@
-// Curbs beside each other: which are one edge, and their kinds' names.
+// Curbs beside each other: which of them are one edge. Names of the kinds.
 #include "curbline/curbs/curb.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST_CASE("curb: of steps along each other the longest is told, whatever their o
   CHECK(told[1]);
 }
 
-/// Of a length, in a direction, from a place of a line through (x, y): 30 degrees off the axes, and along them.
+/// A line from (x, y) in a direction. Pieces are given along it and to its left.
 struct Way {
   double x, y, angle;
 
@@ -86,10 +86,10 @@ TEST_CASE("curb: a step is told beside a longer crease, and of two far apart eac
   CHECK(shorter_is_told(CurbKind::crease, 0.05));
   CHECK(shorter_is_told(CurbKind::ramp_edge, 0.05));
   curbs[0].kind = CurbKind::crease;
-  CHECK(shorter_is_told(CurbKind::step_up, 0.05));  // of creases each
+  CHECK(shorter_is_told(CurbKind::step_up, 0.05));  // two creases are both told
 }
 
-/// Of two planes that lean, at a border of which the normal is at an angle to x.
+/// Two planes that lean, at a border whose normal is at an angle to x.
 struct Meeting {
   double first_lean = 0.0, second_lean = 0.0;  ///< across the border
   double first_fit_m2 = 1e-6, second_fit_m2 = 1e-6;
@@ -106,7 +106,7 @@ struct Meeting {
     return kind_of(leaning(first_lean, first_fit_m2), leaning(second_lean, second_fit_m2),
                    {0.0f, 0.0f, 1.0f, 1.0f, c, s}, drawn);
   }
-  /// From which height on, up or down, it is a step.
+  /// The height, up or down, from which it is a step.
   double least_step_m(double angle, DrawnBorder drawn) const {
     for (int mm10 = 1; mm10 < 2000; ++mm10) {
       drawn.height_m = static_cast<float>(mm10) * 1e-4f;
@@ -125,10 +125,10 @@ TEST_CASE("curb: a step is what is higher than two deviations of its height, of 
   const auto about = [](double m) { return Approx(m).margin(1.5e-4); };
   CHECK(Meeting{}.least_step_m(angle, {0.0f, 0.0f, half_gap_m, 0.0f, 2.5e-5f}) == about(0.01));  // texture of 5 mm
   CHECK(Meeting{}.least_step_m(angle, {0.0f, 0.004f, half_gap_m, 0.0f, 9e-6f}) == about(0.01));
-  // Cells that err by more than the texture: the mean of both sides' variances.
+  // The cells' errors exceed the texture: the mean of both sides' variances counts.
   CHECK((Meeting{.first_fit_m2 = 1e-5, .second_fit_m2 = 4e-5}.least_step_m(
             angle, {0.0f, 0.0f, half_gap_m, 0.0f, 1e-6f})) == about(0.01));
-  // Slopes that differ by 1 in 5, a place that is known to 2 cm.
+  // Slopes differ by 1 in 5, and the position is known to 2 cm.
   const DrawnBorder drawn{0.0f, 0.0f, half_gap_m, 4e-4f, 9e-6f};
   CHECK((Meeting{.first_lean = 0.1, .second_lean = -0.1}.least_step_m(angle, drawn)) == about(0.01));
   CHECK((Meeting{.first_lean = -0.1, .second_lean = 0.1}.least_step_m(angle, drawn)) == about(0.01));

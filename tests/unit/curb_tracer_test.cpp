@@ -1,4 +1,4 @@
-// Curbs from labels: where they lie, how high they are, which way they go, and what is not one.
+// Curbs from labels: where they are, how high they are, which way they run, and what is not a curb.
 #include "curbline/curbs/curb_tracer.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using test::Noise;
 using test::small_settings;
 using test::Stages;
 
-/// A window with this ground, labelled and traced from the robot's place.
+/// A window with this ground, labelled, and traced from the robot's position.
 template <Limits limits = test::small_limits, typename Height>
 std::unique_ptr<Stages<limits>> traced(Height&& height_m, float robot_x_m = 0.0f, float robot_y_m = 0.0f,
                                        const Settings& settings = small_settings()) {
@@ -61,8 +61,8 @@ TEST_CASE("curb tracer: a step is one piece with its place, height and direction
   CHECK(curb.far_label == stages->label_at(23, 0));
 }
 
-//  . . B B     the corners of a road and of a pavement meet at a cell that nobody has seen: on its row and its column
-//  A . o B     they border in the same place
+//  . . B B     the corners of a road and of a pavement meet at a cell that nobody has seen: along its row and its
+//  A . o B     column they border in the same place
 //  A A A .
 TEST_CASE("curb tracer: where two surfaces meet at a single cell the curb is as long as that") {
   auto stages = std::make_unique<Stages<>>(small_settings());
@@ -82,7 +82,7 @@ TEST_CASE("curb tracer: where two surfaces meet at a single cell the curb is as 
   CHECK(0.5f * (curb.y0_m + curb.y1_m) == Approx(1.25).margin(0.001));
   CHECK(to_far_side_m(curb, 1.2f, 1.25f) < 0.0f);
   CHECK(to_far_side_m(curb, 1.25f, 1.2f) < 0.0f);
-  CHECK(curb.face_width_m == Approx(0.1 * std::sqrt(0.5)).margin(0.001));  // of the cell, along the way across
+  CHECK(curb.face_width_m == Approx(0.1 * std::sqrt(0.5)).margin(0.001));  // of the cell, measured across the curb
 }
 
 TEST_CASE("curb tracer: a probability is at most 1, however many cells agree on it") {
@@ -119,7 +119,7 @@ std::unique_ptr<Stages<>> seen_over_an_edge() {
   return stages;
 }
 
-//  -0.8     0.9  1.2        a robot that has driven up to the edge, or over it, has seen what lies behind from afar
+//  -0.8     0.9  1.2        a robot that has driven up to the edge, or over it, has seen the ground behind it from afar
 //   o  ->    o    |____
 TEST_CASE("curb tracer: an edge lies before its shadow from where it was seen, wherever the robot is by now") {
   const auto stages = seen_over_an_edge();
@@ -223,7 +223,7 @@ TEST_CASE("curb tracer: a plane and a ramp meet at the edge of a ramp, not a ste
 }
 
 //           _-
-//         _-         askew: the place of the lip is known better than to a cell
+//         _-         oblique, so that the position of the lip is known to better than a cell
 //  ______|
 TEST_CASE("curb tracer: a lip at the foot of a ramp is a step, a ramp without one has an edge") {
   const auto ramp_behind = [](double lip_m) {
@@ -255,7 +255,7 @@ TEST_CASE("curb tracer: one plane has no curb") {
 }
 
 TEST_CASE("curb tracer: a curved border becomes several pieces along the curve") {
-  // A corner with a radius of 1.4 m about (2.4, 2.4).
+  // A corner with a radius of 1.4 m around (2.4, 2.4).
   const auto radius = [](double x, double y) { return std::hypot(x - 2.4, y - 2.4); };
   const auto stages = traced([&](double x, double y) { return radius(x, y) < 1.4 ? 0.12 : 0.0; });
   CHECK(stages->tracer.curbs().size() <= 5);
@@ -298,7 +298,7 @@ TEST_CASE("curb tracer: where a shadow hides one of its sides a curb stays where
   CHECK(length_m(curb) == Approx(2.4).margin(0.02));
 }
 
-//  y  near  |  |   a box and what it hides, three quarters of it on the near side of the edge
+//  y  near  |  |   a box and what it hides; three quarters of that is on the near side of the edge
 //  |  near  |__|
 //  |  near       |   12 cm higher
 constexpr double box_m = 0.4;
@@ -319,7 +319,8 @@ TEST_CASE("curb tracer: behind what stands before it a curb goes on straight, wh
 }
 
 TEST_CASE("curb tracer: a corner behind what hides it is one all the same") {
-  // The edge turns away by 45 degrees where the box begins: a straight one would lie far outside what is hidden.
+  // The edge turns by 45 degrees where the box begins. If it went on straight, it would lie far outside the hidden
+  // part.
   const auto stages = traced(
       [](double x, double y) {
         const double edge = y < 1.2 ? 1.0 : 1.0 + (y - 1.2), beyond = x - edge;
@@ -358,7 +359,7 @@ TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of wh
   const auto step_m = [](double y) { return 0.03 + 0.05 * y; };
   const auto stages = traced([&](double x, double y) { return x < 1.4 ? 0.0 : step_m(y); });
   const auto curbs = stages->tracer.curbs();
-  REQUIRE(curbs.size() >= 6);  // 12 cm in all
+  REQUIRE(curbs.size() >= 6);  // it grows by 12 cm in all
   REQUIRE(curbs.size() <= 16);
   for (const Curb& curb : curbs) {
     CHECK(curb.kind == CurbKind::step_up);
@@ -368,12 +369,12 @@ TEST_CASE("curb tracer: a step that grows along its way is cut into pieces of wh
     CHECK(curb.height_m == Approx(step_m(middle)).margin(4 * curb.height_sd_m));
   }
   CHECK(total_length_m(curbs) > 2.35);
-  CHECK(total_length_m(curbs) < 2.4 + 0.1 * static_cast<double>(curbs.size()));  // they meet to a cell
+  CHECK(total_length_m(curbs) < 2.4 + 0.1 * static_cast<double>(curbs.size()));  // they meet to within a cell
 }
 
 //            ________
 //           /
-//  ________/           the face within the cells from 1.0 to 1.1 m
+//  ________/           the face, within the cells from 1.0 to 1.1 m
 TEST_CASE("curb tracer: a curb's face is looked through, the full step and the width told") {
   const auto stages = traced([&](double x, double) { return x < 1.0 ? 0.0 : x < 1.05 ? 0.03 : x < 1.1 ? 0.11 : 0.14; });
   REQUIRE(stages->tracer.curbs().size() == 1);
@@ -384,7 +385,7 @@ TEST_CASE("curb tracer: a curb's face is looked through, the full step and the w
   CHECK(curb.kind == CurbKind::step_up);
 }
 
-/// A step of 12 cm at x = 1.4 m, before which the road falls by depth_m over the last 0.2 m.
+/// A step of 12 cm at x = 1.4 m; over the last 0.2 m before it the road falls by depth_m.
 auto with_gutter(double depth_m) {
   return [depth_m](double x, double) { return x > 1.4 ? 0.12 : x > 1.2 ? -depth_m * (x - 1.2) / 0.2 : 0.0; };
 }
@@ -412,7 +413,7 @@ TEST_CASE(
     return x > 2.4 ? 0.12 : -fringe.depth_m * std::max(0.0, 1.0 - (2.4 - x) / fringe.width_m);
   };
   const auto stages = std::make_unique<Stages<limits>>(small_settings(40, 40));
-  const float known_m2 = 1e-5f;  // as a robot that drives finds it
+  const float known_m2 = 1e-5f;  // as a moving robot finds it
   stages->dem.set_common(known_m2, 0.0f);
   Noise noise;
   for (const Point& p : test::sample({0, 4.0, 0, 4.0}, 0.05, 0.005, noise, ground)) stages->dem.add(p);
@@ -439,8 +440,9 @@ TEST_CASE("curb tracer: cells beside the border that lie off their planes make t
 
 TEST_CASE(
     "curb tracer: a step is as high as the ground along it, though its plane holds ground of another height too") {
-  // Seen from above, a lip of 7 mm, too low to part planes, goes on from the end of the corner's one side: the plane of
-  // all that is not road lies 1.6 mm above the lower part, and 2.4 mm below the other where the road ends at it.
+  // Seen from above. A lip of 7 mm, too low to separate planes, continues one side of the corner. So the plane of
+  // everything that is not road lies 1.6 mm above the lower part, and 2.4 mm below the other part where that borders
+  // the road.
   //   y 2.4 +------------------+
   //         |   0.127          |
   //     1.2 +----------+ . . . +
@@ -485,7 +487,7 @@ TEST_CASE(
 
 //  o
 //  ________
-//          |  .        what lies behind the shadow is cambered, and is known less well at the edge than in its middle
+//          |  .        the ground behind the shadow is cambered, and is known less well at the edge than in its middle
 //          |____.--
 TEST_CASE("curb tracer: a step down is no better known than its lower plane is at the edge, before the shadow") {
   const double edge = 1.12, drop = 0.232, behind = edge + 0.284;
@@ -522,7 +524,7 @@ TEST_CASE("curb tracer: a low step through the middle of cells is told as high a
     for (int pass = 0; pass < 4; ++pass) {
       stages.infer(true);
       stages.trace();
-      stages.dem.add({0.05f, 0.05f, 0.0f, 1e-4f});  // something is touched, or planes stay as they are
+      stages.dem.add({0.05f, 0.05f, 0.0f, 1e-4f});  // some cell must be touched, otherwise planes stay as they are
     }
     for (const Curb& c : stages.tracer.curbs()) {
       rise_m2 += length_m(c) * c.height_m;
@@ -533,7 +535,7 @@ TEST_CASE("curb tracer: a low step through the middle of cells is told as high a
 }
 
 TEST_CASE("curb tracer: one edge is told once, though cells that it crosses bear a third plane") {
-  // A table and the ramp to it, and a pavement along both: halfway up the face lies the ramp's plane.
+  // A table, the ramp up to it, and a pavement along both. The ramp's plane meets the face halfway up.
   const double along_x = std::cos(0.8), along_y = std::sin(0.8);
   for (const std::uint32_t seed : {1u, 2u, 3u}) {
     Stages<> stages(small_settings());
@@ -593,7 +595,7 @@ TEST_CASE("curb tracer: however much scan lines err, a height is told by as many
     return stages->tracer.curbs()[0].height_sd_m;
   };
   const float known = deviation_m(0.0f);
-  // Planes of 14 and of 10 rows of 24 cells: 336 and 240 tell as much as 18 and 15.
+  // Planes of 14 and 10 rows of 24 cells: 336 and 240 cells count as much as 18 and 15 do.
   CHECK(deviation_m(1.0f) > std::sqrt(15.0f) * 0.98f * known);
   CHECK(deviation_m(1.0f) < std::sqrt(18.4f) * known);
 }
@@ -609,7 +611,7 @@ TEST_CASE("curb tracer: of a plane of four cells, whose fit does not show it, wh
     REQUIRE(stages->tracer.curbs().size() == 1);
     return stages->tracer.curbs()[0].height_sd_m;
   };
-  CHECK(deviation_m(1e-3f) > 2.0f * deviation_m(0.0f));  // as four lines or two it would be 1.4
+  CHECK(deviation_m(1e-3f) > 2.0f * deviation_m(0.0f));  // if it counted as four lines or two, this would be 1.4
 }
 
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place") {
@@ -639,7 +641,7 @@ TEST_CASE(
   const double even_m = deviation_m(0.0, true), grows_m = deviation_m(0.008, true);
   CHECK(even_m == Approx(deviation_m(0.0, false)));
   CHECK(deviation_m(0.008, false) == Approx(even_m).epsilon(0.01));
-  // Anything within the 19.2 mm that it grows, evenly.
+  // Uniformly distributed within the 19.2 mm by which it grows.
   CHECK(std::sqrt(grows_m * grows_m - even_m * even_m) == Approx(0.0192 / std::sqrt(12.0)).epsilon(0.02));
 }
 
@@ -653,8 +655,9 @@ TEST_CASE("curb tracer: a step down is as high as its planes lie apart at its ed
   CHECK(curb.height_m == Approx(0.05 * (edge_m - 1.4) - 0.12).margin(0.001));
 }
 
-/// Variance of a step's place, of 24 borders in gaps of a cell of 10 cm, but for what its height leaves open: each
-/// anywhere within half a cell, off by a cell's own error as a share of the step.
+/// Variance of a step's position, with 24 borders in gaps of one cell of 10 cm, without the part due to the uncertainty
+/// of its height. Each border may be anywhere within half a cell, and deviates by a cell's own error relative to the
+/// step.
 double place_variance_m2(const Stages<>& stages, const Curb& curb) {
   const double cells_m2 = 0.5 * static_cast<double>(stages.mixture.plane(curb.near_label).fit_variance_m2 +
                                                     stages.mixture.plane(curb.far_label).fit_variance_m2);
@@ -669,14 +672,14 @@ TEST_CASE("curb tracer: a curb's place is known to its gaps, over the root of th
   CHECK(curb.position_sd_m == Approx(std::sqrt(place_variance_m2(*stages, curb))).epsilon(0.02));
 }
 
-//      ________      scan lines lie three empty cells apart, along the edge: where between them it is no border tells
+//      ________      scan lines run along the edge, three empty cells apart: no border shows where it lies between them
 //  ____  ?
 TEST_CASE("curb tracer: a step between the same two scan lines is known to all that lies between them") {
   const auto stages = traced([](double x, double y) { return x > 1.2 && x < 1.5 ? std::nan("") : up(x, y); });
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
   REQUIRE(curb.kind == CurbKind::step_up);
-  CHECK(curb.position_sd_m == Approx(0.3 / std::sqrt(12.0)).epsilon(0.02));  // however many borders there are
+  CHECK(curb.position_sd_m == Approx(0.3 / std::sqrt(12.0)).epsilon(0.02));  // regardless of the number of borders
 }
 
 TEST_CASE("curb tracer: a low step's place is known less well, as its height is") {
@@ -684,7 +687,7 @@ TEST_CASE("curb tracer: a low step's place is known less well, as its height is"
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
   REQUIRE(curb.kind == CurbKind::step_up);
-  // Cells of 10 cm, each off by half of what the height may be, as a share of it.
+  // Cells of 10 cm, each deviating by half of the height's uncertainty relative to the height.
   const double others_m2 = place_variance_m2(*stages, curb), by_height_m = 0.1 * 0.5 * curb.height_sd_m / curb.height_m;
   CHECK(curb.position_sd_m == Approx(std::sqrt(others_m2 + by_height_m * by_height_m)).epsilon(0.02));
   CHECK(by_height_m > 0.001);
@@ -715,7 +718,7 @@ TEST_CASE("curb tracer: a curb keeps its number as long as it is found, a new on
 }
 
 TEST_CASE("curb tracer: numbers begin anew with 1, but for those that curbs still bear") {
-  // Two maps in turn, of which each has a curb that the other has not: a new number a trace.
+  // Two maps in turn; each has a curb that the other does not have, so that each trace uses a new number.
   const auto first = traced([](double x, double) { return x < 0.6 ? 0.0 : x < 1.8 ? 0.12 : 0.24; });
   const auto second = traced([](double x, double) { return x < 1.2 ? 0.0 : x < 1.8 ? 0.12 : 0.24; });
   REQUIRE(first->tracer.curbs().size() == 2);
@@ -897,7 +900,7 @@ TEST_CASE("curb tracer: the place of a crease is known to its gaps, of an edge t
 }
 
 //  o
-//  ________            the laser sees the edge, and what mixes it and the road behind, and no more
+//  ________            the laser sees the edge and readings that mix it with the road behind, nothing more
 //          -_
 TEST_CASE("curb tracer: of a brink, and of the end of a face, all borders err alike, and as much may be hidden again") {
   const auto one_sided = [](double slope, double from) {
@@ -925,7 +928,7 @@ TEST_CASE("curb tracer: the variance of a step's height is that of both planes i
       static_cast<double>(stages->mixture.plane(curb.near_label).height_variance_m2(1.4f, 1.2f) +
                           stages->mixture.plane(curb.far_label).height_variance_m2(1.4f, 1.2f));
   CHECK(curb.height_sd_m > 0.99 * std::sqrt(of_planes_m2));
-  CHECK(curb.height_sd_m < 1.02 * std::sqrt(of_planes_m2));  // and its place, as they differ in slope by rounding
+  CHECK(curb.height_sd_m < 1.02 * std::sqrt(of_planes_m2));  // and a little for its position: slopes differ by rounding
 }
 
 TEST_CASE("curb tracer: between planes of different slope the height is as uncertain as its place, along y, too") {
@@ -1010,7 +1013,7 @@ TEST_CASE("curb tracer: a step that grows along x is cut into pieces of which th
   CHECK(grows(0.04, 0.04) == 1);
 }
 
-//  y  near  |   not seen, at one end of the edge, whatever way it runs
+//  y  near  |   not seen, at one end of the edge, whichever way it runs
 //  |  near  |____
 //  |  near  |  0.12 m higher
 TEST_CASE("curb tracer: a curb goes on for two cells where one side is not seen at either end, along x and y") {
@@ -1132,7 +1135,7 @@ TEST_CASE("curb tracer: a number goes to one curb, of a kind, that lies within t
   CHECK(ids_on(*traced([](double x, double) { return x < 1.5 ? 0.0 : 0.12; })) == std::vector{2});
   CHECK(ids_on(*traced([](double x, double) { return x < 1.2 ? 0.0 : 0.3 * (x - 1.2); })) == std::vector{2});
   const auto ids = ids_on(*traced([](double x, double y) { return x < 1.2 ? 0.0 : y < 1.2 ? 0.08 : 0.16; }));
-  CHECK(ids.size() >= 2);  // each of its own
+  CHECK(ids.size() >= 2);  // each has its own
   CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
 }
 

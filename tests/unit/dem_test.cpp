@@ -1,4 +1,4 @@
-// The rolling window as a ring in two dimensions: which cells are valid, and what they hold, after every move.
+// The rolling window as a ring in two dimensions: which cells are valid, and what they contain, after every move.
 #include "curbline/map/dem.hpp"
 
 #include <array>
@@ -30,7 +30,7 @@ Map make_map(const WindowSettings& window) {
   return dem;
 }
 
-/// The cell at a place of the map.
+/// The cell at a position in the map.
 int slot_at(const Map& dem, float x_m, float y_m) {
   const Map::Place place = dem.place_at(x_m, y_m);
   REQUIRE(place.inside());
@@ -41,12 +41,12 @@ Point at(double x, double y, double z = 0.0, float variance = 1e-4f) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), variance};
 }
 
-/// Number of a cell of the endless grid: a height that tells where it was put.
+/// A height that encodes a cell's row and column in the endless grid.
 double name(int row, int col) {
   return 0.001 * (100 * row + col);
 }
 
-/// One point in the middle of every cell.
+/// Adds one point in the middle of every cell.
 void fill_names(Map& dem) {
   const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)),
             col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
@@ -56,7 +56,7 @@ void fill_names(Map& dem) {
   }
 }
 
-/// The window as a picture, a row a line: '#' valid, '.' not.
+/// The window as a picture, one line a row: '#' valid, '.' not.
 std::string picture(const Map& dem) {
   std::string rows;
   for (int i = 0; i < dem.rows(); ++i) {
@@ -100,7 +100,7 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
   Map dem = make_map(moving());
   dem.follow(2.0f, -1.2f, [](int) {});
   fill_names(dem);
-  std::map<std::pair<int, int>, int> slot_of;  // of a cell of the endless grid
+  std::map<std::pair<int, int>, int> slot_of;  // slots of the cells of the endless grid
   const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)),
             col0 = static_cast<int>(std::lround(dem.origin_y_m() / 0.1f));
   for (int i = 0; i < 12; ++i) {
@@ -110,7 +110,7 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
 
   std::set<int> left;
   dem.follow(2.0f + 0.4f * static_cast<float>(blocks_x), -1.2f + 0.4f * static_cast<float>(blocks_y), [&](int slot) {
-    CHECK(dem.cell(slot).valid());  // still to be read
+    CHECK(dem.cell(slot).valid());  // can still be read
     left.insert(slot);
   });
 
@@ -158,7 +158,7 @@ TEST_CASE("dem: the ring survives a walk all around") {
        {std::pair{0.4f, 0.0f}, {0.8f, 0.4f}, {0.8f, 1.2f}, {0.4f, 1.2f}, {0.0f, 0.8f}, {0.0f, 0.0f}}) {
     dem.follow(x, y, [](int) {});
   }
-  // Two blocks of rows and three of columns have been away.
+  // Two blocks of rows and three of columns have been out of the window.
   std::string expected;
   for (int i = 0; i < 12; ++i) expected += (i < 8 ? "................" : "............####") + std::string("\n");
   CHECK(picture(dem) == expected);
@@ -175,7 +175,7 @@ TEST_CASE("dem: a small motion does not move the window") {
 
 TEST_CASE("dem: a pose that trembles by less than half a cell does not move the window to and fro") {
   Map dem = make_map(moving());
-  dem.follow(0.24f, 0.0f, [](int) {});  // the border of two blocks lies at 0.2 m
+  dem.follow(0.24f, 0.0f, [](int) {});  // the border of two blocks is at 0.2 m
   CHECK(dem.origin_x_m() == 0.0f);
   dem.follow(0.26f, 0.0f, [](int) {});
   CHECK(dem.origin_x_m() == Approx(0.4f));
@@ -396,7 +396,7 @@ TEST_CASE(
   const auto height_m = [&](int i) { return dem.cell(dem.slot(i, 8)).height_m; };
   add(0.05, 2.0f);
   add(0.15, -1.0f);
-  add(0.15, 0.5f);  // seen twice: the mean
+  add(0.15, 0.5f);  // seen twice: their mean growth counts
   add(0.25, 0.0f);
   dem.begin_sweep();
   add(0.35, 3.0f);
@@ -491,7 +491,7 @@ TEST_CASE("dem: ground that changes is known again as soon after a day as after 
   see(1'000'000, 0.0);
   CHECK(cell.height_m == Approx(0.0).margin(1e-4));
   CHECK(cell.variance_m2({0.0f, 0.0f}) == Approx(0.8e-4).epsilon(0.01));  // each point weighs 0.8
-  see(2'000, 0.05);  // a plank is laid down, less than the spread that makes a cell of two surfaces
+  see(2'000, 0.05);  // a plank is laid down, less than the spread by which a cell has two surfaces
   CHECK(cell.height_m == Approx(0.05).margin(0.002));
 }
 
@@ -551,8 +551,8 @@ TEST_CASE("dem: a window smaller than its limits uses the rows and columns it wa
   CHECK(picture(dem) == "####\n####\n####\n####\n....\n....\n....\n....\n");
 }
 
-/// Calls visit(dem) for windows as large as the limits and smaller ones, wherever their rings begin. About every second
-/// cell is valid.
+/// Calls visit(dem) for windows as large as the limits and smaller ones, with various starts of their rings. About
+/// every second cell is valid.
 template <typename Visit>
 void for_each_ring(Visit&& visit) {
   test::Noise noise(5);
@@ -609,7 +609,7 @@ TEST_CASE("dem: every point that is taken lies in the surroundings, of the small
       {.rows = rows, .cols = cols, .cell_x_m = cell_m, .cell_y_m = cell_m, .origin_x_m = origin_m, .origin_y_m = 0.0f});
   dem.follow(moved * block_side * cell_m, -moved * block_side * cell_m, [](int) {});
   const Bounds around = dem.surroundings(1e9f);
-  // About both ends of the window, and between.
+  // Around both ends of the window, and in between.
   const auto places_m = [](float low_m, float high_m) {
     std::vector<float> out;
     for (const float end_m : {low_m, high_m}) {
@@ -660,7 +660,7 @@ TEST_CASE("dem: a cell holds more than a plane by what its heights spread beyond
   CHECK_FALSE(mixed(0.0, 0.0));
   CHECK_FALSE(mixed(0.011, 0.0));
   CHECK(mixed(0.02, 0.0));
-  CHECK_FALSE(mixed(0.02, 4e-4));  // as much as the plane's slope makes
+  CHECK_FALSE(mixed(0.02, 4e-4));  // as much as the plane's slope causes
 }
 
 TEST_CASE("dem: what lies beyond the window's end is not found on its other side") {

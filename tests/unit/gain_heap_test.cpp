@@ -1,4 +1,4 @@
-// The best first, whatever was changed and taken out before: against a look at all.
+// The heap's first entry against a search through all entries, whatever was changed and removed before.
 #include "curbline/regions/gain_heap.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// The plane under a cell's middle, by the side of a curb on which it lies.
+// The plane under a cell's middle, according to the side of a curb on which it lies.
 #include "curbline/curbs/ground_label.hpp"
 
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@ namespace {
 using test::small_limits;
 using test::Stages;
 
-//          near    |    far        readings part at x = 1.4, as the laser sees them
+//          near    |    far        readings change at x = 1.4, as the laser sees them
 //  ______________
 //                |______________
 //  0            1.4              2.4
@@ -25,7 +25,7 @@ class GroundLabelTest {
     REQUIRE(near_ != far_);
   }
 
-  /// A step at x, from y = 0.5 to 2; its near side, on the right of its way, is that of lower x.
+  /// A step at x, from y = 0.5 to 2. Its near side, on the right of its direction, is that of lower x.
   Curb step_at(float x_m) const {
     Curb curb;
     curb.x0_m = curb.x1_m = x_m;
@@ -50,7 +50,7 @@ class GroundLabelTest {
 TEST_CASE_METHOD(GroundLabelTest,
                  "ground label: the ground under a cell is of the side of the step that its middle is on") {
   const Curb before = step_at(1.32f), beyond = step_at(1.48f);
-  CHECK(at(13, 10, before) == far_);  // its middle at 1.35
+  CHECK(at(13, 10, before) == far_);  // its middle is at 1.35
   CHECK(at(12, 10, before) == near_);
   CHECK(at(14, 10, beyond) == near_);
   CHECK(at(15, 10, beyond) == far_);
@@ -102,7 +102,7 @@ TEST_CASE("ground label: the ground under a cell is told wherever the window lie
     curb.far_label = far;
     return ground_label(stages.dem, stages.mixture, stages.field, std::span<const Curb>(&curb, 1), 10, j);
   };
-  CHECK(at(13, 31.32f) == far);  // its middle at 31.35
+  CHECK(at(13, 31.32f) == far);  // its middle is at 31.35
   CHECK(at(13, 31.37f) == near);
   CHECK(at(12, 31.32f) == near);
   CHECK(at(14, 31.48f) == near);

@@ -16,7 +16,7 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// How many planes there are that cells of the window bear.
+/// The number of different planes that cells of the window have as labels.
 template <typename Height>
 std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
@@ -34,7 +34,7 @@ std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
 }
 
 //           ______
-//          |           the cells at 1.1 m hold points of both sides
+//          |           the cells at 1.1 m contain points of both sides
 //  ________|
 TEST_CASE("ground: the cells in which a curb's face stands are left to both sides") {
   CHECK(borne([](double x, double) { return x < 1.15 ? 0.0 : 0.12; }) == 2);
@@ -57,7 +57,7 @@ TEST_CASE("ground: the cells in which a curb's face stands are left to both side
 }
 
 //           ______
-//         /            a strip of three cells, on ground as even as a floor, by a laser of 1 cm
+//         /            a strip of three cells, on ground as even as a floor, by a laser with noise of 1 cm
 //  ______/
 TEST_CASE("ground: a strip that rises is ground, not the face of a curb, however much the laser's readings spread") {
   const auto is_ground = [](double from_x_m) {
@@ -83,7 +83,7 @@ TEST_CASE("ground: a strip that has cells of its own is ground") {
 }
 
 //         |
-//         | .          a wall of which the laser sees 40 cm, at the end of the window; a hedge
+//         | .          a wall of which the laser sees 40 cm, at the end of the window; or a hedge
 //  _______|_
 TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") {
   const auto until = [](double begin) {
@@ -96,7 +96,7 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
 }
 
 //
-//           .:'.:'       grass of 10 cm, or rubble; an edging as low; a hedge
+//           .:'.:'       grass of 10 cm, or rubble; an edging as low as that; a hedge
 //  ________|
 TEST_CASE("ground: wide ground is ground however rough it is, as long as it is lower than a step; no wall is as wide") {
   const auto rough = [](double begin, double end, double half_m) {
@@ -112,7 +112,7 @@ TEST_CASE("ground: wide ground is ground however rough it is, as long as it is l
 
 //           |
 //           /
-//         _/           the foot of a wall and the ground before it, in one reading
+//         _/           the foot of a wall and the ground before it, mixed in one reading
 //  ______/
 TEST_CASE(
     "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a kerb is none") {
@@ -153,21 +153,21 @@ TEST_CASE("ground: a bank before an obstacle, or a rough verge, that is wider th
 }
 
 //  o_
-//    --_                laser; rays past the edge of a box, and what they hit, mixed
+//    --_                laser; rays pass the edge of a box, and mix it with what they hit behind
 //      |--_
 //  ____|___--____
 TEST_CASE(
     "ground: a veil behind an obstacle's edge is left to the ground around it, the same slope seen from above is "
     "none") {
   const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
-  CHECK(borne(veil, 1.0f) == 2);  // before it and behind
+  CHECK(borne(veil, 1.0f) == 2);  // the ground before it and behind
   CHECK(borne(veil, 1.04f) == 2);
-  CHECK(borne(veil, 1.1f) == 3);  // as far as ten standard deviations beside it
+  CHECK(borne(veil, 1.1f) == 3);  // ten standard deviations off the rays
   CHECK(borne(veil, 3.0f) == 3);
 }
 
 //        ___
-//   ____|   |_____     from above, too: 60 cm long and wide
+//   ____|   |_____     the same from above: 60 cm long and wide
 TEST_CASE("ground: the top of a box is an obstacle; lower than a stair, or at the window's end, it may be a way") {
   const auto block = [](double height_m, double from_x_m) {
     return
@@ -179,7 +179,7 @@ TEST_CASE("ground: the top of a box is an obstacle; lower than a stair, or at th
 }
 
 //     ||  wall, from end to end of the window     ___|  platform beyond it     ___   platform under the robot, which
-//  ___||___                                   ___|                                |___ sees only its edge
+//  ___||___                                   ___|                                |___ which sees only its edge
 TEST_CASE("ground: what is narrower than shoulders is a wall, unless it may go on where nothing is seen") {
   const auto strip = [](double from_y_m, double to_y_m) {
     return [=](double, double y) { return y > from_y_m && y < to_y_m ? 0.28 : 0.0; };
@@ -193,7 +193,7 @@ TEST_CASE("ground: what is narrower than shoulders is a wall, unless it may go o
   CHECK(borne_from({0.0f, 1.2f, 1.0f}, underfoot) == 2);
 }
 
-//       __ . . .       a pavement along the front of which the laser has looked up to now; a wall, and what it hides
+//       __ . . .       a pavement of which the laser has seen only the front so far; a wall and what it hides
 //  ____|
 TEST_CASE("ground: a high pavement of which the laser has seen the front alone, up to now, is no wall") {
   const auto seen = [](double from_x_m, double to_x_m) {
@@ -204,7 +204,7 @@ TEST_CASE("ground: a high pavement of which the laser has seen the front alone, 
   const Viewpoint driving{0.0f, 1.2f, 1.0f, 2.4f, 2.4f}, standing{0.0f, 1.2f, 1.0f};
   CHECK(borne_from(driving, seen(1.5, 9.0)) == 2);
   CHECK(borne_from(driving, seen(1.5, 2.0)) == 2);   // the ground before it and behind
-  CHECK(borne_from(standing, seen(1.5, 9.0)) == 1);  // it has looked everywhere: a wall that hides what lies behind
+  CHECK(borne_from(standing, seen(1.5, 9.0)) == 1);  // it has looked everywhere: a wall that hides what is behind it
 }
 
 //             ______
@@ -218,7 +218,7 @@ TEST_CASE("ground: the steps of a stair are as small as boxes, and the next one 
 }
 
 //             ___
-//          __|            the last that is seen
+//          __|            the last one that is seen
 //  _______|
 TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, but one that stands apart is") {
   const auto steps = [](double gap_m) {
@@ -233,7 +233,7 @@ TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, 
 }
 
 //               ___
-//            __/          two cells deep, beside a face over which readings spread by 20 cm
+//            __/          two cells deep, beside a face across which readings spread by 20 cm
 //         __|
 //  ______|
 TEST_CASE("ground: a step of a stair beside a face that is blurred is no fringe of it") {
@@ -258,7 +258,7 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
   CHECK(borne(down(0.0)) == 3);
   CHECK(borne([](double x, double) {
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
-        }) == 3);  // up: seen from below
+        }) == 3);  // upward, seen from below
   CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
 }
 
@@ -267,13 +267,13 @@ TEST_CASE(
   const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; };
   const auto ramp = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.4 * (x - 1.4) : -0.2; };
   Viewpoint view{0.8f, 1.2f, 1.0f};
-  CHECK(borne_from(view, down) == 3);  // stood there always: the shadow is narrower
+  CHECK(borne_from(view, down) == 3);  // had it always been there: the shadow is narrower
   view.end_x_m = view.end_y_m = 2.4f;
   CHECK(borne_from(view, down) == 2);
   CHECK(borne_from(view, ramp) == 3);
 }
 
-//     ____ o ->          the robot has driven over the edge, and looks at it no more
+//     ____ o ->          the robot has driven over the edge and no longer sees it
 //    o ->   --__
 //              |___
 TEST_CASE("ground: readings in the shadow of a step stay what they are when the robot has driven over it") {
@@ -294,7 +294,7 @@ TEST_CASE("ground: readings in the shadow of a step stay what they are when the 
   CHECK(borne_after(2.2f) == 2);
 }
 
-/// A place when the window is turned by as many quarters.
+/// A position after the window has been turned by `quarters` quarter turns.
 std::pair<double, double> turned(double x, double y, int quarters) {
   for (int k = 0; k < quarters; ++k) std::swap(x, y), x = 2.4 - x;
   return {x, y};
@@ -363,7 +363,7 @@ TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser 
         }) == 2);
 }
 
-//   ___                seen from above: an edge that bends about the laser. Its veil leans this way and that, and is
+//   ___                seen from above: an edge that bends around the laser. Its veil leans in all directions and is
 //  /  o |              level on the whole
 TEST_CASE("ground: the veil of an edge that bends about the laser is left to both sides, a stair there is ground") {
   const auto down = [](double slope) {
@@ -377,7 +377,7 @@ TEST_CASE("ground: the veil of an edge that bends about the laser is left to bot
 }
 
 //  _____
-//       _              one cell of them: its slope is not known
+//       _              one cell wide: its slope is not known
 //        ______
 TEST_CASE(
     "ground: a strip of a cell in the shadow of a step down is left to both sides, seen from below it is ground") {
@@ -389,13 +389,13 @@ TEST_CASE("ground: a row of cells at the window's end, of which the slope is not
   CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
 
-//           o______     the origin of a cloud, on the pavement's plane: no laser has seen it from there
+//           o______     the origin of a cloud, on the pavement's plane; no laser has seen it from there
 //  ________|
 TEST_CASE("ground: a plane that holds the laser is ground where that is no higher above the ground than a kerb") {
   const auto pavement = [](double kerb_m) { return [=](double x, double) { return x < 1.4 ? -kerb_m : 0.0; }; };
   CHECK(borne(pavement(0.12), 0.0f) == 2);
   CHECK(borne(pavement(0.28), 0.0f) == 2);
-  CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any kerb: a veil
+  CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any curb: a veil
 }
 
 //  o
@@ -428,11 +428,11 @@ TEST_CASE("ground: what is ground is so whatever way the window lies, and on wha
   CHECK(borne_turned(afar, down) == 2);  // a veil
   CHECK(borne_turned(near_by, down) == 3);
   CHECK(borne_turned({0.8f, 1.2f, 1.0f, 2.4f, 2.4f}, down) == 2);  // seen from afar
-  CHECK(borne_turned(afar, [](double x, double y) {                // askew
+  CHECK(borne_turned(afar, [](double x, double y) {                // oblique
           const double d = x + y;
           return d < 2.0 ? 0.0 : d < 2.35 ? -0.1 - 0.36 * (d - 2.175) : -0.2;
         }) == 2);
-  CHECK(borne_turned({0.0f, 1.2f, 1.0f}, [](double x, double y) {  // about the laser
+  CHECK(borne_turned({0.0f, 1.2f, 1.0f}, [](double x, double y) {  // around the laser
           const double r = std::hypot(x, y - 1.2);
           return r < 1.4 ? 0.0 : r < 1.7 ? -0.15 - 0.5 * (r - 1.55) : -0.3;
         }) == 2);
@@ -442,7 +442,7 @@ TEST_CASE("ground: what is ground is so whatever way the window lies, and on wha
             return x < 1.0 ? 0.0 : (lean > 0.0 ? 0.04 : 0.08) + lean * (x - 1.1);
           }) == (lean > 0.0 ? 1 : 2));
   }
-  for (const double post_m : {0.9, 1.2}) {  // beside a kerb's face
+  for (const double post_m : {0.9, 1.2}) {  // beside a curb's face
     CHECK(borne_turned(afar, [=](double x, double y) {
             if (x >= post_m && x < post_m + 0.2 && y >= 0.5 && y < 0.7) return one_of(y, 0.5, 2.0);
             return x < 1.15 ? 0.0 : 0.06;
@@ -455,15 +455,15 @@ TEST_CASE("ground: what is ground is so whatever way the window lies, and on wha
 
 //  ______                       _
 //        |      __        _____| `-|
-//        |_`-__|                   |____       lower than the road behind it, a gutter; higher than the pavement, a
-//                                              kerb stone
+//        |_`-__|                   |____       lower than the road behind it: a gutter; higher than the pavement: a
+//                                              curb stone
 TEST_CASE("ground: what lies in the shadow of a step down, but not between both sides, is no veil of it") {
   const auto strip = [](double z_m) {  // falls a third as steeply as the rays
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.2 * (x - 1.4) : -0.2; };
   };
   CHECK(borne(strip(-0.08)) == 2);  // a veil
   CHECK(borne(strip(-0.23)) == 3);  // a gutter
-  CHECK(borne(strip(0.1)) == 3);    // a kerb stone
+  CHECK(borne(strip(0.1)) == 3);    // a curb stone
 }
 
 TEST_CASE("ground: a strip in the shadow of a step down is a veil however high the ground lies in the map") {
@@ -497,7 +497,7 @@ TEST_CASE("ground: a step that the laser is straight above has no shadow") {
 }
 
 //  ________
-//             \\         what parts a strip from the planes beside it is not seen
+//             \\         what separates a strip from the planes beside it is not seen
 //                 .
 //                     _____
 TEST_CASE("ground: a strip that lies farther from a step's sides than a face is wide is no veil between them") {
@@ -532,7 +532,7 @@ TEST_CASE("ground: on a street that leans, too, a pavement before a wall is no f
 }
 
 //             |
-//          __ |           a ledge before a wall, 20 cm deep; what lies before it is not seen
+//          __ |           a ledge before a wall, 20 cm deep; the ground before it is not seen
 //  ______     |
 TEST_CASE("ground: level readings on a wall are left to the ground, from as high above it on as no kerb is") {
   const auto ledge = [](double ledge_m) {
@@ -574,7 +574,7 @@ TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left t
             0.0f) == 1);
 }
 
-/// A map of this ground. Is the plane at a place, which is ground, one that may be a veil?
+/// For a map of this ground: REQUIREs that the plane at a position is ground. Returns whether it may be a veil.
 template <typename Height>
 bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
@@ -598,8 +598,8 @@ TEST_CASE("ground: what falls half as steeply as the rays from any height may be
   }
 }
 
-//  ____            from far away a slope of 30 cm may be the blurred edge of what lies before it; not if it begins far
-//      __          below or above: then it is not that edge's
+//  ____            from far away a slope of 30 cm may be the blurred edge of the ground before it; not if it begins
+//      __          far below or above, as then it is not the slope of that edge
 //        --__
 TEST_CASE("ground: a slope that a higher step parts from the ground before it is no blurred edge") {
   const int quarters = GENERATE(0, 1, 2, 3);
@@ -644,12 +644,12 @@ TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fr
   CHECK(covered(before, 0.063));
   CHECK_FALSE(covered(before, 0.038));
   CHECK(covered(before, 0.2));
-  CHECK(covered(low, -0.11));          // falls as rays do, but no more steeply than a ramp
-  CHECK_FALSE(covered(before, -0.5));  // a veil: it tells where an edge lies
+  CHECK(covered(low, -0.11));          // falls as the rays do, but no more steeply than a ramp
+  CHECK_FALSE(covered(before, -0.5));  // a veil, which shows where an edge lies
 }
 
 //   ||
-//   ||  ....          what a wall hides is not seen
+//   ||  ....          the ground that a wall hides is not seen
 //  _||______
 TEST_CASE("ground: a wall, whatever way it runs, is left to the ground, also if nothing is seen behind it") {
   const int quarters = GENERATE(0, 1, 2, 3);
@@ -680,7 +680,7 @@ TEST_CASE("ground: a block is no obstacle if a robot has room on it, if it leans
 }
 
 //              _____
-//     _  _    |           two boxes of about one height lead nowhere; two that lie on a platform are steps on it
+//     _  _    |           two boxes of about the same height lead nowhere; beside a platform they are low steps on it
 //  __| || |___|
 TEST_CASE("ground: boxes beside each other are obstacles, low steps on a platform are ways") {
   const auto steps = [](double platform_m) {
@@ -714,7 +714,7 @@ TEST_CASE("ground: a bank before rough grass that is lower than a kerb is no fri
       return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
     };
   };
-  CHECK(borne(before(0.075)) == 3);  // with the grass
+  CHECK(borne(before(0.075)) == 3);  // together with the grass
   CHECK(borne(before(0.1)) == 1);
 }
 
@@ -731,7 +731,7 @@ TEST_CASE("ground: what stands on the ground is measured against the largest pla
   stages.settle();
   CHECK(stages.label_at(2, 12) == platform);
   REQUIRE(stages.label_at(20, 2) != platform);
-  CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells bear the road
+  CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells have the road's label
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {

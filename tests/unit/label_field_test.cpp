@@ -1,5 +1,5 @@
-// Beliefs against the Potts field enumerated in double, and what the field does over time: deferral, refreshing,
-// settling.
+// Beliefs against the Potts field enumerated in double precision, and the behaviour of the field over time: deferral,
+// refreshing, settling.
 #include "curbline/labels/label_field.hpp"
 
 #include <algorithm>
@@ -20,14 +20,14 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// A cell of a tiny map by its place and height.
+/// A cell of a tiny map, by its position and height.
 struct Site {
   int i, j;
   double height_m;
 };
 
-/// Three planes of 0, 8 and 4 cm, learned from the half of a map with y < 1.2 m. The sites are another map, with cells
-/// in the other half only: no region is near them, so that they may lie on any of the planes.
+/// Three planes of 0, 8 and 4 cm, learned from the half of a map with y < 1.2 m. The sites form another map, with cells
+/// in the other half only: no region is near them, so they may lie on any of the planes.
 struct Tiny {
   explicit Tiny(const std::vector<Site>& all) : sites(all), settings(small_settings()), training(settings) {
     Noise noise;
@@ -57,12 +57,12 @@ struct Tiny {
   Counters counters{};
 };
 
-/// Level of the plane that a label stands for.
+/// Level of the plane of a label.
 double height_of(const Tiny& tiny, int label) {
   return tiny.plane(label).z_m;
 }
 
-/// Student t with 6 degrees of freedom about the plane, up to a constant.
+/// Student t with 6 degrees of freedom around the plane, up to a constant.
 double log_node(const Tiny& tiny, const Site& site, int label) {
   const Plane& plane = tiny.plane(label);
   const Cell& cell = tiny.dem.cell(tiny.dem.slot(site.i, site.j));
@@ -73,7 +73,7 @@ double log_node(const Tiny& tiny, const Site& site, int label) {
   return -0.5 * std::log(variance) - 3.5 * std::log(1.0 + residual * residual / (6.0 * variance));
 }
 
-/// Marginals of the field by the sum over all labellings: [site][label].
+/// Marginals of the field, by summation over all labellings: [site][label].
 std::vector<std::array<double, 3>> marginals_by_enumeration(const Tiny& tiny) {
   const auto n = tiny.sites.size();
   struct Pair {
@@ -130,8 +130,8 @@ double worst_difference(const Tiny& tiny) {
   return worst;
 }
 
-// A message is kept to half of 1/32 nat. A belief sums at most four, each of which may carry half as much again from
-// further away: 0.09 nat, which moves a probability by a quarter of it at most.
+// A message is rounded to half of 1/32 nat. A belief sums at most four, each of which may contain half as much again
+// from farther away: 0.09 nat, which changes a probability by a quarter of it at most.
 constexpr double quantisation = 0.09 / 4;
 
 TEST_CASE("label field: on a row of cells one pass gives the exact beliefs") {
@@ -205,7 +205,7 @@ TEST_CASE("label field: a height far from all planes is still given the nearest,
   }
 }
 
-//  ____       _|  a thing on the road, as high as the pavement and higher
+//  ____       _|  an object on the road, as high as the pavement and higher
 //      |_____| |___
 TEST_CASE("label field: the ground below an obstacle is that of the cells around it, however high it is") {
   Stages<small_limits> stages(small_settings());
@@ -326,7 +326,7 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end")
 
 TEST_CASE("label field: a row that every line changes does not starve the others, however many rows are refreshed") {
   Settings settings = small_settings();
-  settings.labels.max_messages = directions * 24;  // those of a row
+  settings.labels.max_messages = directions * 24;  // the messages of one row
   settings.labels.refresh_rows = GENERATE(0, 1, 24);
   REQUIRE(check(settings, Limits{}) == Status::ok);
   const auto stages = std::make_unique<Stages<>>(settings);
@@ -363,7 +363,7 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
 
 TEST_CASE("label field: no cell bears a plane that has died, from the line on that it dies by") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
-  // Two patches out of reach of each other, until the ground between them is seen.
+  // Two patches out of reach of each other until the ground between them is seen.
   const auto see = [&](double from, double to) {
     test::fill(stages->dem, [=](double x, double) { return x < from || x > to ? std::nan("") : 0.0; });
   };
@@ -383,7 +383,7 @@ TEST_CASE("label field: no cell bears a plane that has died, from the line on th
 
 TEST_CASE("label field: what turns out to be no ground is left to the ground beside it in the same line, and back") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
-  // A veil for a laser 1 m up, a slope for one that is higher.
+  // A veil for a laser 1 m up, a slope for a higher one.
   test::fill(stages->dem, [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; });
   const auto own_labels = [&](float laser_m) {
     stages->view.z_m = laser_m;

@@ -1,4 +1,4 @@
-// The arithmetic of beliefs of one cell: what is heard, taken back, kept and said.
+// The arithmetic of one cell's beliefs: what it hears, takes back, keeps and sends.
 #include "curbline/labels/label_site.hpp"
 
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 namespace curbline {
 namespace {
 
-/// Labels 2, 5 and 7, of which the second is `nats` less likely than the first, the third ruled out.
+/// Labels 2, 5 and 7. The second is `nats` less likely than the first, the third is ruled out.
 LabelSite site(double nats) {
   LabelSite s;
   s.set_labels({2, 5, 7});
@@ -22,7 +22,7 @@ TEST_CASE("label site: what it has heard can be taken back to the bit, in any or
   const LabelSite::Message first{31, 12, 0}, second{3, 48, 9};
   s.hear(others, first, false, 1, sum);
   s.hear(s.label, second, true, 1, sum);
-  CHECK(sum == LabelSite::Heard{15, 48, 40});  // of 2: 12 + 3, of 5: 48, of 7: 31 + 9
+  CHECK(sum == LabelSite::Heard{15, 48, 40});  // label 2: 12 + 3, label 5: 48, label 7: 31 + 9
   s.hear(others, first, false, -1, sum);
   CHECK(sum == LabelSite::Heard{3, 48, 9});
   s.hear(s.label, second, true, -1, sum);

@@ -1,5 +1,5 @@
-// Times of lines that bear the time of their arrival, by three lasers: a turn of 25, 20 and 13.3 ms. Delays are
-// exponential, as those of a host are: never below 0, most of them short, few of them long.
+// Times of lines that are stamped on arrival, from three lasers with turns of 25, 20 and 13.3 ms. Delays are
+// exponential, like those of a host: never below 0, mostly short, rarely long.
 #include "curbline/intake/line_clock.hpp"
 
 #include <algorithm>
@@ -34,13 +34,13 @@ LineClock clock_of(const Laser& laser) {
   return clock;
 }
 
-/// A line that was measured at one time and came at another.
+/// A line with the times of its measurement and its arrival.
 struct Line {
   std::int64_t measured_ns, stamp_ns;
 };
 
-/// Lines late by `mean_ms`, of whole microseconds as logs have them, in the order in which they came; each is lost with
-/// a probability.
+/// Lines that are late by `mean_ms` on average, in whole microseconds as in logs, in the order of their arrival. Each
+/// is lost with probability `lost`.
 std::vector<Line> late_lines(const Laser& laser, double mean_ms, double lost = 0.0, int count = 400) {
   std::mt19937 random(7);
   std::vector<Line> out;
@@ -56,7 +56,7 @@ std::vector<Line> late_lines(const Laser& laser, double mean_ms, double lost = 0
   return out;
 }
 
-/// By how much times differ from when lines were measured, and how many lines have none.
+/// Deviations of the times from those of the measurements, and the number of lines without a time.
 struct Errors {
   std::vector<std::int64_t> off_ns;  ///< ascending
   int left_out = 0;
@@ -65,7 +65,7 @@ struct Errors {
   }
 };
 
-/// After the first lines, which the clock needs to learn the turns.
+/// Leaves out the first lines, which the clock needs to learn the turns.
 Errors errors_of(const Laser& laser, const std::vector<Line>& lines) {
   LineClock clock = clock_of(laser);
   Errors out;
@@ -227,7 +227,7 @@ TEST_CASE(
 TEST_CASE("line clock: a line that had to wait for a turn and more is not mapped at a wrong one a second time") {
   LineClock clock = clock_of(utm30lx);
   for (int i = 0; i < 100; ++i) clock.time_of(t0 + i * 25 * ms);
-  const auto bunch = [&](int first) {  // three at once, with the last
+  const auto bunch = [&](int first) {  // three arrive together with the last
     std::vector<std::optional<std::int64_t>> times;
     for (int i = first; i < first + 3; ++i) times.push_back(clock.time_of(t0 + (first + 2) * 25 * ms + (i - first)));
     return times;

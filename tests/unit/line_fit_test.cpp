@@ -35,7 +35,7 @@ TEST_CASE("line fit: points count by their weight, and no more once they are rem
   CHECK(fit.squares() == Approx(weighed.squares()).epsilon(1e-4));
   fit.remove(4.0f, 0.3f, 2.0f);
   CHECK(fit.squares() == Approx(before).epsilon(0.01));
-  CHECK(before == Approx(4 * 0.01 * 0.01 * 0.2).epsilon(0.01));  // (1, 1, -1, -1) about its slope: a fifth is left
+  CHECK(before == Approx(4 * 0.01 * 0.01 * 0.2).epsilon(0.01));  // (1, 1, -1, -1) around its slope: a fifth is left
 }
 
 TEST_CASE("line fit: a line is known the less, the farther from its points") {

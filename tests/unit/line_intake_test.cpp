@@ -1,4 +1,4 @@
-// A line on its way in: what is refused before it changes anything, and what the map is told.
+// How a line is taken in: what is refused before it changes anything, and what the map is told.
 #include "curbline/intake/line_intake.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ using test::Stages;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// A laser with 11 beams, 1 m above a flat ground, that looks down by half a radian unless its servo nods.
+/// A laser with 11 beams, 1 m above flat ground, that looks down by half a radian unless its servo nods.
 Settings settings_of(bool nods, bool drives) {
   Settings s = test::small_settings();
   s.laser.beams = 11;
@@ -74,7 +74,7 @@ TEST_CASE("line intake: points lie where the pose that was placed has them") {
   CHECK(middle.z_m == Approx(1.0 - 2 * std::sin(0.5)));
 }
 
-/// Of a robot that stands; the last two have stepped.
+/// Poses of a stationary robot; the last two have stepped.
 void add_poses(Intake& in, float step_m) {
   for (int n = 0; n < 8; ++n) REQUIRE(in.intake->add_pose({n * 20 * ms, 0.5f, 1.0f, n < 6 ? 0.0f : step_m}));
 }
@@ -92,7 +92,7 @@ TEST_CASE("line intake: ground above the ceiling is kept as long as it is open w
   CHECK(stepped.work->projected.outside() == 0);
   REQUIRE(stepped.work->projected.points().size() == 11);
   for (const Point& p : stepped.work->projected.points()) CHECK(p.z_m > 0.6f);
-  REQUIRE(stands.project(141 * ms, 0.0f));  // the ground lies 4 cm above that
+  REQUIRE(stands.project(141 * ms, 0.0f));  // the ground is 4 cm above that
   CHECK(stands.work->projected.points().empty());
   CHECK(stands.work->projected.outside() == 11);
 }
@@ -101,12 +101,12 @@ TEST_CASE("line intake: ground that a localisation has stepped to above the ceil
   Settings settings = settings_of(false, true);
   settings.pose = test::noisy_poses();
   Intake in(settings);
-  test::fill(in.stages->dem, [](double, double) { return 0.043; });  // of 41 to 46 mm, as the laser sees it
+  test::fill(in.stages->dem, [](double, double) { return 0.043; });  // the laser sees it at 41 to 46 mm
   in.stages->settle();
   add_poses(in, 0.3f);
   REQUIRE(in.place(141 * ms) == Status::ok);
   REQUIRE(in.intake->pose_offset().undecided());
-  REQUIRE(in.project(141 * ms, 0.343f));  // some of the line lies below, and tells
+  REQUIRE(in.project(141 * ms, 0.343f));  // part of the line is below and decides
   CHECK_FALSE(in.intake->pose_offset().undecided());
   CHECK(in.work->projected.outside() == 0);
   REQUIRE(in.work->projected.points().size() == 11);

@@ -1,4 +1,4 @@
-// Beams to points: against the chain of transforms in double, and their variance against simulated errors.
+// Beams to points: against the chain of transforms in double precision, and their variance against simulated errors.
 #include "curbline/intake/line_projection.hpp"
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@ constexpr Limits limits{.beams = 361, .tilt_samples = 16};
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t t0 = 1'290'682'980'000'000'000;
 
-/// A projection with what it needs around it.
+/// A projection with everything that it needs.
 struct Bench {
   explicit Bench(const Settings& s) : settings(s) {
     projection.init(s);
@@ -70,7 +70,7 @@ Eigen::Isometry3d transform(const MountSettings& m) {
   return transform(m.x_m, m.y_m, m.z_m, m.roll_rad, m.pitch_rad, m.yaw_rad);
 }
 
-/// p_base = T_base_tilt R_y(tilt) T_tilt_laser p_laser, in double.
+/// p_base = T_base_tilt R_y(tilt) T_tilt_laser p_laser, in double precision.
 Eigen::Vector3d in_base(const Settings& s, double range, double bearing, double tilt) {
   const Eigen::Vector3d p_laser(range * std::cos(bearing), range * std::sin(bearing), 0.0);
   return transform(s.tilt.T_base_tilt) *
@@ -103,7 +103,7 @@ TEST_CASE("line projection: any mount, tilt and bearing give the point of the ch
     const auto bench = std::make_unique<Bench>(s);
     std::vector<float> ranges(361);
     for (float& r : ranges) r = static_cast<float>(0.2 + 9.0 * noise.uniform());
-    bench->project(ranges);  // what stands alone is left out once
+    bench->project(ranges);  // an isolated echo is left out once
     const auto points = bench->project(ranges);
     REQUIRE(points.size() == 361);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -166,7 +166,7 @@ TEST_CASE("line projection: a beam's point goes where the beams beside it have i
   ranges[100] = 3.05f;                                                          // by more than chance: something else
   for (int i = 250; i < 361; ++i) ranges[static_cast<std::size_t>(i)] = 3.05f;  // another surface
   ranges[20] = std::numeric_limits<float>::quiet_NaN();
-  bench->project(ranges);  // what stands alone is left out once
+  bench->project(ranges);  // an isolated echo is left out once
   const auto points = bench->project(ranges);
   REQUIRE(points.size() == 360);
   const auto shift_m = [&](std::size_t beam) {
@@ -179,7 +179,7 @@ TEST_CASE("line projection: a beam's point goes where the beams beside it have i
   for (const std::size_t alone : {100u, 99u, 101u, 249u, 250u, 0u, 360u, 19u, 21u}) CHECK(shift_m(alone) == 0.0);
 }
 
-/// Lines of a laser of 10 mm that looks at a wall all around.
+/// Lines of a laser with noise of 10 mm that looks at a wall all around.
 struct Alone {
   Alone() : bench(settings()) {}
   static Settings settings() {
@@ -189,7 +189,7 @@ struct Alone {
     s.laser.range_sd_m = 0.01f;
     return s;
   }
-  /// Is the beam's point left, of a line of level ranges but for some beams?
+  /// Projects a line of level ranges except for the given beams. Is the beam's point kept?
   bool kept(std::size_t beam, std::initializer_list<std::pair<std::size_t, float>> others) {
     std::vector<float> ranges(361, 3.0f);
     for (const auto& [i, range_m] : others) ranges[i] = range_m;
@@ -209,7 +209,7 @@ TEST_CASE("line projection: a drop of rain, dust or a flash of the sun, in a sin
   CHECK(alone->kept(100, {}));
   CHECK_FALSE(alone->kept(100, {{100, range_m}}));
   CHECK(alone->bench.counters.echoes_alone == 1);
-  CHECK(alone->kept(100, {}));  // nor is there anything left of it
+  CHECK(alone->kept(100, {}));  // nothing of it remains
   CHECK_FALSE(alone->kept(100, {{100, range_m}}));
   CHECK(alone->bench.counters.echoes_alone == 2);
 }
@@ -241,7 +241,7 @@ TEST_CASE("line projection: what two beams see, chance, an edge, and what stands
 }
 
 TEST_CASE("line projection: where the ground ceases to be seen the points of a cell are not all too high") {
-  // Straight ahead, 70 degrees down from 1.2 m: the ground is seen just beyond a cell's border, from where noise brings
+  // Straight ahead, 70 degrees down from 1.2 m: the ground is seen just beyond a cell's border, from where noise moves
   // one point in a hundred into the cell before.
   Settings s = base_settings();
   s.laser.range_sd_m = 0.012f;
@@ -293,7 +293,7 @@ TEST_CASE("line projection: while the robot moves each beam starts from the pose
   s.tilt.fixed_tilt_rad = 0.4f;
   s.tilt.T_base_tilt = {0.3f, 0.1f, 0.9f, 0.02f, -0.03f, 0.1f};
   const auto bench = std::make_unique<Bench>(s);
-  // From (4, -2) heading 30 deg to 5 cm further on, heading 31 deg.
+  // From (4, -2) with heading 30 deg to 5 cm farther on with heading 31 deg.
   const Eigen::Quaterniond q0(Eigen::AngleAxisd(0.5236, Eigen::Vector3d::UnitZ())),
       q1(Eigen::AngleAxisd(0.5411, Eigen::Vector3d::UnitZ()));
   const Eigen::Vector3d c0(4.0, -2.0, 0.1), c1(4.043, -1.975, 0.11);
@@ -311,7 +311,7 @@ TEST_CASE("line projection: while the robot moves each beam starts from the pose
   }
 }
 
-/// Variance of a beam's height when every error that the settings name is drawn 20000 times.
+/// Variance of a beam's height over 20000 draws of all errors that the settings name.
 double simulated_variance(const Settings& s, std::size_t beam, double range, double tilt, double rate) {
   Noise noise(3);
   const int trials = 20000;
@@ -335,7 +335,7 @@ double simulated_variance(const Settings& s, std::size_t beam, double range, dou
   return sum2 / trials - sum / trials * sum / trials;
 }
 
-/// Errors of one kind at a time, then all at once.
+/// Errors of one kind at a time, finally all together.
 Settings with_errors(int kind) {
   Settings s = base_settings();
   s.tilt.T_base_tilt = {0.3f, -0.2f, 0.9f, 0.05f, 0.1f, 0.2f};
@@ -411,7 +411,7 @@ TEST_CASE("line projection: of the points those within the bounds are kept as th
   Noise noise;
   std::vector<float> ranges(361);
   for (float& r : ranges) r = static_cast<float>(0.2 + 9.0 * noise.uniform());
-  bench.project(ranges);  // what stands alone is left out once
+  bench.project(ranges);  // an isolated echo is left out once
   const std::vector<Point> all = bench.project(ranges);
   REQUIRE(all.size() == ranges.size());
   CHECK(bench.outside == 0);

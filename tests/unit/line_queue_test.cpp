@@ -1,4 +1,4 @@
-// Lines that wait for their tilt: when each is given out, in which order, and what becomes of those for which there is
+// Lines that wait for their tilt: when each is given out, in which order, and what happens to those for which there is
 // no room.
 #include "curbline/intake/line_queue.hpp"
 
@@ -29,7 +29,7 @@ Queue queue(const TiltSettings& tilt = {}, const PoseSettings& pose = {}) {
   return out;
 }
 
-/// Line k, of time t0 + 25 k ms, whose ranges tell its number.
+/// Line k at time t0 + 25 k ms, with ranges that show its number.
 struct Line {
   explicit Line(int number, std::size_t beams = 11) : ranges_m(beams, static_cast<float>(number)), k(number) {}
   ScanLine line() const { return {t0 + 25 * ms * k, ranges_m}; }
@@ -101,7 +101,7 @@ TEST_CASE("line queue: a robot that drives takes a line when a pose is at or aft
   CHECK(q.pop({.tilt_ns = after, .pose_ns = after}, t0, 0.0f));
   CHECK(q.counters().covered == 1);
   q.push(line.line(), t0);
-  CHECK(q.pop({.tilt_ns = after}, t0 + 51 * ms, 0.0f));  // a robot whose odometry is silent goes on without
+  CHECK(q.pop({.tilt_ns = after}, t0 + 51 * ms, 0.0f));  // a robot whose odometry is silent continues without it
   CHECK(q.counters().overdue == 1);
 
   TiltSettings fixed;
@@ -115,7 +115,7 @@ TEST_CASE("line queue: a robot that drives takes a line when a pose is at or aft
 TEST_CASE("line queue: what has waited too long is given out without its tilt, and counted") {
   Queue q = queue();
   const Line line(0);
-  q.push(line.line(), 7 * ms);  // arrival is of another clock than the line
+  q.push(line.line(), 7 * ms);  // the arrival is on another clock than the line
   CHECK_FALSE(q.pop({}, 56 * ms, 0.0f));
   CHECK(q.pop({}, 58 * ms, 0.0f));
   CHECK(q.counters().overdue == 1);

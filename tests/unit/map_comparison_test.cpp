@@ -1,4 +1,4 @@
-// What a line says against ground that an earlier sweep has mapped: which of its points are asked, and of what.
+// A line compared with ground that an earlier sweep has mapped: which of its points count, and for what.
 #include "curbline/intake/map_comparison.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ float slope_m(float x_m) {
   return 0.1f * x_m;
 }
 
-/// A slope that a sweep has seen; the next one begins, of which every line is late by lag_s.
+/// A slope that one sweep has seen. In the next sweep every line is late by lag_s.
 struct Late {
   Late() {
     test::fill(stages->dem, [](double x, double) { return static_cast<double>(slope_m(static_cast<float>(x))); });
@@ -36,7 +36,7 @@ struct Late {
     for (std::uint32_t n = 1; n <= 20; ++n) {
       latency.begin_line(1.2f - 0.01f * static_cast<float>(n), -rate_rad_s, n);
       auto line = std::make_unique<ProjectedLine<small_limits>>();
-      const float x_m = 0.1f * static_cast<float>(i) + 0.02f;  // not where the cell's points lie: the slope tells
+      const float x_m = 0.1f * static_cast<float>(i) + 0.02f;  // off the cell's points, so that the slope matters
       for (int j = 0; j < 24; ++j) {
         Point p{x_m, 0.1f * static_cast<float>(j) + 0.05f, slope_m(x_m), 1e-4f};
         p.z_m -= growth_m_s * (lag_s - latency.offset_s());
@@ -81,7 +81,7 @@ TEST_CASE("map comparison: a point is compared where it lies, not where its cell
     auto line = std::make_unique<ProjectedLine<small_limits>>();
     for (int j = 0; j < 24; ++j) {
       Point p{1.22f, 0.1f * static_cast<float>(j) + 0.08f, 0.0f, 1e-4f};
-      p.shift_x_m = 0.03f;  // the beams beside its own have it farther on
+      p.shift_x_m = 0.03f;  // where the beams beside its own place it
       p.shift_y_m = -0.02f;
       p.z_m = ground_m(p.x_m, p.y_m) - growth_m_s * (lag_s - latency.offset_s());
       p.growth_m_s = growth_m_s;
@@ -132,7 +132,7 @@ TEST_CASE("map comparison: points above the ceiling and beside the window are as
   CHECK(outside.latency.offset_s() == 0.0f);
 }
 
-/// Level ground seen before poses jump by 2 cm, and lines measured as they do.
+/// Level ground seen before poses jump by 2 cm, and lines measured during the jump.
 struct Jumping {
   Jumping() {
     test::fill(stages->dem, [](double, double) { return 0.0; });
@@ -145,7 +145,7 @@ struct Jumping {
   }
   using Line = ProjectedLine<small_limits>;
   using JumpLine = MapComparison<small_limits>::JumpLine;
-  /// A line across, with its points so high.
+  /// A line across, with its points at this height.
   static std::unique_ptr<Line> line(float above_m, float slope_y = 0.0f) {
     auto line = std::make_unique<Line>();
     for (int j = 0; j < 24; ++j) {

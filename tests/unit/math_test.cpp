@@ -1,4 +1,4 @@
-// Errors of the library's own functions against std:: in double, over the ranges that math.hpp states.
+// Errors of the library's own functions against std:: in double precision, over the ranges that math.hpp states.
 #include "curbline/math.hpp"
 
 #include <algorithm>

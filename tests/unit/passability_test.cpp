@@ -117,7 +117,7 @@ TEST_CASE("passability: what spreads within a cell by more than the step is in t
     stages.settle();
     return passable(stages.dem, stages.mixture, stages.field, 12, 12, {max_step_m, 0.1f});
   };
-  CHECK(with_spread(0.03, 0.02f));  // of a laser of 1 cm
+  CHECK(with_spread(0.03, 0.02f));  // the laser has noise of 1 cm
   CHECK(with_spread(0.16, 0.17f));
   CHECK_FALSE(with_spread(0.16, 0.13f));
 }

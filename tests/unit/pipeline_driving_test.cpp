@@ -1,4 +1,4 @@
-// The pipeline of a robot that drives, or that jumps: the window follows, and curbs stay where they are in the map.
+// The pipeline of a robot that drives, or that jumps: the window follows, and curbs keep their position in the map.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -24,8 +24,8 @@ float length_m(const Curb& curb) {
   return std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m);
 }
 
-/// A drive at 0.25 m/s over a step: how far the curb strayed from it where its whole width was told as a step. Ahead is
-/// along the map's x axis, or turned from it by heading_rad.
+/// A drive at 0.25 m/s over a step, and the largest errors of the curb while its whole width was reported as a step.
+/// Ahead is along the map's x axis, or turned from it by heading_rad.
 struct Drive {
   std::unique_ptr<FullPipeline> pipeline;
   double worst_place_m = 0.0, worst_height_m = 0.0;
@@ -79,13 +79,13 @@ TEST_CASE("pipeline: while the robot drives the window follows and the curb stay
   CHECK(d.sightings > 100);
   CHECK(d.worst_place_m < 0.1);
   CHECK(d.worst_height_m < 0.02);
-  // The window begins at the robot, to half a block.
+  // The window begins at the robot, to within half a block.
   CHECK(d.pipeline->dem().origin_x_m() == Approx(4.0).margin(0.21));
   CHECK(d.pipeline->dem().origin_y_m() == Approx(-2.0).margin(1e-4));
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
       const bool valid = d.pipeline->dem().cell(d.pipeline->dem().slot(i, j)).valid();
-      CHECK((d.pipeline->label(i, j) != no_label) == valid);  // nothing is left of cells that were here before
+      CHECK((d.pipeline->label(i, j) != no_label) == valid);  // nothing remains of cells that were here before
     }
   }
 }
@@ -137,12 +137,12 @@ TEST_CASE("pipeline: when the window moves on to another plane, however large, a
   add_tilts(*pipeline, 0);
   REQUIRE(pipeline->observe({NoddingLaser::ns(0.0), {}}) == Status::ok);
   observe(4.0, 6.4);
-  CHECK(pipeline->label(6, 20) == before);  // at the same place
+  CHECK(pipeline->label(6, 20) == before);  // at the same position
   CHECK(pipeline->label(30, 20) != before);
 }
 
 TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when poses do") {
-  const Drive d = drive({3.2, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without
+  const Drive d = drive({3.2, 0.12}, 600, driving_settings(), 300, 350);  // 1.25 s without poses
   CHECK(d.pipeline->counters().lines_dropped == 46);                      // the first ones are extrapolated, for 0.1 s
   CHECK(d.sightings > 400);
   CHECK(d.worst_place_m < 0.1);
@@ -150,7 +150,7 @@ TEST_CASE("pipeline: lines without a pose are dropped, and the map goes on when 
 }
 
 TEST_CASE("pipeline: with both tasks apart the window may move before labels follow") {
-  // Lines are taken in at their rate, inference comes every twentieth time.
+  // Lines are taken in at their own rate, inference runs every twentieth time.
   const auto pipeline = started(driving_settings());
   NoddingLaser laser;
   const auto x = [](double time_s) { return 0.25 * time_s; };
@@ -182,7 +182,8 @@ TEST_CASE("pipeline: a pose far off moves the window there and back, and the map
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
 }
 
-/// How many lines of a drive over level ground, at 1 m/s, tell of a step. lag_s(time) is how late a servo's reading is.
+/// Number of lines with a step in view during a drive over level ground at 1 m/s. lag_s(time) is the delay of a servo
+/// reading.
 template <typename Lag>
 int lines_with_steps(FullPipeline& pipeline, int lines, Lag&& lag_s) {
   NoddingLaser laser;
@@ -222,8 +223,8 @@ TEST_CASE("pipeline: while the robot drives, a servo that is late by another tim
   CHECK(lines_with_steps(*pipeline, 2000, of_its_sweep) == 0);
 }
 
-/// Drives over level ground at 0.5 m/s with a localisation that thinks better of itself: change(line, z_m, pitch_rad)
-/// before each. Calls seen(pipeline) after each.
+/// Drives over level ground at 0.5 m/s with a localisation that corrects itself: calls change(line, z_m, pitch_rad)
+/// before each line and seen(pipeline) after it.
 template <typename Change, typename Seen>
 void drive_with_localisation(FullPipeline& pipeline, int lines, Change&& change, Seen&& seen) {
   NoddingLaser laser;
@@ -278,9 +279,9 @@ TEST_CASE("pipeline: tells by what its map lies off the poses when a localisatio
   CHECK(after_m == Approx(-0.02).margin(0.003));
 }
 
-/// Drives over level ground at 0.5 m/s and, after five seconds, up by 16 cm in a twentieth of a second. Its
-/// localisation steps by so much before, on level ground, and by so much while the robot climbs. What the map lies off
-/// the poses by in the end.
+/// Drives over level ground at 0.5 m/s and, after five seconds, up by 16 cm within a twentieth of a second. The
+/// localisation steps by before_m on the level ground, and by step_m while the robot climbs. Returns the final offset
+/// of the map from the poses.
 float offset_after_climb_m(float before_m, float step_m) {
   constexpr double level_s = 2.5, climb_s = 5.0;
   const auto pipeline = with_noisy_poses();
@@ -311,9 +312,9 @@ TEST_CASE("pipeline: of a localisation that was never found to step a climb is t
   CHECK(offset_after_climb_m(0.0f, 0.03f) == 0.0f);
 }
 
-/// A pipeline that has been driven over level ground at 0.5 m/s until poses rise while a line is measured, and the
-/// points of that line. Heights of the last poses are given, 80 in a second; the last is later than the line. The robot
-/// itself rises to robot_m before it.
+/// A pipeline driven over level ground at 0.5 m/s until poses rise while a line is measured, and the points of that
+/// line. The heights of the last poses are given, 80 a second; the last pose is later than the line. The robot itself
+/// rises by robot_m before the line.
 struct Rise {
   std::unique_ptr<FullPipeline> pipeline = with_noisy_poses();
   std::vector<Point> points;
@@ -328,7 +329,7 @@ Rise rise(const std::vector<float>& last_poses_m, double robot_m) {
   for (int line = 0; line <= last_line; ++line) {
     const double t = NoddingLaser::line_time_s(line);
     add_tilts(*out.pipeline, line);
-    for (int k = 2 * line; k <= 2 * line + 1; ++k) {  // 3 ms before the line, of 6 ms, and as much after it
+    for (int k = 2 * line; k <= 2 * line + 1; ++k) {  // the line takes 6 ms; they are 3 ms before and 3 ms after it
       const double time_s = 0.0125 * k - 0.003;
       const float z_m = k < first ? 0.0f : last_poses_m[static_cast<std::size_t>(k - first)];
       REQUIRE(out.pipeline->add_pose({NoddingLaser::ns(time_s), static_cast<float>(x(time_s)), 0.0f, z_m}));
@@ -351,7 +352,7 @@ TEST_CASE("pipeline: a line is left out of the map if a localisation has stepped
   CHECK(bumped.pipeline->counters().lines_off_map == 0);
 }
 
-/// Of a robot that climbs: the last of its poses, and how high it is half way between the last two.
+/// Poses of a climbing robot: the last ones, and its height halfway between the last two.
 const std::vector<float> climb{0.05f, 0.1f};
 constexpr double half_way_m = 0.075;
 
@@ -360,7 +361,7 @@ TEST_CASE(
   const Rise climbs = rise(climb, half_way_m);
   REQUIRE(climbs.points.size() > 200);
   CHECK(climbs.pipeline->counters().lines_off_map == 0);
-  const float jump_m = 0.1f - 0.05f - 0.05f / 4;  // off where the four poses before it lead
+  const float jump_m = 0.1f - 0.05f - 0.05f / 4;  // relative to where the four poses before it lead
   CHECK(std::all_of(climbs.points.begin(), climbs.points.end(),
                     [&](const Point& p) { return p.variance_m2 > square(jump_m) / 6; }));
 }
@@ -371,8 +372,9 @@ TEST_CASE("pipeline: a line that is measured while the robot climbs is left out 
   CHECK(late.pipeline->counters().lines_off_map == 1);
 }
 
-/// What a pipeline tells line by line of a drive at 0.5 m/s that begins with line `first`, up to a step, with a servo
-/// that is late, a localisation that steps after 100 lines and after 180, and a robot that climbs from the 150th on.
+/// All that a pipeline reports, line by line, during a drive at 0.5 m/s that begins with line `first`, up to a step.
+/// The servo is late, the localisation steps after 100 and after 180 lines, and the robot climbs from the 150th line
+/// on.
 std::vector<float> told_on_the_way(FullPipeline& pipeline, int first, int lines) {
   std::vector<float> told;
   NoddingLaser laser;

@@ -1,4 +1,4 @@
-// The whole way from scan lines to curbs: what is refused, what is survived, and what stays the same.
+// The whole chain from scan lines to curbs: what is refused, what is survived, and what stays the same.
 #include "curbline/pipeline.hpp"
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ using test::Street;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
 
-/// Takes lines [first, last) of a robot that stands before a street.
+/// Takes lines [first, last) of a robot that stands in front of a street.
 void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, int first, int last) {
   for (int line = first; line < last; ++line) {
     add_tilts(pipeline, line);
@@ -37,7 +37,7 @@ void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, in
   }
 }
 
-/// All that curbs are but their numbers, which tell how often they were traced.
+/// Everything about curbs except their numbers, which depend on how often they were traced.
 std::vector<char> bytes(std::span<const Curb> curbs) {
   std::vector<char> out;
   for (const Curb& c : curbs) {
@@ -71,8 +71,8 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   const Curb& curb = longest(pipeline->curbs());
   CHECK(curb.kind == (step > 0.0 ? CurbKind::step_up : CurbKind::step_down));
   CHECK(curb.height_m == Approx(step).margin(4 * curb.height_sd_m + 0.005));
-  // Half a cell; behind a step down the ground is hidden for |step| * 2 m / 1 m, and the border lies in the gap's
-  // middle.
+  // Half a cell; behind a step down the ground is hidden for |step| * 2 m / 1 m, and the border lies in the middle of
+  // the gap.
   const double hidden = step < 0.0 ? -step * 2.0 : 0.0;
   CHECK(curb.x0_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
   CHECK(curb.x1_m == Approx(2.0 + 0.5 * hidden).margin(0.05 + 0.5 * hidden));
@@ -80,7 +80,7 @@ TEST_CASE("pipeline: a step ahead is found with its place, height and direction 
   CHECK(pipeline->counters().lines == 200);
 }
 
-//           ___      35 cm wide; what lies beyond is not seen
+//           ___      35 cm wide; nothing beyond it is seen
 //          |
 //  ________|
 TEST_CASE("pipeline: a narrow top is a wall's for a robot that stands, for one that drives it may be a pavement's") {
@@ -155,7 +155,7 @@ TEST_CASE("pipeline: rain in one beam of fifty moves no curb, makes none, and ta
 
 TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatever the robot takes") {
   const auto pipeline = started();
-  std::vector<Point> face;  // of a kerb, from x = 1.2 to 1.5 m
+  std::vector<Point> face;  // of a curb, from x = 1.2 to 1.5 m
   for (float x = 0.01f; x < 1.5f; x += 0.02f) {
     for (float y = -1.0f; y < 1.0f; y += 0.02f) face.push_back({x, y, x < 1.2f ? 0.0f : 0.4f * (x - 1.2f), 1e-4f});
   }
@@ -181,7 +181,7 @@ float with_front(float range_m, int beam, int line) {
   return hit ? std::min(range_m, static_cast<float>(to_front_m)) : range_m;
 }
 
-/// Cells between the robot and the step, straight ahead, on which it may drive.
+/// Number of passable cells between the robot and the step, straight ahead.
 int passable_ahead(const FullPipeline& pipeline) {
   int out = 0;
   for (int i = 10; i < 18; ++i) {
@@ -209,7 +209,7 @@ TEST_CASE("pipeline: who has stood before a robot that stands, and gone, is forg
     }
     REQUIRE(pipeline->take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges}) == Status::ok);
   }
-  CHECK(passable_ahead(*pipeline) < free - 6);  // the front's own cells are not
+  CHECK(passable_ahead(*pipeline) < free - 6);  // the front's own cells are not passable
   stand(*pipeline, laser, street, before + stays, before + stays + 8 * sweep);
   CHECK(passable_ahead(*pipeline) == free);
   CHECK(told().height_m == Approx(0.12).margin(0.01));
@@ -375,8 +375,8 @@ TEST_CASE("pipeline: bad data leave no trace: the curbs are the same to the bit"
 TEST_CASE("pipeline: tilt readings that are damaged in the first sweep leave no wrong latency behind") {
   const auto pipeline = started();
   NoddingLaser laser;
-  // The reading before every eighth line of the first 2.5 s runs ahead by 0.3 s: from it to the next the servo goes
-  // back.
+  // The reading before every eighth line of the first 2.5 s is ahead by 0.3 s, so that from it to the next the servo
+  // goes back.
   const auto lag_s = [](double time_s) {
     const double line = (time_s + 0.005) / NoddingLaser::line_s;
     const bool before_line = std::abs(line - std::round(line)) < 0.01;
@@ -571,7 +571,7 @@ TEST_CASE("pipeline: a damaged tilt reading leaves no wrong latency where readin
   NoddingLaser laser;
   for (int line = 0; line < 500; ++line) {
     const double time_s = NoddingLaser::line_time_s(line);
-    if (line % 2 == 0) {  // at 20 Hz; lines at 40 Hz
+    if (line % 2 == 0) {  // at 20 Hz; lines come at 40 Hz
       for (const double t : {time_s, time_s + 0.05}) {
         const double ahead_s = line == 100 ? 0.3 : 0.0;
         pipeline->add_tilt({NoddingLaser::ns(t), static_cast<float>(NoddingLaser::tilt_rad(t + ahead_s))});
@@ -620,7 +620,7 @@ TEST_CASE("heap count: it sees an allocation") {
 
 TEST_CASE("heap count: it sees malloc and what Eigen asks for") {
   const long before = test::heap_count();
-  void* volatile p = std::malloc(16);  // volatile: the pair may not be optimised away
+  void* volatile p = std::malloc(16);  // volatile: otherwise the pair may be optimised away
   CHECK(test::heap_count() == before + 1);
   std::free(p);
   const Eigen::MatrixXf matrix = Eigen::MatrixXf::Zero(20, 20);

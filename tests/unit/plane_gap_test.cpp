@@ -9,8 +9,8 @@
 namespace curbline {
 namespace {
 
-/// Points as many a metre on a near plane from 0 to `from` and a far one from `to` on, 1 apart, `face` times as many on
-/// the slope between; what the cell from k to k + 1 holds of them.
+/// A near plane from 0 to `from` and a far one from `to` on, 1 apart, with equal densities of points, and `face` times
+/// that density on the slope between. cell(k) is what the cell from k to k + 1 contains of them.
 struct Ground {
   double from, to, face;
 
@@ -28,7 +28,7 @@ struct Ground {
     add(to, 9, 1, [](double) { return 1.0; });
     return {static_cast<float>(heights / points), static_cast<float>(places / points)};
   }
-  /// Of three cells.
+  /// Sum over three cells.
   double middle() const {
     double before = 0;
     for (int k = 0; k < 3; ++k) before += seen(k) ? before_middle(cell(k)) : 0.5;
@@ -63,7 +63,7 @@ TEST_CASE("plane gap: a few readings in what is hidden, a mixture of both sides,
 TEST_CASE("plane gap: a vertical face stands where it does in a cell, however many points it shows") {
   for (const double edge : {0.05, 0.3, 0.5, 0.8}) {
     for (const double face : {0.5, 3.0}) {
-      const double points = 1 + face;  // a cell's, of ground and face
+      const double points = 1 + face;  // of a cell, on the ground and the face
       const double share = (1 - edge + face / 2) / points, centroid = (0.5 + face * edge) / points;
       CHECK(before_middle({static_cast<float>(share), static_cast<float>(centroid)}) == Approx(edge).margin(1e-5));
     }

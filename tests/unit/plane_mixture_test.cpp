@@ -1,4 +1,5 @@
-// Labels of planes over time: who keeps its label, who is born, who dies, and who wins when there are too many.
+// Labels of planes over time: which planes keep their label, appear or disappear, and which win when there are too
+// many.
 #include "curbline/planes/plane_mixture.hpp"
 
 #include <array>
@@ -38,14 +39,14 @@ TEST_CASE("plane mixture: each large region becomes a plane with its level and s
   REQUIRE(alive(*stages) == 2);
   const Plane& low = stages->mixture.plane(stages->label_at(12, 3));
   const Plane& high = stages->mixture.plane(stages->label_at(12, 20));
-  // 288 cells of 4 points with noise of 3 mm; cells know nothing of their share of slope within.
+  // 288 cells of 4 points with noise of 3 mm; the heights of cells ignore the slope within them.
   CHECK(low.height_m(1.2f, 0.6f) == Approx(0.06).margin(4 * 0.003 / std::sqrt(4 * 288.0)));
   CHECK(low.slope_x == Approx(0.05).margin(0.001));
   CHECK(high.slope_y == Approx(-0.02).margin(0.002));
   CHECK(low.cells == 288.0f);
 }
 
-//             ____     a pavement of which the window holds a strip; the cells at its edge hold the road too
+//             ____     a pavement of which the window contains a strip; the cells at its edge also contain the road
 //            |
 //  __________|
 TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the plane of a small region") {
@@ -62,7 +63,8 @@ TEST_CASE("plane mixture: cells that hold both sides of a step do not tilt the p
   }
 }
 
-// The corner of a pavement in that of the window: of its eight cells three hold nothing else, of a longer one four.
+// The corner of a pavement in the corner of the window: three of its eight cells contain nothing else, four of a longer
+// one.
 TEST_CASE("plane mixture: few cells tell the plane of a corner, if one is sure to hold nothing else") {
   const auto corner = [](double pitch_m, double from_y_m = 2.05) {
     auto stages = std::make_unique<Stages<>>(small_settings());
@@ -76,11 +78,11 @@ TEST_CASE("plane mixture: few cells tell the plane of a corner, if one is sure t
   CHECK(told.cells == 3.0f);
   CHECK(told.height_m(2.25f, 2.2f) == Approx(0.06).margin(0.003));
   CHECK(square(told.slope_x) + square(told.slope_y) < square(least_ramp));
-  CHECK(corner(0.05).cells > 3.0f);  // four points a cell may be of one side by chance
+  CHECK(corner(0.05).cells > 3.0f);  // four points of a cell may be on one side by chance
   CHECK(corner(0.05, 1.95).cells == 4.0f);
 }
 
-//               .:'.    a pavement overgrown with grass, of which the window holds a strip
+//               .:'.    a pavement overgrown with grass, of which the window contains a strip
 //              |
 //  ____________|
 TEST_CASE("plane mixture: ground that is rough all over is told by all of its cells, not by the few that look even") {
@@ -96,7 +98,7 @@ TEST_CASE("plane mixture: ground that is rough all over is told by all of its ce
     CHECK(strip.rough_m2 == Approx(0.03 * 0.03).epsilon(0.2));
     squares_m2 += square(strip.height_m(2.2f, 1.2f) - 0.08f);
   }
-  // Of 96 cells with 25 points each.
+  // From 96 cells with 25 points each.
   CHECK(squares_m2 / 20.0 < 2.0 * 0.03 * 0.03 / (96 * 25));
 }
 
@@ -128,7 +130,7 @@ TEST_CASE("plane mixture: of a strip that a step crosses aslant nothing is taken
 
 //  o
 //  ____________
-//              |_       the first of two rows behind the edge: too high, by readings that mix it and the road
+//              |_       the first of two rows behind the edge: too high, because of readings that mix it and the road
 //                |__
 TEST_CASE("plane mixture: what lies too high beside a step down does not tilt the strip behind") {
   const auto strip_seen_from = [](float x_m) {
@@ -163,7 +165,7 @@ TEST_CASE("plane mixture: cells that bear another plane do not tilt their region
     return stages->mixture.plane(low).slope_x;
   };
   CHECK(tilt_where_the_last_row_lies(0.014) < 0.001f);
-  CHECK(tilt_where_the_last_row_lies(0.011) > 0.003f);  // nearer to its region's: the label is yet to follow
+  CHECK(tilt_where_the_last_row_lies(0.011) > 0.003f);  // nearer to the plane of its region: the label will follow
 }
 
 TEST_CASE("plane mixture: a face whose cells all spread is fitted all the same") {
@@ -202,7 +204,7 @@ TEST_CASE("plane mixture: a region takes the label that most of its cells bore")
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   stages->segment();
-  // Of the lower region 5 rows bore label 0 and 7 rows label 3, of the upper one all label 0.
+  // In the lower region 5 rows had label 0 and 7 rows label 3; in the upper one all had label 0.
   std::array<int, decltype(stages->dem)::capacity> old{};
   for (int i = 5; i < 12; ++i) {
     for (int j = 0; j < 24; ++j) old[static_cast<std::size_t>(stages->dem.slot(i, j))] = 3;
@@ -247,7 +249,7 @@ TEST_CASE("plane mixture: a plane whose cells still wait for their labels is not
 TEST_CASE("plane mixture: a plane dies when two become one, and its label is told as fresh") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;
-  // Two patches out of reach of each other, until the ground between them is seen.
+  // Two patches out of reach of each other until the ground between them is seen.
   const auto flat = [](double, double) { return 0.0; };
   add_points(*stages, {0, 0.6, 0, 2.4}, noise, flat);
   add_points(*stages, {1.7, 2.4, 0, 2.4}, noise, flat);
@@ -278,7 +280,7 @@ TEST_CASE("plane mixture: regions smaller than the bound are no planes") {
 TEST_CASE("plane mixture: with more regions than planes the largest win and the others are counted") {
   constexpr Limits two{.rows = 24, .cols = 24, .planes = 2};
   const auto stages = std::make_unique<Stages<two>>(small_settings());
-  // Strips across the window, each 20 cm higher than the one before, of so many rows.
+  // Strips across the window, each 20 cm higher than the one before, with these numbers of rows.
   const std::array<int, 4> rows = GENERATE(std::array{4, 5, 6, 9}, std::array{9, 4, 6, 5}, std::array{9, 6, 5, 4});
   const auto strip = [&](double x_m) {
     int k = 0;
@@ -318,14 +320,14 @@ TEST_CASE("plane mixture: the M-step fits planes to cells by their responsibilit
   stages->infer(true);
   const int low = stages->label_at(0, 0), high = stages->label_at(23, 0);
   REQUIRE(low != high);
-  // Half of the upper plane's cells are given to the lower one by a quarter.
+  // A quarter of the responsibility for half of the upper plane's cells goes to the lower one.
   stages->mixture.maximise(stages->dem, [&](int i, int j, auto&& visit) {
     if (i < 12) return visit(low, 1.0f);
     const float share = j < 12 ? 0.25f : 0.0f;
     if (share > 0.0f) visit(low, share);
     visit(high, 1.0f - share);
   });
-  // 288 cells at 0, and 144 quarters at 0.12: the plane's mean is theirs.
+  // The mean of 288 cells at 0 and 144 quarters at 0.12.
   const Plane& plane = stages->mixture.plane(low);
   CHECK(plane.z_m == Approx(0.12 * 36.0 / 324.0).margin(1e-5));
   CHECK(plane.cells == Approx(324.0f));
@@ -443,7 +445,7 @@ TEST_CASE("plane mixture: what lies too high beside a step down does not tilt th
   CHECK(std::abs(strip_seen_from(0.0)) < 0.08f);
 }
 
-/// A plane of this ground after cells of row 14 are told to be crossed by a step.
+/// A plane of this ground, after a step was said to cross the cells of row 14.
 template <typename Height>
 Plane with_crossed_row(Height&& height_m, int i, double spread_m = 0.002) {
   const auto stages = std::make_unique<Stages<>>(small_settings());
@@ -471,14 +473,14 @@ TEST_CASE(
     CHECK(cells_of_strip(step_m) > 24.0f);
     CHECK(cells_of_strip(step_m) < 26.0f);
   }
-  CHECK(cells_of_strip(0.03) > cells_of_strip(0.06));  // off by less
+  CHECK(cells_of_strip(0.03) > cells_of_strip(0.06));  // they deviate less
   CHECK(with_crossed_row([](double x, double) { return x < 1.4 ? 0.0 : 0.06; }, 20).cells == 9.0f * 24.0f);
   CHECK(with_crossed_row([](double, double) { return 0.0; }, 20).cells == 23.0f * 24.0f);
 }
 
 TEST_CASE("plane mixture: what is crossed before nothing that is seen, or a wall, has no step to be off by") {
   CHECK(with_crossed_row([](double x, double) { return x < 1.4 || x > 1.6 ? std::nan("") : 0.0; }, 15).cells == 48.0f);
-  // Nor what a step does not cross.
+  // Nor do cells that no step crosses.
   CHECK(with_crossed_row([](double x, double) { return x < 1.5   ? 0.0
                                                        : x < 1.7 ? 0.06
                                                                  : std::nan(""); }, 15).cells ==

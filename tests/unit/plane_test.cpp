@@ -1,4 +1,4 @@
-// Moments, evidence and fit of planes, against the same formulas from all points at once in double.
+// Moments, evidence and fit of planes, against the same formulas from all points at once in double precision.
 #include "curbline/plane.hpp"
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ using test::of_point;
 using test::of_points;
 using test::Patch;
 
-/// A prior under which points without noise make a plane without.
+/// A prior under which points without noise give a plane without noise.
 PlanePrior no_floor() {
   PlanePrior prior;
   prior.common_share = 0.0f;
@@ -27,7 +27,7 @@ PlanePrior no_floor() {
 }
 
 /// ln p(z | points on one plane), normal-inverse-gamma: noise ~ IG(a0, a0 V0), level and slopes ~ N((mean z, 0, 0),
-/// noise / V0) about the centroid; plus (n / 2) ln(2 pi V0), the part that log_evidence() leaves out.
+/// noise / V0) around the centroid; plus (n / 2) ln(2 pi V0), the part that log_evidence() leaves out.
 double evidence_by_definition(const std::vector<Point>& points, const PlanePrior& prior) {
   const double V0 = prior.noise_m2, a0 = prior.degrees, b0 = a0 * V0, n = static_cast<double>(points.size());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -106,8 +106,8 @@ TEST_CASE("plane evidence: agrees with its definition, from one point to as many
   const PlanePrior prior;
   const double truth = evidence_by_definition(points, prior);
   const PlaneMoments m = of_points(points);
-  // Stirling's series to 1 / x leaves 1 / (360 x^3) at x = 2.5. Float leaves 1e-6 of the scatter of z in the residual,
-  // which enters as shape * ln(rate).
+  // Stirling's series up to 1 / x leaves 1 / (360 x^3) at x = 2.5. Float leaves 1e-6 of the scatter of z in the
+  // residual, which enters as shape * ln(rate).
   const double n = static_cast<double>(points.size()), V0 = prior.noise_m2;
   const double shape = 2.0 + 0.5 * n, rate = 2.0 + 0.5 * n * sd * sd / V0;
   INFO(points.size() << " points, noise " << sd);
@@ -154,7 +154,7 @@ TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, groun
 }
 
 //                    __--
-//  ________________|--   2.5 cm, of which the planes show 3 mm at the one middle: the border tells
+//  ________________|--   2.5 cm, of which the planes show 3 mm at the middle of one of them: the border shows it
 TEST_CASE("plane evidence: a low kerb between planes of different slope parts them, if the ground jumps along it") {
   Noise noise;
   const PlaneEvidence evidence;
@@ -167,16 +167,16 @@ TEST_CASE("plane evidence: a low kerb between planes of different slope parts th
     return evidence.parted(first, second, border);
   };
   CHECK_FALSE(parted(0.0f, 0.0f));
-  CHECK(parted(40.0f, 0.0125f));         // as many cells hold points of both sides as not
+  CHECK(parted(40.0f, 0.0125f));         // as many cells with points of both sides as without
   CHECK_FALSE(parted(40.0f, 0.0011f));   // bent ground
   CHECK_FALSE(parted(40.0f, -0.0125f));  // a step the other way
   CHECK_FALSE(parted(40.0f, 0.006f));    // no more than the cells of a scan line share
-  CHECK_FALSE(parted(4.0f, 0.0125f));    // too few to tell
+  CHECK_FALSE(parted(4.0f, 0.0125f));    // too few to show it
 }
 
 //        _______________                          __-------__
-//      _-      a kerb's sloped face, 30 cm      _-           -_  bent, 10 m to its centre: one
-//    _-        wide, and what lies above: two
+//      _-      a curb's sloped face, 30 cm      _-           -_  bent, 10 m to its centre: one
+//    _-        wide, and the ground above: two
 TEST_CASE("plane evidence: a crease parts two planes, ground that bends over the same distance is one") {
   Noise noise;
   const PlaneEvidence evidence;
@@ -250,7 +250,7 @@ TEST_CASE("plane fit: the height is best known at the centroid and worse the fur
   CHECK(centre == Approx(plane.variance_m2 / 200.0f));
   CHECK(plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m) > centre);
   CHECK(plane.height_variance_m2(plane.x_m + 2.0f, plane.y_m) > plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m));
-  // Known less well along its short side: 4 times the variance of a slope over half the length.
+  // Known less well across its short side: 4 times the variance of a slope over half the length.
   CHECK(plane.height_variance_m2(plane.x_m, plane.y_m + 1.0f) - centre ==
         Approx(4.0f * (plane.height_variance_m2(plane.x_m + 1.0f, plane.y_m) - centre)).epsilon(0.15));
 }
@@ -327,7 +327,7 @@ TEST_CASE("plane evidence: on a hill, too, a low kerb parts planes if the ground
   };
   const PlaneMoments first = points(0, 2), second = points(2, 4);
   const auto parted = [&](double jump_m) {
-    const auto rise_m = static_cast<float>(0.1 * (hill + 0.011) + jump_m);  // of a cell, by the mean slope, and more
+    const auto rise_m = static_cast<float>(0.1 * (hill + 0.011) + jump_m);  // of a cell, by the mean slope, plus more
     return evidence.parted(first, second, {40.0f, along_y ? 0.0f : 0.1f, along_y ? 0.1f : 0.0f, rise_m});
   };
   CHECK(parted(0.0125));

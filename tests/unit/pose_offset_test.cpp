@@ -1,4 +1,4 @@
-// Who has stepped, the robot or its localisation, and by what the poses are set back.
+// Who has stepped, the robot or its localisation, and by how much the poses are corrected.
 #include "curbline/intake/pose_offset.hpp"
 
 #include <Eigen/Geometry>
@@ -17,15 +17,15 @@ PoseOffset made() {
   return offset;
 }
 
-/// A line begins, the robot at the origin, after a pose that steps and, if it is confirmed, the next.
+/// Begins a line with the robot at the origin, after a pose that steps and, if the step is confirmed, the next pose.
 void step(PoseOffset& offset, const PoseShift& by, bool confirmed = true) {
   offset.begin_line(0.0f, 0.0f);
   offset.follow({PoseStepNews::Kind::begun, by});
   if (confirmed) offset.follow({PoseStepNews::Kind::confirmed});
 }
 
-/// A line across, ahead_m before the robot, which is at the origin. Its heights lie off the ground by `off` less what
-/// poses are set back by. Returns by what it was set back itself.
+/// A line across, ahead_m in front of the robot, which is at the origin. Its heights deviate from the ground by `off`,
+/// less the correction of the poses. Returns the correction of the line itself.
 PoseShift see_line(PoseOffset& offset, double ahead_m, const PoseShift& off, test::Noise& lot, int points = 200,
                    int without_ground = 0) {
   const PoseShift poses{off.height_m + offset.offset().height_m, off.slope_x + offset.offset().slope_x,
@@ -95,7 +95,7 @@ TEST_CASE("pose offset: a step is measured better by the lines after it than by 
 TEST_CASE("pose offset: a step that cannot be seen yet stays open, and heights where they are") {
   test::Noise lot(4);
   PoseOffset offset = made();
-  const PoseShift level{0.02f, -0.02f, 0.0f};  // nothing of it is seen 1 m ahead
+  const PoseShift level{0.02f, -0.02f, 0.0f};  // 1 m ahead nothing of it is seen
   step(offset, level);
   CHECK(std::abs(see_line(offset, 1.0, level, lot).at(1.0f, 0.0f)) < 0.003f);
   CHECK(offset.undecided());
@@ -154,7 +154,7 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   CHECK_FALSE(offset.offset().any());
 }
 
-/// Of a localisation that has been found to step, by `jump`; and then the robot has climbed.
+/// After a localisation has been found to step, by `jump`, and the robot has then climbed.
 PoseOffset climbed_after_a_step(test::Noise& lot) {
   PoseOffset offset = made();
   step(offset, jump);
@@ -202,12 +202,12 @@ TEST_CASE("pose offset: after a climb what lines lie off by poses' own errors is
   CHECK(offset.offset().height_m == before_m);
 }
 
-/// A robot away from the origin, and lines that run at an angle: ahead of it, or askew.
+/// A robot away from the origin, and lines at an angle, ahead of it or oblique.
 struct Elsewhere {
   double angle;
   float x_m = 7.0f, y_m = -3.0f;
 
-  /// Of a slope ahead and one along the lines.
+  /// From slopes ahead and along the lines.
   PoseShift shift(double height_m, double ahead, double along) const {
     const double c = std::cos(angle), s = std::sin(angle);
     return {static_cast<float>(height_m), static_cast<float>(ahead * c - along * s),
@@ -220,7 +220,7 @@ struct Elsewhere {
     offset.follow({PoseStepNews::Kind::confirmed});
     return offset;
   }
-  /// As see_line(); two in five of its points may lie on another surface, higher by kerb_m.
+  /// Like see_line(), but two in five of its points may lie on another surface, higher by kerb_m.
   PoseShift see_line(PoseOffset& offset, double ahead_m, const PoseShift& off, test::Noise& lot,
                      double kerb_m = 0.0) const {
     const PoseShift poses = off + offset.offset();
@@ -255,7 +255,7 @@ TEST_CASE("pose offset: what a localisation has stepped by is taken off wherever
 TEST_CASE("pose offset: what one line does not show of a step stays in doubt, in any direction, until others do") {
   const Elsewhere robot{GENERATE(0.0, 0.7, 1.5708, 2.5, 3.9)};
   test::Noise lot(12);
-  const PoseShift level = robot.shift(0.02, -0.02, 0.0);  // nothing of it is seen 1 m ahead
+  const PoseShift level = robot.shift(0.02, -0.02, 0.0);  // 1 m ahead nothing of it is seen
   PoseOffset offset = robot.stepped(level);
   robot.see_line(offset, 1.0, level, lot);
   CHECK(offset.undecided());
@@ -287,11 +287,11 @@ TEST_CASE("pose offset: a pose is set back about the level axes of the map, what
                     static_cast<float>(std::cos(0.5 * yaw))};
     const Pose set_back = offset.corrected(pose);
     const double w = set_back.qw, x = set_back.qx, y = set_back.qy, z = set_back.qz;
-    CHECK(2 * (x * z + w * y) == Approx(-by.slope_x).margin(1e-4));  // its vertical
+    CHECK(2 * (x * z + w * y) == Approx(-by.slope_x).margin(1e-4));  // the vertical axis of the pose
     CHECK(2 * (y * z - w * x) == Approx(-by.slope_y).margin(1e-4));
     CHECK(2 * std::atan2(z, w) == Approx(yaw).margin(1e-4));
     CHECK(set_back.z_m == by.height_m);
-    // On a slope, too: turned by what it is set back, before all else.
+    // On a slope too: the correction is a turn before all others.
     const Eigen::Quaterniond leaning(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                                      Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()) *
                                      Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY()));
@@ -319,7 +319,7 @@ TEST_CASE(
   CHECK(offset.offset().height_m == Approx(-0.12).margin(0.005));
   offset.follow({PoseStepNews::Kind::begun, leap});
   offset.follow({PoseStepNews::Kind::confirmed});
-  robot.see_line(offset, 1.0, leap, lot);  // lies where it lay
+  robot.see_line(offset, 1.0, leap, lot);  // the line lies where it did before
   CHECK_FALSE(offset.undecided());
   CHECK(offset.offset().height_m == Approx(-0.12).margin(0.005));
 }

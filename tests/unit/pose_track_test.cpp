@@ -20,7 +20,7 @@ using Track = PoseTrack<limits>;
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t t0 = 1'290'682'980'000'000'000;
 
-/// A robot that drives 1 m/s along x and turns left by 0.5 rad/s.
+/// A robot that drives at 1 m/s along x and turns left at 0.5 rad/s.
 Pose driving(std::int64_t time_ns) {
   const double s = static_cast<double>(time_ns - t0) * 1e-9;
   return {time_ns,
@@ -85,7 +85,7 @@ TEST_CASE("pose track: two poses a moment apart do not make the robot jump") {
   for (const std::int64_t moment_ns : {std::int64_t{1}, std::int64_t{10'000}, ms}) {
     Track track = track_of(5);
     Pose second = driving(t0 + 200 * ms + moment_ns);
-    second.x_m += 0.001f;  // of another source, off by a millimetre
+    second.x_m += 0.001f;  // from another source, off by a millimetre
     REQUIRE(track.push(second));
     Pose pose;
     REQUIRE(track.at(t0 + 240 * ms, pose));
@@ -175,7 +175,7 @@ TEST_CASE("pose track: after a pose of the future, or a clock that is set back, 
   Pose pose;
   REQUIRE(track.at(at + 5 * ms, pose));
   CHECK(pose.x_m == Approx(driving(at + 5 * ms).x_m).margin(1e-5));
-  CHECK(track.at(t0 + 100 * ms, pose) == false);  // of before
+  CHECK(track.at(t0 + 100 * ms, pose) == false);  // from before
 }
 
 TEST_CASE("pose track: the newest poses are kept, the oldest give way") {
@@ -201,14 +201,14 @@ TEST_CASE("pose track: a pose turns and moves points as its quaternion says") {
   CHECK((p.cast<double>() - truth).norm() < 1e-6);
 }
 
-/// The k-th pose, of 50 Hz, on a ramp of 8 %.
+/// The k-th pose, at 50 Hz, on a ramp of 8 %.
 Pose on_ramp(int k) {
   Pose pose{t0 + 20 * ms * k, 0.02f * static_cast<float>(k), 0.0f, 0.0016f * static_cast<float>(k)};
   pose.qy = -0.04f;
   return pose;
 }
 
-/// Such poses, `changed(pose, k)` each.
+/// Such poses, each changed by `changed(pose, k)`.
 template <typename Changed>
 Track on_ramp(int poses, const PoseSettings& settings, Changed&& changed) {
   Track track;
@@ -227,7 +227,7 @@ TEST_CASE("pose track: poses that jump say by how much, those around them do not
     pose.z_m += 0.03f;
     pose.qx += 0.0075f;  // by 15 mrad
   });
-  const PoseJumps there = track.jumps(t0 + 95 * ms, t0 + 97 * ms);  // of a line between the fourth pose and the fifth
+  const PoseJumps there = track.jumps(t0 + 95 * ms, t0 + 97 * ms);  // a line between the fourth pose and the fifth
   CHECK(there.height_m2 == Approx(0.03 * 0.03).epsilon(0.01));
   CHECK(there.attitude_rad2 == Approx(0.015 * 0.015).epsilon(0.01));
   const PoseJumps before = track.jumps(t0, t0 + 80 * ms), after = track.jumps(t0 + 100 * ms, t0 + 140 * ms);
@@ -247,11 +247,11 @@ TEST_CASE("pose track: a drive, its turns and the noise that is told of are no j
     const PoseJumps last = track.jumps(t0 + 120 * ms, t0 + 140 * ms);
     jumps += last.height_m2 + last.attitude_rad2 > 0.0f;
   }
-  CHECK(jumps < 25);  // by chance, 3 in 1000 each of height and, of two angles, 11
+  CHECK(jumps < 25);  // by chance, 3 in 1000 for the height and 11 for the two angles
 }
 
-/// What those poses say of steps that have not been asked: 'S' one begins, 'C' it is confirmed, 'W' it was none, 'E'
-/// the end of a climb.
+/// The news of steps that has not been fetched yet: 'S' one begins, 'C' it is confirmed, 'W' it was none, 'E' a climb
+/// ends.
 std::string told_until(Track& track, std::int64_t time_ns) {
   std::string told;
   while (const auto step = track.next_step(time_ns)) {
@@ -264,7 +264,7 @@ std::string told_until(Track& track, std::int64_t time_ns) {
   return told;
 }
 
-/// The same of each of so many poses as it comes, '.' for nothing.
+/// The same after each of so many poses, '.' for no news.
 template <typename Changed>
 std::string told_by_each(Changed&& changed, int poses = 8) {
   std::string told;
@@ -298,7 +298,7 @@ TEST_CASE("pose track: poses of a robot that rises or turns have not stepped, no
   }
 }
 
-/// Of a robot that goes on, and up by 4 cm with each pose from the fifth to the seventh.
+/// A robot that drives on, and up by 4 cm with each pose from the fifth to the seventh.
 void climb(Pose& pose, int k) {
   pose.z_m += k < 4 ? 0.0f : 0.04f * static_cast<float>(std::min(k, 6) - 3);
 }
@@ -312,7 +312,7 @@ TEST_CASE(
   CHECK(told.substr(0, 6) == "....SW");
   REQUIRE(told.find('E') != std::string::npos);
   CHECK(told.find('E') == told.rfind('E'));
-  CHECK(told.find('E') > 8 + 4);  // after the last of the jumps by which it stops rising
+  CHECK(told.find('E') > 8 + 4);  // after the last of the jumps with which the climb stops
   CHECK(told.find('E') < 8 + 8);
   CHECK(told_by_each(stepped, 30).find('E') == std::string::npos);
   CHECK(told_by_each(wrong, 30).find('E') == std::string::npos);
@@ -351,8 +351,8 @@ TEST_CASE("pose track: of a track of four poses a climb is over, too") {
 }
 
 TEST_CASE("pose track: a pose that lies off by its own error is no step, though the next one's is no jump back") {
-  // The first lies off where it is led by 15.4 mm, three standard deviations being 14.6; the next by 3 mm from that
-  // one.
+  // The first deviates from its prediction by 15.4 mm, where three standard deviations are 14.6 mm; the next deviates
+  // from that one's by 3 mm.
   const auto off = [](Pose& pose, int k) { pose.z_m += k == 3 ? -0.004f : k == 4 ? 0.0104f : k == 5 ? 0.004f : 0.0f; };
   CHECK(told_by_each(off).substr(0, 6) == "....SW");
 }
@@ -396,7 +396,7 @@ TEST_CASE("pose track: a step is told in the map's frame, whatever way the robot
   track.init(noisy_poses());
   PoseShift by;
   for (int k = 0; k < 8; ++k) {
-    // Heads along the map's y axis. Rolls to the right, so what lies on its left, at lower x, seems to lie higher.
+    // Heads along the map's y axis and rolls to the right, so what is on its left, at lower x, seems to be higher.
     const Eigen::Quaternionf q = Eigen::AngleAxisf(0.5f * pi, Eigen::Vector3f::UnitZ()) *
                                  Eigen::AngleAxisf(k >= 5 ? 0.01f : 0.0f, Eigen::Vector3f::UnitX());
     REQUIRE(track.push({t0 + 20 * ms * k, 0.0f, 0.02f * static_cast<float>(k), 0.0f, q.x(), q.y(), q.z(), q.w()}));

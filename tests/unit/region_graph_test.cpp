@@ -1,4 +1,4 @@
-// Merging by evidence on graphs small enough to check by hand or by trying everything.
+// Merging by evidence, on graphs small enough to check by hand or by trying everything.
 #include "curbline/regions/region_graph.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr Limits limits{.regions = 64, .links = 256};
 using Graph = RegionGraph<limits>;
 
-/// A square of ground of 0.4 m with 16 points, as a leaf is.
+/// A square of ground of 0.4 m with 16 points, like a leaf.
 PlaneMoments leaf(double x0, double y0, double height_m, test::Noise& noise, double slope = 0.0) {
   return test::of_points(test::sample({x0, x0 + 0.4, y0, y0 + 0.4}, 0.1, 0.005, noise,
                                       [&](double x, double) { return height_m + slope * x; }));
@@ -49,7 +49,7 @@ TEST_CASE("region graph: nodes without a link never merge, alike as they are") {
   const auto graph = std::make_unique<Graph>();
   test::Noise noise;
   const auto a = add(*graph, leaf(0.0, 0.0, 0.0, noise)), b = add(*graph, leaf(0.4, 0.0, 0.0, noise));
-  CHECK(graph->merge(PlaneEvidence{}) == 2);  // the evidence of each, nothing else
+  CHECK(graph->merge(PlaneEvidence{}) == 2);  // the evidence of each node, nothing else
   CHECK(graph->root(a) != graph->root(b));
 }
 
@@ -79,11 +79,12 @@ TEST_CASE("region graph: a second link between two nodes takes no place, whichev
   CHECK(graph->link(b, a) == (from_a ^ 1));  // the other end
   CHECK(graph->link(c, b) == (from_b ^ 1));
   CHECK(graph->link(c, d) == graph->none);  // the store is full
-  CHECK(graph->link(a, b) == from_a);       // but known links are still known
+  CHECK(graph->link(a, b) == from_a);       // but known links are still found
 }
 
-//   road  | pavement, from 3 mm above the road's plane to 7 cm: neither plane, but the cells along the border tell the
-//  _______|----------  kerb. Half of the border is seen on either half of the pavement.
+//   road  | pavement, whose plane is 3 mm above the road's at the road's middle and 7 cm at its own end: the planes do
+//  _______|----------  not show the curb, but the cells along the border do. Half of it is seen on either half of the
+//                      pavement.
 TEST_CASE(
     "region graph: what pairs of cells show of a border is kept when regions merge, whichever way it was linked") {
   test::Noise noise;
@@ -111,8 +112,8 @@ TEST_CASE(
     CHECK(merges(road_first, 20, 0.001f));  // the ground does not jump there
     CHECK(merges(road_first, 20, -0.02f));  // it jumps, but not as the planes do
     CHECK_FALSE(merges(road_first, 20, 0.02f));
-    CHECK_FALSE(merges(road_first, 2, 0.02f));  // four pairs tell together what two do not
-    CHECK(merges(road_first, 1, 0.02f));        // nor do two together
+    CHECK_FALSE(merges(road_first, 2, 0.02f));  // four pairs together show what two do not
+    CHECK(merges(road_first, 1, 0.02f));        // two together do not show it either
   }
 }
 
@@ -159,8 +160,8 @@ TEST_CASE("region graph: a full store refuses nodes") {
   CHECK(graph->add_node() == 0);
 }
 
-/// A chequered street: an 8 x 8 grid of leaves on three planes with noise, linked to their neighbours in the order
-/// given.
+/// A chequered street: an 8 x 8 grid of leaves on three planes with noise. link_order determines the order in which
+/// neighbours are linked.
 std::vector<int> partition_of_street(std::uint32_t link_order) {
   static const auto graph = std::make_unique<Graph>();
   graph->clear(0.1f, 0.1f);
@@ -206,7 +207,7 @@ TEST_CASE("region graph: the order in which links were added does not matter") {
   for (std::uint32_t order = 1; order <= 20; ++order) CHECK(partition_of_street(order) == partition);
 }
 
-/// Sum of the scores that merging raises.
+/// The sum of scores, which merging increases.
 double score(const std::vector<PlaneMoments>& leaves, const std::vector<int>& block_of) {
   double total = 0.0;
   for (int block = 0; block < static_cast<int>(leaves.size()); ++block) {
@@ -224,7 +225,7 @@ TEST_CASE("region graph: on a short chain greedy merging finds the best partitio
   std::vector<PlaneMoments> leaves;
   for (const double height : {0.0, 0.0, 0.1, 0.1, 0.1, 0.0, 0.0, 0.2})
     leaves.push_back(leaf(0.4 * static_cast<double>(leaves.size()), 0.0, height, noise));
-  // A partition of a chain into runs: bit k set says that a run ends after leaf k.
+  // A partition of a chain into runs: bit k is set if a run ends after leaf k.
   double best = -1e30;
   unsigned best_cuts = 0;
   for (unsigned cuts = 0; cuts < 128; ++cuts) {
@@ -247,7 +248,7 @@ TEST_CASE("region graph: on a short chain greedy merging finds the best partitio
   }
 }
 
-/// Gain of merging two regions, everything computed anew.
+/// Gain of merging two regions, with everything computed afresh.
 float gain(const PlaneMoments& a, const PlaneMoments& b) {
   const PlaneEvidence evidence;
   PlaneMoments both = a;
@@ -255,7 +256,8 @@ float gain(const PlaneMoments& a, const PlaneMoments& b) {
   return evidence.gain(a, evidence.score(a), b, evidence.score(b), both, [] { return BorderRise{}; });
 }
 
-/// What merge() must come to: all gains anew for every merge, the best one taken. Numbers of the blocks.
+/// The result that merge() must reach: computes all gains afresh for every merge and takes the best one. Returns the
+/// numbers of the blocks.
 std::vector<int> merged_naively(std::vector<PlaneMoments> moments, std::vector<std::pair<int, int>> links) {
   std::vector<int> block_of(moments.size());
   std::iota(block_of.begin(), block_of.end(), 0);
@@ -278,8 +280,8 @@ std::size_t regions(const std::vector<int>& block_of) {
   return std::set<int>(block_of.begin(), block_of.end()).size();
 }
 
-/// Merges a field of 6 x 6 leaves at random heights and slopes; checks that no merge is left that gains. Returns how
-/// many regions more there are than by merging naively.
+/// Merges a field of 6 x 6 leaves with random heights and slopes, and checks that no merge with a gain is left. Returns
+/// how many more regions there are than by naive merging.
 int more_by_laziness(std::uint32_t seed) {
   test::Noise noise(seed);
   std::vector<PlaneMoments> leaves;
@@ -309,7 +311,7 @@ TEST_CASE(
     "region graph: gains computed late end where no merge gains, with as many regions as all gains anew, on average") {
   int more = 0;
   for (std::uint32_t seed = 1; seed <= 30; ++seed) more += more_by_laziness(seed);
-  CHECK(std::abs(more) < 15);  // half a region of seventeen
+  CHECK(std::abs(more) < 15);  // half a region out of seventeen
 }
 
 TEST_CASE("region graph: neighbours of both merged nodes are linked once, so that no evidence is computed twice") {
@@ -322,7 +324,7 @@ TEST_CASE("region graph: neighbours of both merged nodes are linked once, so tha
   }
   const int evidences = graph->merge(PlaneEvidence{});
   for (const auto node : nodes) CHECK(graph->root(node) == graph->root(nodes[0]));
-  CHECK(evidences < 8 + 28 + 7);  // nodes, links, and less than one a merge; 21 if all neighbours were asked after each
+  CHECK(evidences < 8 + 28 + 7);  // nodes, links, under one a merge; 21 if all neighbours were evaluated after each
 }
 
 }  // namespace

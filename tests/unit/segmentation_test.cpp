@@ -1,4 +1,4 @@
-// Leaves and regions: where they part, where they join, and what a scan line leaves alone.
+// Leaves and regions: where they separate, where they join, and what a scan line leaves unchanged.
 #include "curbline/regions/segmentation.hpp"
 
 #include <array>
@@ -87,7 +87,7 @@ TEST_CASE("segmentation: two planes with a step between them are two regions, pa
 
 TEST_CASE("segmentation: a low step across a slope parts planes as soon as the ground's slope is known") {
   //          __--   a slope of 12 or 15 %
-  //      __-|       22 mm, aslant across it: cells of one height lie on both sides
+  //      __-|       22 mm, oblique across it: cells of one height are on both sides
   //   --
   const double slope = GENERATE(0.12, 0.15);
   const auto stages = std::make_unique<Stages<>>(small_settings());
@@ -131,7 +131,7 @@ TEST_CASE(
 
 TEST_CASE("segmentation: a region splits again when new cells show a step") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
-  // Far apart and few, the first cells look like one slope.
+  // Few and far apart, the first cells look like one slope.
   test::Noise noise;
   for (const Point& p : test::sample({0.0, 0.1, 0.0, 2.4}, 0.05, 0.002, noise, [](double, double) { return 0.0; }))
     stages->dem.add(p);
@@ -151,7 +151,7 @@ TEST_CASE("segmentation: a region splits again when new cells show a step") {
 
 TEST_CASE("segmentation: what no line touched keeps its region, though its neighbours are cut anew") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
-  // Three strips: only the last one is touched again.
+  // Three strips; only the last one is touched again.
   fill(stages->dem, [](double x, double) { return x < 0.8 ? 0.0 : x < 1.6 ? 0.12 : 0.24; });
   stages->infer();
   const auto first = stages->region_at(0, 0), middle = stages->region_at(8, 0), last = stages->region_at(16, 0);
@@ -209,7 +209,7 @@ TEST_CASE("segmentation: regions reach across gaps as far as links do, and no fu
   CHECK(regions(*stages).size() == (gap == 5 ? 1 : 2));
 }
 
-//  ________####________    a box across the window: the ground on both sides of it is one, as far as links reach
+//  ________####________    a box across the window: the ground on both sides is one region, within the reach of links
 TEST_CASE("segmentation: what stands on the ground does not part it, nor join what a step parts") {
   const auto together = [](double step_m, int rows) {
     auto stages = std::make_unique<Stages<>>(small_settings());

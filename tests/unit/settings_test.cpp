@@ -17,7 +17,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::n
 
 constexpr Limits limits{};
 
-/// Status and name for each of some bad values of one setting.
+/// CHECKs the Status and name for each of some bad values of one setting.
 template <typename Reach, typename Value>
 void refuses(Status expected, const std::string& name, Reach&& reach, std::initializer_list<Value> values) {
   for (const Value value : values) {

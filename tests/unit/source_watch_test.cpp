@@ -1,4 +1,5 @@
-// The watch on a source of readings: each change is told once, and its state is that of the newest reading's age.
+// The watch on a source of readings: each change is reported once, and its state depends on the age of the newest
+// reading.
 #include "curbline/intake/source_watch.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Which planes are one bent surface, and which creases are told between planes that are none.
+// Which planes are one bent surface, and which creases between other planes are reported.
 #include "curbline/curbs/surfaces.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using test::small_settings;
 
 constexpr Limits limits{.rows = 40, .cols = 40, .planes = 8, .beams = 181};
 
-/// A window of 4 m with this ground, as a laser sees it from its lowest corner.
+/// A window of 4 m with this ground, as a laser sees it from the window's lowest corner.
 template <typename Height>
 std::unique_ptr<test::Stages<limits>> traced(Height&& height_m) {
   auto stages = std::make_unique<test::Stages<limits>>(small_settings(40, 40));
@@ -40,7 +40,7 @@ struct Borne {
   std::set<Label> planes, surfaces;
 };
 
-/// By the cells whose middle lies in a part of the window.
+/// The labels of the cells whose middle is in a part of the window.
 template <typename Within>
 Borne borne(const test::Stages<limits>& stages, Within&& within) {
   Borne out;
@@ -56,8 +56,8 @@ Borne borne(const test::Stages<limits>& stages, Within&& within) {
 
 const auto everywhere = [](double, double) { return true; };
 
-//      __.--.__       a road of 4 m, 5 cm higher in the middle than at its kerbs, at any angle
-//    _/        \_     or as high, of two planes
+//      __.--.__       a road of 4 m, 5 cm higher in the middle than at its curbs, at any angle;
+//    _/        \_     or as high, but made of two planes
 TEST_CASE("surfaces: a cambered road is one, of planes that meet at no crease; two that meet at one as steep are two") {
   const bool creased = GENERATE(false, true);
   const double across_x = GENERATE(1.0, 0.6, 0.0), across_y = std::sqrt(1.0 - across_x * across_x);
@@ -80,7 +80,7 @@ TEST_CASE("surfaces: three planes or more along a bend are one, by the lowest of
   CHECK(creases(*stages) == 0);
 }
 
-//  ___           the road is bent as before, and lies 4 cm below a pavement where x > 3
+//  ___           the road is bent as before and lies 4 cm below a pavement where x > 3
 //     |__.--.__
 TEST_CASE("surfaces: a kerb beside a cambered road parts it from the pavement, and is as high as the road is there") {
   const auto stages = traced([](double x, double) { return x > 3.0 ? 0.028 : -0.012 * (x - 2.0) * (x - 2.0); });
@@ -99,7 +99,7 @@ TEST_CASE("surfaces: a kerb beside a cambered road parts it from the pavement, a
 }
 
 //          _--
-//  ______--      a ramp of 1 in 12, and what a road bends by that goes over into one as steep
+//  ______--      a ramp of 1 in 12 at the end of level ground, or of a road that is bent across it
 TEST_CASE("surfaces: the foot of a ramp is the edge of a ramp, whatever the ground is bent by beside it") {
   const double bend_1_m = GENERATE(0.0, 0.01);
   const auto stages = traced(

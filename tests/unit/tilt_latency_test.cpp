@@ -14,7 +14,7 @@ using Turn = TiltLatency::Turn;
 
 constexpr float rate_rad_s = 0.5f, range_m = 2.0f, point_sd_m = 0.01f;
 
-/// Of lines each of which lies between other readings.
+/// A new number for each line, as if each lay between other readings.
 std::uint32_t next_reading() {
   static std::uint32_t reading = 0;
   return ++reading;
@@ -34,7 +34,7 @@ TiltLatency started(const PoseSettings& pose = {}) {
   return latency;
 }
 
-/// A sweep of 40 lines from 0.2 to 1.2 rad or back, over ground that lies where a latency of lag_s makes it lie.
+/// A sweep of 40 lines from 0.2 to 1.2 rad or back, over ground that appears where a latency of lag_s puts it.
 void sweep(TiltLatency& latency, bool downward, float lag_s, test::Noise& noise, float outliers_m = 0.0f) {
   const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
   for (int line = 0; line < 40; ++line) {
@@ -85,8 +85,8 @@ TEST_CASE("tilt latency: upward and downward sweeps have their own, which may ch
   }
 }
 
-/// Sweeps over ground that each sees from nearer than the one before, which went the other way: the more so, the longer
-/// ago. A robot that stands sees it from where it was.
+/// Sweeps over ground that the one before, in the other direction, saw from farther away: the longer ago, the farther.
+/// A stationary robot saw it from the same place.
 struct Sweeps {
   explicit Sweeps(bool moves) : drives(moves) {
     PoseSettings pose;
@@ -97,7 +97,7 @@ struct Sweeps {
   void sweep(float lag_s) {
     const bool downward = sweeps++ % 2 == 1;
     const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
-    bool turned = drives && sweeps > 1;  // standing, no line before that is told tells of the first sweep's
+    bool turned = drives && sweeps > 1;  // stationary, comparisons begin when the turn is reported
     for (int line = 0; line < 40; ++line) {
       const float advance = 0.025f * static_cast<float>(line);
       const Turn turn = latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
@@ -117,12 +117,12 @@ struct Sweeps {
   }
 
   bool drives;
-  float mount_rad = 0.0f;  ///< by which the mount leans more than is known: ground farther away seems higher, or lower
+  float mount_rad = 0.0f;  ///< unknown lean of the mount: ground farther away seems higher, or lower
   TiltLatency latency;
   test::Noise noise{3};
   int sweeps = 0;
-  float map_lag_s = 0.0f, map_offset_s = 0.0f;  ///< of the ground before: its servo's, and what it was put down with
-  float ground_before_s = 0.0f;                 ///< what the ground before the last sweep is put down with in the end
+  float map_lag_s = 0.0f, map_offset_s = 0.0f;  ///< of the mapped ground: the servo's latency, and the offset used
+  float ground_before_s = 0.0f;                 ///< the final offset of the ground before the last sweep
 };
 
 TEST_CASE("tilt latency: the first turn tells it, and what was mapped before is mended") {
@@ -162,7 +162,7 @@ TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
     apart_s2 += (missing_s + ground_missing_s) * (missing_s + ground_missing_s) / 98.0f;
   }
   CHECK(std::sqrt(missing_s2) < 0.002f);
-  CHECK(std::sqrt(apart_s2) < 0.001f);  // by which the ground seen by both is torn
+  CHECK(std::sqrt(apart_s2) < 0.001f);  // the tear in the ground that both have seen
 }
 
 TEST_CASE("tilt latency: a mount that leans by a milliradian is none of the servo's latency") {
@@ -367,7 +367,7 @@ TEST_CASE("tilt latency: a line waits for its tilt as long as the later of this 
     sweep(latency, false, 0.02f, noise);
     CHECK(latency.latest_offset_s() == Approx(0.02).margin(0.0015));
   }
-  Sweeps drive{true};  // the next sweep's is that of all, but for a little
+  Sweeps drive{true};  // here the next sweep's latency is nearly that of all
   for (int k = 0; k < 12; ++k) {
     drive.sweep(0.012f);
     CHECK(drive.latency.latest_offset_s() >= drive.latency.offset_s());

@@ -25,7 +25,7 @@ using Source = TiltAngle::Source;
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t t0 = 1'290'682'980'025'000'000;  // nanoseconds of the epoch need more than 32 bits
 
-/// A track with readings every 25 ms of a servo that turns by 0.3 rad/s.
+/// A track with readings every 25 ms from a servo that turns at 0.3 rad/s.
 std::unique_ptr<Track> turning(int readings, const TiltSettings& settings = {}) {
   auto track = std::make_unique<Track>();
   track->init(settings);
@@ -69,7 +69,7 @@ TEST_CASE("tilt track: beyond its ends the angle goes on at the same rate, up to
 
 TEST_CASE("tilt track: two stamps that lie close together do not tell the rate far beyond them") {
   const auto track = turning(10);  // 0.0075 rad in 25 ms
-  // A frame that waited on the bus for the next: of 2.25 mrad before, stamped 0.2 ms before it.
+  // A frame that waited on the bus for the next one: an angle 2.25 mrad earlier, stamped 0.2 ms before it.
   track->push({t0 + 250 * ms - ms / 5, -0.2f + 0.075f - 0.00225f});
   track->push({t0 + 250 * ms, -0.2f + 0.075f});
   Snapshot angles = snapshot(*track);
@@ -104,7 +104,7 @@ TEST_CASE("tilt track: how many readings have come after a line's last beam chan
   track->init(TiltSettings{});
   const std::int64_t last_beam = t0 + 47 * ms;
   std::vector<std::pair<float, float>> told;
-  for (int k = 0; k < 16; ++k) {  // every 5 ms, faster and faster
+  for (int k = 0; k < 16; ++k) {  // every 5 ms, ever faster
     track->push({t0 + 5 * k * ms, 1e-4f * static_cast<float>(k * k)});
     if (t0 + 5 * k * ms <= last_beam) continue;
     Snapshot angles = snapshot(*track, last_beam);
@@ -126,7 +126,7 @@ TEST_CASE("tilt track: near a turn, beside a damaged reading and where readings 
   const auto turns = std::make_unique<Track>(), damaged = std::make_unique<Track>();
   turns->init(settings);
   damaged->init(settings);
-  for (int k = 5; k <= 20; ++k) {  // every 5 ms at 0.2 rad/s, one track back from 50 ms on
+  for (int k = 5; k <= 20; ++k) {  // every 5 ms at 0.2 rad/s; one track turns back at 50 ms
     turns->push({t0 + 5 * k * ms, 1e-3f * static_cast<float>(k < 10 ? k : 20 - k)});
     damaged->push({t0 + 5 * k * ms, 1e-3f * static_cast<float>(k) + (k == 12 ? 0.05f : 0.0f)});
   }
@@ -180,8 +180,8 @@ TEST_CASE("tilt track: readings too far apart say nothing of the time between") 
   Snapshot angles = snapshot(*track);
   CHECK(angles.at(t0 + 50 * ms).source == Source::interpolated);
   CHECK(angles.at(t0 + 150 * ms).source == Source::none);
-  CHECK(angles.at(t0 + 201 * ms).source == Source::interpolated);  // its own moment
-  CHECK(angles.at(t0 + 210 * ms).source == Source::none);          // no rate to go on with
+  CHECK(angles.at(t0 + 201 * ms).source == Source::interpolated);  // the moment of a reading
+  CHECK(angles.at(t0 + 210 * ms).source == Source::none);          // no rate to continue with
 }
 
 TEST_CASE("tilt track: across a gap of seconds, where the settings allow it, the angle is on the line all the same") {
@@ -215,7 +215,7 @@ TEST_CASE("tilt track: repeated, older and not finite readings are dropped and c
   CHECK_FALSE(track->push({at + 25 * ms, -std::numeric_limits<float>::infinity()}));
   CHECK_FALSE(track->push({at + 25 * ms, 1e30f}));  // a damaged float frame
   CHECK(track->dropped() == 5);
-  CHECK(track->push({at + 25 * ms, 0.0f}));  // a dropped reading does not take its time along
+  CHECK(track->push({at + 25 * ms, 0.0f}));  // a dropped reading does not count as the newest
   CHECK(snapshot(*track).at(t0 + 25 * ms).angle_rad == Approx(-0.1925));
 }
 
@@ -230,7 +230,7 @@ TEST_CASE("tilt track: after a stamp of the future, or a clock that is set back,
     CHECK(snapshot(*track).at(at).angle_rad == 0.1f);
     REQUIRE(track->push({at + 10 * ms, 0.2f}));
     Snapshot angles = snapshot(*track);
-    CHECK(angles.at(t0 + 25 * ms).source == Source::none);  // of before
+    CHECK(angles.at(t0 + 25 * ms).source == Source::none);  // from before
     CHECK(angles.at(at + 5 * ms).angle_rad == Approx(0.15));
     CHECK(angles.at(t0 + 50 * ms + ahead).source == Source::none);
   }
@@ -277,7 +277,7 @@ TEST_CASE("tilt track: after init it starts afresh") {
 }
 
 TEST_CASE("tilt track: a snapshot beside a hammering writer is never torn") {
-  // The angle tells the reading's number, so that a time with another reading's angle would show.
+  // The angle encodes the reading's number, so that a time with another reading's angle would show.
   const auto track = std::make_unique<Track>();
   TiltSettings settings;
   settings.max_gap_s = 1.0f;
@@ -295,10 +295,10 @@ TEST_CASE("tilt track: a snapshot beside a hammering writer is never torn") {
   for (int k = 0; k < readings;) {
     k = written.load(std::memory_order_acquire);
     track->snapshot(angles, 0.0f, INT64_MAX);
-    // Asked in the middle between readings, rising: a descending or mixed pair has another angle or rate.
+    // Queried midway between readings, with rising times: a descending or mixed pair has another angle or rate.
     for (int back = 12; back > 0 && k > 16; --back) {
       const TiltAngle a = angles.at(t0 + static_cast<std::int64_t>(k - back) * ms + ms / 2);
-      if (a.source != Source::interpolated) continue;  // replaced meanwhile
+      if (a.source != Source::interpolated) continue;  // replaced in the meantime
       ++asked;
       torn += std::abs(a.angle_rad - (static_cast<float>(k - back) + 0.5f)) > 0.1f ||
               std::abs(a.rate_rad_s - 1000.0f) > 1.0f;

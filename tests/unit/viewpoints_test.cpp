@@ -1,4 +1,4 @@
-// The places that a laser has seen from, under numbers that a cell can bear.
+// The places from which a laser has seen, under numbers small enough for a cell to store.
 #include "curbline/map/viewpoints.hpp"
 
 #include <catch2/catch.hpp>
