@@ -1,4 +1,4 @@
-# Firmware by Debian's gcc-arm-none-eabi. The file that includes this one says which core: curbline_core.
+# Firmware, with Debian's gcc-arm-none-eabi. The file that includes this one sets curbline_core.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
@@ -8,7 +8,8 @@ set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)  # nothing links before the bo
 set(curbline_flags "${curbline_core} -mfloat-abi=hard -ffunction-sections -fdata-sections")
 set(CMAKE_C_FLAGS_INIT "${curbline_flags}")
 set(CMAKE_ASM_FLAGS_INIT "${curbline_flags}")
-# Eigen aligns nothing beyond what the core asks for and refuses to allocate.
+# Eigen aligns nothing beyond what the core requires, and refuses to allocate.
 set(CMAKE_CXX_FLAGS_INIT "${curbline_flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics -DEIGEN_NO_MALLOC -DEIGEN_DONT_VECTORIZE -DEIGEN_MAX_ALIGN_BYTES=8")
-# Loops of up to 200 instructions are laid out whole otherwise: 4 kB of flash more, and no instruction less. -g is for tools/budget, in no flash.
+# Otherwise loops of up to 200 instructions are unrolled completely: 4 kB more flash, and no fewer instructions executed. -g is for
+# tools/budget and takes no flash.
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 --param=max-completely-peeled-insns=100 -g -DNDEBUG" CACHE STRING "speed, where it costs no flash")

@@ -1,4 +1,4 @@
-# Linux on arm by Debian's g++-arm-linux-gnueabihf.
+# Linux on arm, with Debian's g++-arm-linux-gnueabihf.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)

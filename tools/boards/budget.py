@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""budget.py BUILD BOARD [--keep]: what the firmware costs: used, allowed, change since the figures that were last kept.
+"""budget.py BUILD BOARD [--keep]: what the firmware costs: used, allowed, and the change since the figures were last kept.
 
-BOARD is cortex-m7 or cortex-r5f. The figures are those of its firmware and of its last run over the drives (run_drives.py). Ends with 1
-if a budget of board/FOLDER/budget.toml is exceeded. --keep writes the figures to board/FOLDER/measured.csv. Without the recorded drives the mean of a
-line is that of the simulated ones, which have the most to do: it is not judged then, nor kept.
+BOARD is cortex-m7 or cortex-r5f. The figures are those of its firmware and of its last run over the drives (run_drives.py). The exit status is 1
+if a budget of board/FOLDER/budget.toml is exceeded. --keep writes the figures to board/FOLDER/measured.csv. Without the recorded drives the mean of
+a line is that of the simulated ones, which require the most work: it is not judged then, and --keep is refused.
 """
 import csv
 import re

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""make_drives.py BUILD: makes the drives that boards are run on, in BUILD/board/drives."""
+"""make_drives.py BUILD: makes the drives for the boards, in BUILD/board/drives."""
 import sys
 
 import drives

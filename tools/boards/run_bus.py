@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""run_bus.py BUILD: a drive on the Cortex-R5 whose tilt frames go over its CAN bus, each at its own time; then the same on the desk, from
-what the board says it received. Every frame must have come, unharmed and within LATEST_NS; curbs and counters must be the same bytes."""
+"""run_bus.py BUILD: runs a drive on the Cortex-R5 with its tilt frames sent over its CAN bus, each at its own time; then the same drive on the
+desk, with the frames that the board says it received. Every frame must arrive undamaged and within LATEST_NS; curbs and counters must be the
+same bytes."""
 import struct
 import subprocess
 import sys

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """run_drives.py BUILD BOARD: runs every drive on a board and compares its results with the desk's, byte for byte.
 
-Results go to BUILD/board/results/BOARD. The desk's own board, x86-64-gcc, is what the others are compared with: run it first. A core
-also leaves the stack it used (NAME.stack) there, and one with a budget its instruction counts (NAME.counts, a row a scan line).
+Results go to BUILD/board/results/BOARD. The others are compared with the desk's own board, x86-64-gcc, so run that first. A core also
+writes the stack that it used (NAME.stack), and one with a budget its instruction counts (NAME.counts, a row a scan line).
 """
 import re
 import sys

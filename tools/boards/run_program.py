@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""run_program.py BUILD BOARD PROGRAM [word...]: runs a firmware on its board and prints what it says. Ends as the firmware does."""
+"""run_program.py BUILD BOARD PROGRAM [word...]: runs a firmware on its board and prints its output. Fails if the firmware fails."""
 import sys
 
 import boards

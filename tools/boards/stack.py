@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""stack.py ELF FUNCTION [PREFIX]: worst-case stack of a function of a firmware (PREFIX of its binutils: arm-none-eabi-) and the way to it.
+"""stack.py ELF FUNCTION [PREFIX]: worst-case stack of a function of a firmware, and the path of calls that needs it. PREFIX is that of
+its binutils: arm-none-eabi-.
 
-From the compiler's call graph (-fcallgraph-info=su,da), with the linker's and the C library's own functions
-read off the disassembly. Recursion and calls through pointers are refused: their depth is not known."""
+Computed from the compiler's call graph (-fcallgraph-info=su,da); functions of the linker and the C library are read from the
+disassembly. Recursion and calls through pointers are refused, because their depth is not known."""
 import re
 import sys
 from pathlib import Path

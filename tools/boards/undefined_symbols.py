@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""undefined_symbols.py BUILD BOARD: what the optimised library and the pipeline ask of others. Ends with 1 if that is more than copying
-and comparing memory, the square root and the compiler's helpers for arithmetic: no heap, no I/O, no clock, no exceptions, no locks."""
+"""undefined_symbols.py BUILD BOARD: the symbols that the optimised library and the pipeline need from outside. The exit status is 1 if
+these are more than copying and comparing memory, the square root and the compiler's arithmetic helpers: no heap, no I/O, no clock, no
+exceptions, no locks."""
 import re
 import sys
 
