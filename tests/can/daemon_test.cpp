@@ -218,7 +218,7 @@ TEST_CASE("daemon: a robot that drives through a log has the curbs of replay, ev
   CHECK(times_said(outcome.err, "pose") == 0);
 }
 
-TEST_CASE("daemon: lines that wait for poses have their tilt still, whatever the servo's rate", "[daemon]") {
+TEST_CASE("daemon: lines that wait for poses keep their tilt, at any rate of the servo", "[daemon]") {
   const TemporaryDirectory directory;
   std::string robot = read_file(shipped_robot("utm30lx"));
   for (const auto& [key, value] : {std::pair{"tilt_rate_hz = 100.0", "tilt_rate_hz = 500.0"},
@@ -242,9 +242,8 @@ TEST_CASE("daemon: lines that wait for poses have their tilt still, whatever the
   CHECK(pipeline.at("beams_extrapolated") == 0);
 }
 
-TEST_CASE(
-    "daemon: poses that a FIFO gives as the robot goes tell where its curbs are; damage and silence are told once",
-    "[daemon]") {
+TEST_CASE("daemon: poses from a FIFO place the curbs of a moving robot; damage and silence are reported once",
+          "[daemon]") {
   const std::string fifo = make_fifo(driven());
   SocketCan receiver;
   const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
@@ -284,7 +283,7 @@ TEST_CASE(
   CHECK(times_said(outcome.err, "the localisation gives poses again") == 1);
 }
 
-TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is well", "[daemon]") {
+TEST_CASE("daemon: a robot with a fixed tilt reports a good tilt on the bus", "[daemon]") {
   SocketCan receiver;
   const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FE, false}};
   REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
@@ -300,7 +299,7 @@ TEST_CASE("daemon: a robot whose tilt is fixed tells the bus that its tilt is we
   }
 }
 
-TEST_CASE("daemon: a CAN interface that a robot at a fixed tilt has no use for is told", "[daemon]") {
+TEST_CASE("daemon: a CAN interface that a fixed-tilt robot does not need is reported", "[daemon]") {
   const TemporaryDirectory directory;
   const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
   Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", fixed});
@@ -360,7 +359,7 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   check_alike(last_curbs(service.lines()), end_of(recording()));
 }
 
-TEST_CASE("daemon: frames repeated, swapped, late, cut and with bits flipped are survived, told once, and forgotten",
+TEST_CASE("daemon: repeated, swapped, late, cut and damaged frames are survived, reported once, and leave no trace",
           "[daemon]") {
   int number = 0, cut_short = 0;
   std::optional<can::Frame> held;

@@ -160,7 +160,7 @@ TEST_CASE("socketcan: error messages are counted by kind and are no frames", "[f
   CHECK(counters.frames == 1);
 }
 
-TEST_CASE("socketcan: a flood of error messages hides no frame and holds no call up", "[frames]") {
+TEST_CASE("socketcan: a flood of error messages hides no frame and delays no call", "[frames]") {
   Pair bus;
   for (int i = 0; i < 2000; ++i) {
     say_error(bus.sender, CAN_ERR_PROT | CAN_ERR_BUSERROR);

@@ -23,7 +23,7 @@ void give_back(void* memory) {
   std::free(kept);
 }
 
-TEST_CASE("heap trap: every way to ask for memory is counted, by whoever it is asked") {
+TEST_CASE("heap trap: every kind of allocation is counted, whoever makes it") {
   if (!heap_trapped()) {
     WARN("SKIPPED: a sanitizer has a malloc of its own");
     return;

@@ -48,7 +48,7 @@ TEST_CASE("journal: a line is the words and numbers that it was made of") {
   CHECK(standard_error.read() == "curblined: lines: 12 of many\n");
 }
 
-TEST_CASE("journal: who stops to read standard error does not stop the daemon") {
+TEST_CASE("journal: a reader of standard error that stops does not stop the daemon") {
   using Clock = std::chrono::steady_clock;
   std::chrono::duration<double> waited{};
   {

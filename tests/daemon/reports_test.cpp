@@ -152,7 +152,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   CHECK(status.at("microseconds").at("scan_line") == 25'000);
 }
 
-TEST_CASE("reports: the state is the worst that is the matter") {
+TEST_CASE("reports: the reported state is the worst of all problems") {
   Report s;
   CHECK(state_of(s) == "ok");
   ScannerState scanner;

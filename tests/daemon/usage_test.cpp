@@ -77,7 +77,7 @@ TEST_CASE("curblined: a laser at a fixed tilt needs no CAN, and the end of its l
   CHECK_FALSE(status.contains("tilt"));
 }
 
-TEST_CASE("curblined: scan lines with a damaged stamp are told as what they are, not as lines that came too fast") {
+TEST_CASE("curblined: scan lines with a damaged stamp are reported as such, not as too fast") {
   const TemporaryDirectory directory;
   const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n");
   const Outcome outcome = curbline({"--robot", fixed, "--scans", scan_log(directory, 8, 5'000'000'000), "--curbs",

@@ -116,7 +116,7 @@ std::int64_t worst_change_ns(Scanner& scanner, std::int64_t by_ns) {
   return worst_ns;
 }
 
-TEST_CASE("scanner: where the host's clock is set to another time, the very next line bears it") {
+TEST_CASE("scanner: after a change of the host's clock the very next line has the new time") {
   for (const std::int64_t by_ns : {3 * s, 50 * ms, -300 * ms, 3600 * s, -3600 * s}) {
     for (Scanner& scanner : small_scanners()) {
       INFO(scanner.name << ", set by " << by_ns / ms << " ms");

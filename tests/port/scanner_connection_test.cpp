@@ -78,7 +78,7 @@ TEST_CASE("connection: a scanner's stream is stopped before it is closed") {
   }
 }
 
-TEST_CASE("connection: attempts are apart by the time given, though they succeed and the scanner is lost at once") {
+TEST_CASE("connection: attempts keep the given interval, even if they succeed and the scanner is lost at once") {
   const Listener listener;
   cola::Session session;
   LiveScanner live(session, stream_to(listener.port()), {.retry_after = 200ms, .silence = 1ms});
@@ -162,7 +162,7 @@ bool line_a_byte(std::span<const std::uint8_t>& bytes) {
   return true;
 }
 
-TEST_CASE("connection: bytes that are no line do not keep a reader for longer than it gives") {
+TEST_CASE("connection: bytes without a line do not hold a reader longer than its timeout") {
   const Listener listener;
   ReadingSession session(no_line);
   LiveScanner live(session, stream_to(listener.port()), {.silence = 2s});

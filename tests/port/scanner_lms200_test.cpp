@@ -132,7 +132,7 @@ TEST_CASE("lms200: what was refused is forgotten with its connection") {
   CHECK(sick.session.problem().empty());
 }
 
-TEST_CASE("lms200: it is set to the robot's field and step, or left as it is where it has none like them") {
+TEST_CASE("lms200: it is set to the robot's field and step, or left unchanged if it does not have them") {
   CHECK(Sick(181).talk() == std::vector<Bytes>{stop, configuration, variant, start});
   CHECK(Sick(401).talk() == std::vector<Bytes>{stop, configuration, {0x3B, 100, 0, 25, 0}, start});
   CHECK(Sick(541).talk() == std::vector<Bytes>{stop, configuration, start});

@@ -158,7 +158,7 @@ TEST_CASE("scip2: late replies to commands do not stop a scanner that measures")
   CHECK(hokuyo.hear(hokuyo.scan(hokuyo.clock_ms())));
 }
 
-TEST_CASE("scip2: a command is said again after half a second, and a second reply to it is no reply to the next") {
+TEST_CASE("scip2: a command is repeated after half a second, and a second reply to it does not answer the next") {
   Hokuyo hokuyo;
   CHECK(hokuyo.command() == "QT");
   hokuyo.now_ns += 499 * ms;
@@ -204,7 +204,7 @@ TEST_CASE("scip2: a line bears the time of its first step, by the scanner's own 
   CHECK(hokuyo.session.line().bearing_step_rad == Approx(step_rad));
 }
 
-TEST_CASE("scip2: a scanner that does not tell its clock measures all the same, its lines 25 ms older than they come") {
+TEST_CASE("scip2: without its clock a scanner still measures; its lines are dated 25 ms before arrival") {
   for (const auto& [command, questions] : {std::pair{"TM0", 0}, {"TM1", 8}}) {
     INFO(command);
     Hokuyo hokuyo;

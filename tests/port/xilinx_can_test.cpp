@@ -465,7 +465,7 @@ TEST_CASE(
   CHECK(b.bus.receive(b.frames, off_ns + 100'001'000) == 1);
 }
 
-TEST_CASE("xilinx_can: a bus-off that the controller has left by itself is one too") {
+TEST_CASE("xilinx_can: a bus-off counts even if the controller has recovered by itself") {
   Bench b;
   REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
   b.controller.flag_bus_off();

@@ -130,7 +130,7 @@ TEST_CASE("program: a CAN log without a frame of the servo is refused, with the 
   check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
 }
 
-TEST_CASE("program: a scale by which no frame holds an angle is refused with the angles that can be") {
+TEST_CASE("program: a scale at which no frame can hold an angle is refused with the possible angles") {
   const Recording logs = standing();
   const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nscale = 1000.0\n");
   check_refused(replay_with(logs, "robot", robot), logs.path("can.log") + ": ",
@@ -330,7 +330,7 @@ TEST_CASE("program: truth that is cut is refused") {
   check_refused(curbline({"evaluate", logs.folder(), "--json"}), logs.path("truth.json"), "no JSON, or cut");
 }
 
-TEST_CASE("program: truth that is of another make is refused with the field") {
+TEST_CASE("program: truth in another format is refused with the field") {
   const Recording logs = standing();
   const std::string truth = read_file(logs.path("truth.json"));
   const auto error = [&](const std::string& text, const std::string& expected) {

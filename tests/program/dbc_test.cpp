@@ -28,7 +28,7 @@ TEST_CASE("program: dbc refuses a damaged file with its line, and a signal that 
   check_refused(curbline({"dbc", "--robot", dir.path("none")}), dir.path("none") + ": ", "expected a robot file");
 }
 
-TEST_CASE("program: dbc wants a whole question, and one only") {
+TEST_CASE("program: dbc requires exactly one complete request") {
   check_wrong_usage(curbline({"dbc"}), "FILE MESSAGE SIGNAL");
   check_wrong_usage(curbline({"dbc", "a.dbc"}), "FILE MESSAGE SIGNAL");
   check_wrong_usage(curbline({"dbc", "a.dbc", "M"}), "FILE MESSAGE SIGNAL");

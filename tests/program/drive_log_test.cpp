@@ -18,7 +18,7 @@ Words write_of(const Recording& logs) {
   return arguments;
 }
 
-TEST_CASE("drive log: the stream takes the place of no log that it is made of") {
+TEST_CASE("drive log: the output never overwrites one of its input logs") {
   const Recording logs("street", "utm30lx", {"--duration", "0.1"});
   const Words names = names_in(logs.folder());
   for (const auto& [option, name] :

@@ -280,7 +280,7 @@ TEST_CASE("program: a window of 300 x 300 cells is mapped, and of any size exact
   CHECK(read_labels(files.labels).size() == 13 * 7);
 }
 
-TEST_CASE("program: a strip at the window's edge is known by what lies beyond it, and nothing beyond is given out") {
+TEST_CASE("program: a strip at the window's edge is recognised by what lies beyond, which is not output") {
   const TemporaryDirectory dir;
   const Files files(dir);
   // One row of cells of the pavement behind the step lies in the window.

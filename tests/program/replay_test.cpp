@@ -133,7 +133,7 @@ TEST_CASE("program: positions without their SYNC are refused with what was expec
                 "expected id 0x80 before each");
 }
 
-TEST_CASE("program: a multiplexed tilt signal that no frame is, is told with the multiplexor's value") {
+TEST_CASE("program: a multiplexed tilt signal without any frame is reported with the multiplexor's value") {
   const Recording logs("straight_curb", "clausius", {"--duration", "0.5"});
   const std::string robot =
       robot_with_signal(logs.directory(), "clausius", "node = 1\n[tilt.signal.multiplexor]\nlength = 4\nvalue = 9\n");
@@ -180,7 +180,7 @@ TEST_CASE("program: garden walls are no curbs, the pavement beside them has one"
 //   ____________
 //               |       the first cells of the road lie in the step's shadow and contain points of the pavement
 //               |_____
-TEST_CASE("program: cells beside a step down are told by the side that their middle is on") {
+TEST_CASE("program: cells beside a step down have the label of the side of their middle") {
   const Recording logs("unfavourable_viewpoint", "utm30lx");
   CHECK(evaluate(logs).at("v").get<double>() > 0.95);
 }
@@ -243,7 +243,7 @@ TEST_CASE("program: a drive leaves its curbs in the map frame, also those behind
 
 //  |___         ___|      9 cm lower at its gutters than at its crown
 //      ---------
-TEST_CASE("program: a cambered road is one surface, and its kerbs are found, within half a cell and 1 cm") {
+TEST_CASE("program: a cambered road is one surface, and its curbs are found, within half a cell and 1 cm") {
   for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
     INFO(robot);
     const nlohmann::json figures = evaluate(Recording("camber", robot));
@@ -274,7 +274,7 @@ TEST_CASE("program: what a drive has left behind of a curb is as high as the cur
   CHECK(behind_m > 4.0);
 }
 
-TEST_CASE("program: a localisation that thinks better of itself within a line leaves no ridge on level ground") {
+TEST_CASE("program: a localisation that corrects itself within a line leaves no ridge on level ground") {
   const TemporaryDirectory dir;
   const std::string scene = dir.write("level.toml", "[ground]\nz = 0\n[robot]\npath = [[0, 0], [6, 0]]\nspeed = 1\n");
   std::string robot = read_file(shipped_robot("utm30lx"));
@@ -317,7 +317,7 @@ TEST_CASE("program: evaluate says what the reference makes of the same sweep, an
   CHECK(same.at("steps") == figures.at("reference").at("steps"));
 }
 
-TEST_CASE("program: a kerb between the robot's middle and its laser is up or down as the laser sees it") {
+TEST_CASE("program: a curb between the robot's middle and its laser is up or down as the laser sees it") {
   const TemporaryDirectory dir;
   std::string robot = read_file(shipped_robot("utm30lx"));
   robot = with_key(with_key(robot, "from_rad", "0.6"), "to_rad", "1.5");  // looks down in front of its wheels

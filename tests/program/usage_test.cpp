@@ -123,7 +123,7 @@ TEST_CASE("program: an unknown method or edge and the values that there are") {
   }
 }
 
-TEST_CASE("program: what only other methods heed is refused") {
+TEST_CASE("program: options that only other methods use are refused") {
   for (const Words& method : {Words{}, {"--method", "curbline"}, {"--method", "canny"}, {"--method", "gradient"}}) {
     check_wrong_usage(curbline(Words{"map", "a.xyz", "--edge", "eq10"} + method),
                       "--edge: of another method; expected --method crf-em\n");
@@ -178,7 +178,8 @@ TEST_CASE("program: an option that is given twice is wrong usage") {
     check_wrong_usage(curbline(Words{"map", "a.xyz"} + twice), twice.front());
 }
 
-TEST_CASE("program: a cloud behind a window's numbers is the cloud, and where it cannot be the user is told where to") {
+TEST_CASE(
+    "program: a cloud after a window's numbers is accepted; where it is ambiguous the user is told where to put it") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");
   for (const Words& window : {Words{"--origin", "0", "0", "--size", "4", "4"},

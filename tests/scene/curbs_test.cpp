@@ -42,7 +42,7 @@ TEST_CASE("scene: a low curb of 3 cm is found") {
 //  _____________ |
 //               \|  -0.03
 //  0          1.7 2               4 m
-TEST_CASE("scene: a curb is as high as from the bottom of its gutter, which is too narrow for a plane") {
+TEST_CASE("scene: a curb's height is measured from the bottom of a gutter too narrow for a plane") {
   const double x = GENERATE(2.0, 2.03, 2.05, 2.08);
   const auto height_m = [&](double px, double) { return px < x - 0.3 ? 0.0 : px < x ? 0.1 * (x - 0.3 - px) : 0.12; };
   const auto pipeline = seen(height_m);
@@ -52,7 +52,7 @@ TEST_CASE("scene: a curb is as high as from the bottom of its gutter, which is t
 
 //       ########     a street that falls by 2 %, with an oblique curb of 18 mm and nothing else:
 //     ##########     while one plane covers all of it, its cells have errors in common
-TEST_CASE("scene: a kerb of 2 cm is found where it is all there is") {
+TEST_CASE("scene: a curb of 2 cm is found where there is nothing else") {
   const auto pipeline = seen([](double x, double y) { return -0.02 * x + (x + y < 2.0 ? 0.0 : 0.018); });
   double found_m = 0.0;
   for (const Curb& c : pipeline->curbs()) {

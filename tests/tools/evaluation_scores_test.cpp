@@ -147,7 +147,7 @@ TEST_CASE("scores: a plane that leans and lies too high has the errors that it h
   CHECK(planes.height_m.median == Approx(0.0195).margin(1e-6));  // the mean x of the cells is 0.95
 }
 
-TEST_CASE("scores: cells on the edge of a kerb, which hold both sides, do not lean the plane whose label they bear") {
+TEST_CASE("scores: cells with points of both sides of a curb do not tilt the plane of their label") {
   std::vector<LabelledCell> cells = cells_of(truth, 1.9);
   for (LabelledCell& cell : cells) {
     if (cell.x_m > 1.8 && cell.y_m > 0) cell.cell.height_m += 0.04;

@@ -315,7 +315,7 @@ TEST_CASE("simulation: poses between which one interpolates are those of the dri
   CHECK(std::sqrt(attitude / n) == Approx(0.002).epsilon(0.2));
 }
 
-TEST_CASE("simulation: a localisation that thinks better of itself does so every so often, up or down") {
+TEST_CASE("simulation: a localisation that corrects itself does so at its interval, up or down") {
   Robot robot = plain_robot();
   robot.simulated.pose_jump_every_s = 2.0;
   robot.simulated.pose_jump_height_m = 0.02;

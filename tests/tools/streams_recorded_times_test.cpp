@@ -51,7 +51,7 @@ TEST_CASE("recorded times: after a gap in which the servo turned, a frame is not
   CHECK(clock.recorded()->missed() == 35);
 }
 
-TEST_CASE("recorded times: a frame that comes twice is not taken for the one of its angle on the way back") {
+TEST_CASE("recorded times: a repeated frame is not mistaken for the one with its angle on the way back") {
   const TemporaryDirectory directory;
   const auto nods = [](int k) { return 0.01 * std::abs(k - 60); };
   LogClock clock = clock_of(directory, 120, nods);

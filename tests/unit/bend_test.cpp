@@ -116,7 +116,7 @@ TEST_CASE("bend: two planes follow one if their cells are sure of it") {
 
 //  _--          the slope changes within the left half as it does from its middle to that of the right one
 //     --__
-TEST_CASE("bend: what is bent and meets what is even follows none with it, however sure the one is") {
+TEST_CASE("bend: a bent plane and a flat one share no bend, however certain the bent one is") {
   const Halves road =
       halves([](double x, double) { return x < 2.0 ? -0.02 * (x - 1.0) * (x - 1.0) : -0.02 - 0.04 * (x - 2.0); });
   const float sd_m = 0.003f;

@@ -30,9 +30,7 @@ TEST_CASE("beside: the ground beside a border is carried on to it, and found by 
   CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
 }
 
-TEST_CASE(
-    "beside: a plane may be wrong beside a border by up to half of what its cells lie off it beyond their "
-    "errors") {
+TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cells' deviation beyond their errors") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };

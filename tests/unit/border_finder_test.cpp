@@ -389,7 +389,7 @@ TEST_CASE("border finder: a step down is told, however wide what it hides") {
   CHECK((turned ? 2.4f - curbs[0].y0_m : curbs[0].x0_m) == Approx(edge).margin(0.05));
 }
 
-TEST_CASE("border finder: planes that more parts than what a step hides tell no step") {
+TEST_CASE("border finder: planes farther apart than a step can hide make no step") {
   const bool turned = GENERATE(false, true);
   CHECK(curbs_of_platform(1.2, 0.05, 0.6, turned).empty());
   CHECK(curbs_of_platform(1.2, -0.05, 0.6, turned).empty());
@@ -465,7 +465,7 @@ TEST_CASE("border finder: a few readings below the end of what is seen hide a st
 
 //  o
 //  _________    ________     the foot of a ramp, with the ground around it not seen
-TEST_CASE("border finder: planes that meet in what is not seen part in its middle") {
+TEST_CASE("border finder: planes that meet in unseen ground have their border in its middle") {
   const auto stages =
       traced([](double x, double) { return x > 1.1 && x < 1.5 ? std::nan("") : 0.2 * std::max(x - 1.3, 0.0); });
   REQUIRE(stages->tracer.curbs().size() == 1);
@@ -590,7 +590,7 @@ TEST_CASE("border finder: what the edge of another plane hides tells no step bet
   CHECK(of_platform == 1);
 }
 
-TEST_CASE("border finder: where in a cell an edge lies is told by readings that do not lie evenly in it") {
+TEST_CASE("border finder: readings spread unevenly in a cell still locate its edge") {
   for (const bool turned : {false, true}) {
     Stages<small_limits> stages(small_settings());
     for (int i = 0; i < 24; ++i) {

@@ -141,7 +141,7 @@ TEST_CASE("common noise: a step by which no planes are parted yet does not pass 
   CHECK(share_of(stages, PlanePrior{}) < 0.3f);
 }
 
-TEST_CASE("common noise: nor do three, which cross three quarters of the window") {
+TEST_CASE("common noise: three steps across three quarters of the window do not pass for it either") {
   const Unevenness even(0.003, 0.0, 0.0);
   Stages<limits> stages(map_settings());
   test::fill(stages.dem, [&](double x_m, double y_m) {

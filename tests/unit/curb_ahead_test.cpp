@@ -32,7 +32,7 @@ TEST_CASE("curb ahead: the nearest of those that reach into the way, at the poin
   CHECK(from_behind->distance_m == Approx(0.0f).margin(1e-6));
 }
 
-TEST_CASE("curb ahead: the gutter before a kerb does not hide it, alone it is told") {
+TEST_CASE("curb ahead: the gutter before a curb does not hide it, alone it is told") {
   Curb gutter{}, kerb{}, ramp{};
   gutter.x0_m = gutter.x1_m = 0.5f, kerb.x0_m = kerb.x1_m = 0.6f, ramp.x0_m = ramp.x1_m = 0.8f;
   for (Curb* curb : {&gutter, &kerb, &ramp}) curb->y0_m = -1.0f, curb->y1_m = 1.0f;

@@ -20,7 +20,7 @@ TEST_CASE("curb: the overlap of two pieces is what of the one lies along the oth
   CHECK(overlap_m(piece(1.3f, 0.5f, 1.5f), before, 0.2f) == 0.0f);
 }
 
-TEST_CASE("curb: of steps along each other the longest is told, whatever their order, of equals one") {
+TEST_CASE("curb: of parallel steps the longest is reported, in any order; of equal ones one") {
   const auto step = [](float x_m, float length_m) {
     return Curb{.x0_m = x_m, .y0_m = 0.0f, .x1_m = x_m, .y1_m = length_m, .kind = CurbKind::step_up};
   };
@@ -50,7 +50,7 @@ struct Way {
   }
 };
 
-TEST_CASE("curb: how far a place lies to a curb's far side, its left, and what overlaps, is so in any direction") {
+TEST_CASE("curb: distance to the far side and overlap do not depend on a curb's direction") {
   const double angle = GENERATE(0.0, 0.5236, 1.5708, 2.4, -2.0);
   const Way way{1.0, 3.0, angle};
   const Curb curb = way.piece(0.0, 2.0, 0.0);
@@ -119,7 +119,7 @@ struct Meeting {
   }
 };
 
-TEST_CASE("curb: a step is what is higher than two deviations of its height, of cells and of its place leave open") {
+TEST_CASE("curb: a step exceeds two deviations of its height, of its cells and of its position") {
   const double angle = GENERATE(0.0, 0.8, 1.5708, 2.6, -1.5708);
   const float half_gap_m = 0.05f;
   const auto about = [](double m) { return Approx(m).margin(1.5e-4); };

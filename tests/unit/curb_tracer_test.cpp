@@ -309,7 +309,7 @@ auto behind_box(double from_y, double to_y = 2.2) {
   };
 }
 
-TEST_CASE("curb tracer: behind what stands before it a curb goes on straight, wherever in what is hidden it lies") {
+TEST_CASE("curb tracer: a curb continues straight behind an obstacle, wherever in the hidden part it lies") {
   const auto stages = traced(behind_box(1.6), 0.0f, 1.2f);
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
@@ -342,7 +342,7 @@ TEST_CASE("curb tracer: the place of a curb of which an obstacle hides most is k
   CHECK(sd_m(-1.0, 9.0) > sd_m(0.6));  // all of it
 }
 
-TEST_CASE("curb tracer: a kerb's face is no obstacle before what lies behind it") {
+TEST_CASE("curb tracer: a curb's face is no obstacle before what lies behind it") {
   const auto stages = traced(
       [](double x, double y) {
         if (x > 1.1 && x < 1.2 && static_cast<int>(10.0 * y) % 4 == 1) return std::nan("");
@@ -465,7 +465,7 @@ TEST_CASE(
 //               .:'.    grass, 3 cm rough
 //  ____________|
 TEST_CASE(
-    "curb tracer: a kerb between a road and rough ground is told, its height less certain than beside a smooth one") {
+    "curb tracer: a curb between a road and rough ground is told, its height less certain than beside a smooth one") {
   const auto kerb_to = [](double rough_m) {
     auto stages = std::make_unique<Stages<>>(small_settings());
     Noise noise;
@@ -586,7 +586,8 @@ TEST_CASE("curb tracer: the height of a step is less certain where few points te
   CHECK(deviation_m(1) == Approx(2.0 * deviation_m(4)).epsilon(0.1));
 }
 
-TEST_CASE("curb tracer: however much scan lines err, a height is told by as many cells as its planes have lines") {
+TEST_CASE(
+    "curb tracer: however large the errors of scan lines, a height counts as many cells as its planes have lines") {
   const auto stages = traced(up, 0.0f, 1.2f);
   const auto deviation_m = [&](float line_rad2) {
     stages->dem.set_common(1e-8f, line_rad2);
@@ -1055,7 +1056,7 @@ TEST_CASE("curb tracer: an edge along x lies before its shadow from where it was
   }
 }
 
-TEST_CASE("curb tracer: from a table that it stands on a robot is told the drops, however high the table lies") {
+TEST_CASE("curb tracer: a robot on a table is told its drops, however high the table is") {
   for (const double map_m : {0.0, 4.0}) {
     for (const bool turned : {false, true}) {
       const auto told = [=](double robot_m) {
@@ -1117,7 +1118,7 @@ TEST_CASE("curb tracer: an oblique face is as wide as across it") {
   CHECK(longest->face_width_m == Approx(0.1).margin(0.06));
 }
 
-TEST_CASE("curb tracer: a number goes to one curb, of a kind, that lies within two cells of where it lay") {
+TEST_CASE("curb tracer: a number goes to one curb of the same kind within two cells of its earlier position") {
   const auto first = traced([](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   CurbTracer<test::small_limits> tracer;
   const auto ids_on = [&](Stages<>& stages) {

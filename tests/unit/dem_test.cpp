@@ -385,8 +385,7 @@ TEST_CASE("dem: what was touched is told until it is cleared") {
   CHECK_FALSE(dem.touched(dem.slot(0, 8)));
 }
 
-TEST_CASE(
-    "dem: a latency that was greater moves heights to where they would have been put, those of this sweep apart") {
+TEST_CASE("dem: a latency found to be greater corrects heights, those of this sweep separately") {
   Map dem = make_map(moving());
   const auto add = [&](double x, float growth_m_s) {
     Point point = at(x, 0.05, 0.1);
@@ -637,7 +636,7 @@ TEST_CASE("dem: every point that is taken lies in the surroundings, of the small
   CHECK(taken > 100);
 }
 
-TEST_CASE("dem: what is level is kept whole from sweep to sweep, of what has changed a quarter") {
+TEST_CASE("dem: level cells are kept whole from sweep to sweep, changed ones by a quarter") {
   const auto points_after = [](float second_m) {
     Map dem = make_map(moving());
     const int s = slot_at(dem, 0.55f, 0.05f);

@@ -115,7 +115,7 @@ TEST_CASE("ground: wide ground is ground however rough it is, as long as it is l
 //         _/           the foot of a wall and the ground before it, mixed in one reading
 //  ______/
 TEST_CASE(
-    "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a kerb is none") {
+    "ground: a strip of mixed readings at the foot of an obstacle is left to the ground before it, a curb is none") {
   const auto wall = [](double x, double y) {
     return 0.5 + 0.6 * (x - 1.2) + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
   };
@@ -391,7 +391,7 @@ TEST_CASE("ground: a row of cells at the window's end, of which the slope is not
 
 //           o______     the origin of a cloud, on the pavement's plane; no laser has seen it from there
 //  ________|
-TEST_CASE("ground: a plane that holds the laser is ground where that is no higher above the ground than a kerb") {
+TEST_CASE("ground: a plane through the laser is ground if it is no higher above the ground than a curb") {
   const auto pavement = [](double kerb_m) { return [=](double x, double) { return x < 1.4 ? -kerb_m : 0.0; }; };
   CHECK(borne(pavement(0.12), 0.0f) == 2);
   CHECK(borne(pavement(0.28), 0.0f) == 2);
@@ -534,7 +534,7 @@ TEST_CASE("ground: on a street that leans, too, a pavement before a wall is no f
 //             |
 //          __ |           a ledge before a wall, 20 cm deep; the ground before it is not seen
 //  ______     |
-TEST_CASE("ground: level readings on a wall are left to the ground, from as high above it on as no kerb is") {
+TEST_CASE("ground: level readings on a wall, higher than any curb, are assigned to the ground") {
   const auto ledge = [](double ledge_m) {
     return [=](double x, double y) {
       if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
@@ -707,7 +707,7 @@ TEST_CASE("ground: the next step of a stair may lie behind a face of two cells, 
   CHECK(borne_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.3), quarters)) == 2);
 }
 
-TEST_CASE("ground: a bank before rough grass that is lower than a kerb is no fringe of it, before a hedge it is") {
+TEST_CASE("ground: a bank before rough grass that is lower than a curb is no fringe of it, before a hedge it is") {
   const auto before = [](double rough_m) {
     return [=](double x, double y) {
       if (x >= 1.2) return 0.15 + (static_cast<int>(y * 100) % 10 < 5 ? -rough_m : rough_m);

@@ -361,7 +361,7 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
   CHECK(worst < static_cast<float>(quantisation));
 }
 
-TEST_CASE("label field: no cell bears a plane that has died, from the line on that it dies by") {
+TEST_CASE("label field: no cell has the label of a dead plane, from the line on in which it dies") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   // Two patches out of reach of each other until the ground between them is seen.
   const auto see = [&](double from, double to) {

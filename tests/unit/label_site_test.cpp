@@ -49,7 +49,7 @@ TEST_CASE("label site: its belief is the softmax of its node and of what it has 
   CHECK(s.most_likely({0, 2 * LabelSite::message_scale, 0}) == 5);
 }
 
-TEST_CASE("label site: one that is sure says the whole coupling, one that is not the Potts factor's share of it") {
+TEST_CASE("label site: a certain site sends the whole coupling, an uncertain one its share by the Potts factor") {
   const LabelSite::Coupling coupling = LabelSite::coupling(1.5f);
   const LabelSite::Message sure = LabelSite::message({1.0f, 0.0f, 0.0f}, coupling);
   CHECK(sure == LabelSite::Message{48, 0, 0});

@@ -157,7 +157,7 @@ TEST_CASE("line clock: stamps of another rate than the settings', or of none, ar
   keeps(utm30lx, stamps);
 }
 
-TEST_CASE("line clock: lines of a motor that is a hundredth off, late besides, get no times that are worse") {
+TEST_CASE("line clock: a motor that is 1 % off, with late lines, makes no time worse") {
   for (const double rate : {0.99, 1.01}) {
     Laser slower = utm30lx;
     slower.turn_ns *= rate;
@@ -171,7 +171,7 @@ TEST_CASE("line clock: lines of a motor that is a hundredth off, late besides, g
   }
 }
 
-TEST_CASE("line clock: a line that comes once more has no time if it had none, and is not moved if it had another") {
+TEST_CASE("line clock: a repeated line gets no time if it had none, and keeps the time that it had") {
   LineClock clock = clock_of(utm30lx);
   int refused = 0, moved = 0;
   for (const Line& line : late_lines(utm30lx, 5.0, 0.05, 2000)) {

@@ -185,7 +185,7 @@ TEST_CASE("map comparison: a line that was measured as poses jumped is off the m
 }
 
 TEST_CASE(
-    "map comparison: of a line on ground that has been seen since alone nothing is known: what may be off is left "
+    "map comparison: a line only on ground seen since the jump cannot be checked: points that may be off are left "
     "out") {
   const Jumping jumping;
   test::fill(jumping.stages->dem, [](double, double) { return 0.0; });

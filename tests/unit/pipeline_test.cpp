@@ -190,7 +190,8 @@ int passable_ahead(const FullPipeline& pipeline) {
   return out;
 }
 
-TEST_CASE("pipeline: who has stood before a robot that stands, and gone, is forgotten; what is put down is seen") {
+TEST_CASE(
+    "pipeline: a person who stood before a stationary robot is forgotten after leaving; an object put down is seen") {
   const auto pipeline = started();
   NoddingLaser laser;
   const Street street{2.0, 0.12};

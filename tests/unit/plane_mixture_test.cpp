@@ -409,7 +409,7 @@ TEST_CASE("plane mixture: the largest ground is no wall, however large, and whic
   CHECK(stages->mixture.largest_ground().cells > 200.0f);
 }
 
-TEST_CASE("plane mixture: something stands where a box's level top is, and where heights spread, not on a kerb") {
+TEST_CASE("plane mixture: something stands where a box's level top is, and where heights spread, not on a curb") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double x, double y) {
     if (x > 0.9 && x < 1.5 && y > 0.9 && y < 1.5) return 0.28;
@@ -478,7 +478,7 @@ TEST_CASE(
   CHECK(with_crossed_row([](double, double) { return 0.0; }, 20).cells == 23.0f * 24.0f);
 }
 
-TEST_CASE("plane mixture: what is crossed before nothing that is seen, or a wall, has no step to be off by") {
+TEST_CASE("plane mixture: crossed cells before unseen ground or a wall do not deviate by a step") {
   CHECK(with_crossed_row([](double x, double) { return x < 1.4 || x > 1.6 ? std::nan("") : 0.0; }, 15).cells == 48.0f);
   // Nor do cells that no step crosses.
   CHECK(with_crossed_row([](double x, double) { return x < 1.5   ? 0.0

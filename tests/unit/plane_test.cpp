@@ -132,7 +132,7 @@ TEST_CASE("plane evidence: two halves of a plane gain by merging, two sides of a
 
 //  ___________                                  __-------__
 //             |___________  2.5 cm: two        _-           -_  bent by as much: one
-TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, ground that bends as much is one") {
+TEST_CASE("plane evidence: a low curb along two wide pavements parts them, ground that bends as much is one") {
   Noise noise;
   const PlaneEvidence evidence;
   const auto gain = [&](auto&& height_m) {
@@ -155,7 +155,7 @@ TEST_CASE("plane evidence: a low kerb along two wide pavements parts them, groun
 
 //                    __--
 //  ________________|--   2.5 cm, of which the planes show 3 mm at the middle of one of them: the border shows it
-TEST_CASE("plane evidence: a low kerb between planes of different slope parts them, if the ground jumps along it") {
+TEST_CASE("plane evidence: a low curb between planes of different slope parts them, if the ground jumps along it") {
   Noise noise;
   const PlaneEvidence evidence;
   const auto height_m = [](double x, double) { return x < 2.0 ? 0.0 : 0.025 + 0.022 * (x - 2.0); };
@@ -312,7 +312,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("plane evidence: on a hill, too, a low kerb parts planes if the ground jumps by more than the hill rises") {
+TEST_CASE("plane evidence: on a hill, too, a low curb parts planes if the ground jumps by more than the hill rises") {
   const bool along_y = GENERATE(false, true);
   const double hill = GENERATE(0.1, -0.1);
   Noise noise;

@@ -309,7 +309,7 @@ TEST_CASE("pose offset: a pose is set back about the level axes of the map, what
 }
 
 TEST_CASE(
-    "pose offset: a localisation that leaps by as much as a kerb is found out, and a robot that climbs one after") {
+    "pose offset: a localisation that leaps by as much as a curb is found out, and a robot that climbs one after") {
   const Elsewhere robot{GENERATE(0.0, 0.7)};
   test::Noise lot(14);
   const PoseShift leap = robot.shift(0.12, 0.0, 0.0);

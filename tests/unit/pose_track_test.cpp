@@ -304,7 +304,8 @@ void climb(Pose& pose, int k) {
 }
 
 TEST_CASE(
-    "pose track: a robot has climbed when poses that jumped on end have gone on for a while, once, others have not") {
+    "pose track: a robot has climbed once poses that jumped in a row have continued for a while, reported once; others "
+    "have not") {
   const auto stepped = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.04f : 0.0f; };
   const float off_m = GENERATE(0.02f, 0.1f, 1.0f);
   const auto wrong = [off_m](Pose& pose, int k) { pose.z_m += k == 4 ? off_m : 0.0f; };

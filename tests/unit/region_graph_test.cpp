@@ -118,7 +118,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "region graph: on a hill, too, pairs of cells show a kerb by what they rise beyond the hill, along either axis") {
+    "region graph: on a hill, too, pairs of cells show a curb by what they rise beyond the hill, along either axis") {
   const int axis = GENERATE(0, 1);
   const double hill = GENERATE(0.1, -0.1);
   test::Noise noise;
@@ -308,7 +308,8 @@ int more_by_laziness(std::uint32_t seed) {
 }
 
 TEST_CASE(
-    "region graph: gains computed late end where no merge gains, with as many regions as all gains anew, on average") {
+    "region graph: lazily computed gains end where no merge gains, on average with as many regions as recomputing "
+    "all") {
   int more = 0;
   for (std::uint32_t seed = 1; seed <= 30; ++seed) more += more_by_laziness(seed);
   CHECK(std::abs(more) < 15);  // half a region out of seventeen

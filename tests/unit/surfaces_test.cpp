@@ -82,7 +82,7 @@ TEST_CASE("surfaces: three planes or more along a bend are one, by the lowest of
 
 //  ___           the road is bent as before and lies 4 cm below a pavement where x > 3
 //     |__.--.__
-TEST_CASE("surfaces: a kerb beside a cambered road parts it from the pavement, and is as high as the road is there") {
+TEST_CASE("surfaces: a curb beside a cambered road parts it from the pavement, and is as high as the road is there") {
   const auto stages = traced([](double x, double) { return x > 3.0 ? 0.028 : -0.012 * (x - 2.0) * (x - 2.0); });
   const Borne road = borne(*stages, [](double x, double) { return x < 2.8; });
   const Borne pavement = borne(*stages, [](double x, double) { return x > 3.2; });
