@@ -381,8 +381,11 @@ TEST_CASE("dem: what was touched is told until it is cleared") {
   dem.add(at(0.05, 0.05));
   CHECK(dem.touched(dem.slot(0, 8)));
   CHECK_FALSE(dem.touched(dem.slot(0, 9)));
+  CHECK(dem.block_touched(dem.slot(0, 8)));
+  CHECK_FALSE(dem.block_touched(dem.slot(0, 4)));
   dem.clear_touched();
   CHECK_FALSE(dem.touched(dem.slot(0, 8)));
+  CHECK_FALSE(dem.block_touched(dem.slot(0, 8)));
 }
 
 TEST_CASE("dem: a latency found to be greater corrects heights, those of this sweep separately") {

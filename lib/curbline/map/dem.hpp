@@ -146,6 +146,14 @@ class Dem : public Window<limits> {
 
   /// Has a cell changed since clear_touched(): by a point, or by being cleared?
   bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
+  /// Is any of a block, by the slot of its first?
+  bool block_touched(int first) const {
+    int seen = 0;
+    for (int i = 0; i < block_side; ++i) {
+      for (int j = 0; j < block_side; ++j) seen |= seen_[this->slot_in_block(first, block_side * i + j)];
+    }
+    return (seen & touched_bit) != 0;
+  }
   void clear_touched() {
     if (any_touched_) clear_all(touched_bit);
     any_touched_ = false;

@@ -40,9 +40,9 @@ int list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge,
 }  // namespace
 
 BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float scale) {
-  BlockLeaves root{};                      // union-find; the root of a component is its first cell
-  std::array<float, block_cells> limit{};  // Int(C) + s / |C|, at the root of component C
-  std::array<float, block_cells> size{};
+  BlockLeaves root;                      // union-find; the root of a component is its first cell
+  std::array<float, block_cells> limit;  // Int(C) + s / |C|, at the root of component C
+  std::array<float, block_cells> size;
   for (std::size_t k = 0; k < root.size(); ++k) {
     root[k] = cells[k].valid ? static_cast<std::uint8_t>(k) : std::uint8_t{255};
     limit[k] = scale;
@@ -52,7 +52,7 @@ BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float sca
     while (root[k] != k) k = root[k] = root[root[k]];
     return k;
   };
-  std::array<Edge, 2 * block_cells> edges{};
+  std::array<Edge, 2 * block_cells> edges;
   const int count = list_edges(cells, edges);
   for (int e = 0; e < count; ++e) {
     const Edge& edge = edges[static_cast<std::size_t>(e)];

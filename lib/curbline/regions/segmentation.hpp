@@ -119,10 +119,7 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
   const Plane lean = ground.lean();
   for (int row = 0; row < dem.rows(); row += block_side) {
     for (int col = 0; col < dem.cols(); col += block_side) {
-      const int first = dem.slot(row, col);
-      bool touched = false;
-      for (int k = 0; k < block_cells; ++k) touched = touched || dem.touched(dem.slot_in_block(first, k));
-      if (touched) cut(dem, row, col, lean);
+      if (dem.block_touched(dem.slot(row, col))) cut(dem, row, col, lean);
     }
   }
 }
