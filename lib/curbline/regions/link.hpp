@@ -19,8 +19,10 @@ struct Link {
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
   dem.for_each_valid([&](int i, int j, int s) {
-    if (const int g = dem.next_valid(s, 0, reach); g > 0) visit(Link{s, dem.slot(i + g, j), g, 0, i, j});
-    if (const int g = dem.next_valid(s, 2, reach); g > 0) visit(Link{s, dem.slot(i, j + g), g, 1, i, j});
+    for (int axis = 0; axis < 2; ++axis) {
+      const int g = dem.next_valid(s, direction(axis, 1), reach);
+      if (g > 0) visit(Link{s, axis == 0 ? dem.slot(i + g, j) : dem.slot(i, j + g), g, axis, i, j});
+    }
   });
 }
 
