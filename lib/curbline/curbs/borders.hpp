@@ -97,7 +97,7 @@ class Borders {
   bool chained(int border) const { return border_[static_cast<std::size_t>(border)].chained; }
 
   /// False if the store is full.
-  bool add(const Dem<limits>& dem, Border border);
+  [[gnu::noinline]] bool add(const Dem<limits>& dem, const Border& border);  // called, as CellLine::slot()
 
   /// Chains the polyline through a border, from one of its ends: each is followed by the nearest border of the same
   /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About
@@ -128,12 +128,13 @@ class Borders {
 };
 
 template <Limits limits>
-bool Borders<limits>::add(const Dem<limits>& dem, Border border) {
+bool Borders<limits>::add(const Dem<limits>& dem, const Border& border) {
   if (size_ == limits.borders) return false;
   Index& head = in_cell_[cell_of(dem, border)];
-  border.next_in_cell = head;
-  head = static_cast<Index>(size_);
-  border_[static_cast<std::size_t>(size_++)] = border;
+  Border& added = border_[static_cast<std::size_t>(size_)];
+  added = border;
+  added.next_in_cell = head;
+  head = static_cast<Index>(size_++);
   return true;
 }
 
