@@ -3,7 +3,6 @@
 // beam, 120 for one that returns from outside the map.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -49,10 +48,11 @@ class ProjectedLine {
   /// Removes the points for which `of` is true; false if there are none.
   template <typename Of>
   bool leave_out_if(Of&& of) {
-    const std::span<Point> all = points();
-    const auto end = std::remove_if(all.begin(), all.end(), of);
-    count_ = static_cast<std::size_t>(end - all.begin());
-    return end != all.end();
+    std::size_t kept = 0;
+    for (const Point& point : points()) {
+      if (!of(point)) points_[kept++] = point;
+    }
+    return std::exchange(count_, kept) > kept;
   }
   std::span<const Point> points() const { return {points_.data(), count_}; }
   std::span<Point> points() { return {points_.data(), count_}; }
