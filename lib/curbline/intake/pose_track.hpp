@@ -100,7 +100,7 @@ class PoseTrack {
   const Pose& newest() const { return back(0); }
 
  private:
-  std::size_t place(int age) const { return static_cast<std::size_t>((next_ + limits.poses - 1 - age) % limits.poses); }
+  std::size_t place(int age) const { return static_cast<std::size_t>(next_ + limits.poses - 1 - age) % limits.poses; }
   const Pose& back(int age) const { return poses_[place(age)]; }
 
   /// Is the pose of this age, the second since a jump, off the way before the jump too? If not, the first one was off
@@ -111,8 +111,8 @@ class PoseTrack {
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
   /// How far the pose of `age` deviates from going on from that of age `before`, at the speed over the `most` poses up
-  /// to that of age `last`; nothing if there are too few.
-  detail::PoseResidual residual(int last, int most, int before, int age) const {
+  /// to that of age `last`; nothing if there are too few. Not inlined: it is called from three places.
+  [[gnu::noinline]] detail::PoseResidual residual(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;
     return detail::residual_of(back(first), back(last), back(before), back(age), settings_);
