@@ -83,6 +83,7 @@ class LabelField {
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
+  [[gnu::noinline]] Visit heard_by(const Dem<limits>& dem, int i, int j, int slot) const;
   void send(const Visit& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
   int follow_belief(const Visit& visit);
@@ -219,9 +220,9 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     const float u3 = u * u * u;
     candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
   };
-  near_by_.of_cell(i, j).for_each(consider);
-  if (candidates.label[0] == no_label) {
-    for (int k = 0; k < limits.planes; ++k) consider(k);
+  for (const auto& planes : {near_by_.of_cell(i, j), PlanesNearBy<limits>::Planes::all()}) {
+    planes.for_each(consider);
+    if (candidates.label[0] != no_label) break;
   }
   sites_[slot].set_candidates(candidates, mixture.covered(slot));
 }
@@ -251,6 +252,14 @@ void LabelField<limits>::hear_neighbours(Visit& visit) const {
     visit.same_labels |= static_cast<std::uint8_t>(same << d);
     site.hear(other.label, other.sent[d ^ 1u], same, 1, visit.heard);
   }
+}
+
+/// What a cell has heard that does not send itself.
+template <Limits limits>
+auto LabelField<limits>::heard_by(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
+  Visit here = visit_to(dem, i, j, slot);
+  hear_neighbours(here);
+  return here;
 }
 
 /// Sends to the next cell in a direction, and updates the sum of what that has heard, if the message is news.
@@ -290,10 +299,7 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& vis
   int changed = 0;
   for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
   dem.for_each_valid([&](int i, int j, int s) {
-    if ((flag_[s] & (visited | heard)) != heard) return;
-    Visit heard_only = visit_to(dem, i, j, s);
-    hear_neighbours(heard_only);
-    changed += follow_belief(heard_only);
+    if ((flag_[s] & (visited | heard)) == heard) changed += follow_belief(heard_by(dem, i, j, s));
   });
   return changed;
 }
@@ -313,9 +319,7 @@ auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> B
   const int slot = dem.slot(i, j);
   const LabelSite& site = sites_[slot];
   if (site.decided()) return {site.label, {site.label[0] == no_label ? 0.0f : 1.0f, 0.0f, 0.0f}};
-  Visit here = visit_to(dem, i, j, slot);
-  hear_neighbours(here);
-  return {site.label, site.probabilities(here.heard)};
+  return {site.label, site.probabilities(heard_by(dem, i, j, slot).heard)};
 }
 
 }  // namespace curbline
