@@ -73,6 +73,11 @@ Plane Plane::lean() const {
   return beyond;
 }
 
+float Plane::rise_variance_m2(float dx_m, float dy_m) const {
+  const float away = dx_m * dx_m * pxx + 2.0f * dx_m * dy_m * pxy + dy_m * dy_m * pyy;
+  return away > 0.0f ? fit_variance_m2 * away : 0.0f;
+}
+
 Plane fit_plane(const PlaneMoments& m, const PlanePrior& prior) {
   return fitted(m, prior, m.weight, prior.common_m2());
 }

@@ -117,10 +117,7 @@ struct Plane {
     return fit_variance_m2 / cells + rise_variance_m2(px_m - x_m, py_m - y_m);
   }
   /// Variance of the plane's rise over a distance.
-  float rise_variance_m2(float dx_m, float dy_m) const {
-    const float away = dx_m * dx_m * pxx + 2.0f * dx_m * dy_m * pxy + dy_m * dy_m * pyy;
-    return away > 0.0f ? fit_variance_m2 * away : 0.0f;
-  }
+  float rise_variance_m2(float dx_m, float dy_m) const;
 };
 
 /// Posterior mean of the plane, with a prior on slopes whose standard deviation is the steepest ramp: what a row of

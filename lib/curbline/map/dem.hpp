@@ -173,7 +173,8 @@ class Dem : public Window<limits> {
     flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
   }
   /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved.
-  Viewpoint seen_from(int slot, const Viewpoint& now) const {
+  // Not inlined: it is called for edges only.
+  [[gnu::noinline]] Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
     const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
     return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
