@@ -252,7 +252,7 @@ void PlaneMixture<limits>::maximise(const Dem<limits>& dem, ForEachBelief&& for_
     for_each_belief(i, j, [&](int label, float responsibility) {
       PlaneMoments share = cell;
       share.scale(responsibility);
-      moments[static_cast<std::size_t>(label)].add_cell(share);
+      moments[static_cast<std::size_t>(label)].add(share);
     });
   });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
