@@ -11,7 +11,7 @@ namespace curbline {
 template <int size>
 class IndexSet {
  public:
-  /// Of all of them.
+  /// All of them.
   static constexpr IndexSet all() {
     IndexSet set;
     for (int index = 0; index < size; ++index) set.insert(index);

@@ -97,7 +97,7 @@ class Borders {
   bool chained(int border) const { return border_[static_cast<std::size_t>(border)].chained; }
 
   /// False if the store is full.
-  [[gnu::noinline]] bool add(const Dem<limits>& dem, const Border& border);  // called, as CellLine::slot()
+  [[gnu::noinline]] bool add(const Dem<limits>& dem, const Border& border);  // as CellLine::slot()
 
   /// Chains the polyline through a border, from one of its ends: each is followed by the nearest border of the same
   /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About

@@ -146,7 +146,7 @@ class Dem : public Window<limits> {
 
   /// Has a cell changed since clear_touched(): by a point, or by being cleared?
   bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
-  /// Is any of a block, by the slot of its first?
+  /// Has any cell of a block changed? `first`: the slot of its first cell.
   bool block_touched(int first) const {
     int seen = 0;
     for (int i = 0; i < block_side; ++i) {
