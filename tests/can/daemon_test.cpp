@@ -242,7 +242,7 @@ TEST_CASE("daemon: lines that wait for poses keep their tilt, at any rate of the
   CHECK(pipeline.at("beams_extrapolated") == 0);
 }
 
-TEST_CASE("daemon: poses from a FIFO place the curbs of a moving robot; damage and silence are reported once",
+TEST_CASE("daemon: poses from a FIFO place the curbs of a moving robot, damage and silence are reported once",
           "[daemon]") {
   const std::string fifo = make_fifo(driven());
   SocketCan receiver;
@@ -430,7 +430,7 @@ TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus 
   CHECK(times_said(outcome.err, "stopped by SIGINT") == 1);
 }
 
-TEST_CASE("daemon: a scanner is waited for, an interface that is removed too; SIGTERM ends it cleanly", "[daemon]") {
+TEST_CASE("daemon: a scanner is waited for, an interface that is removed too, SIGTERM ends it cleanly", "[daemon]") {
   const socketcan::testing::Interface other("vcan8");
   Service service({"--can", "vcan8", "--scans", "scip2:127.0.0.1:7", "--robot", recording().path("robot.toml")});
   CHECK(service.says("no scan lines from the scanner scip2:127.0.0.1:7: Connection refused"));

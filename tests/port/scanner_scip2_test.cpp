@@ -204,7 +204,7 @@ TEST_CASE("scip2: a line bears the time of its first step, by the scanner's own 
   CHECK(hokuyo.session.line().bearing_step_rad == Approx(step_rad));
 }
 
-TEST_CASE("scip2: without its clock a scanner still measures; its lines are dated 25 ms before arrival") {
+TEST_CASE("scip2: without its clock a scanner still measures, its lines are dated 25 ms before arrival") {
   for (const auto& [command, questions] : {std::pair{"TM0", 0}, {"TM1", 8}}) {
     INFO(command);
     Hokuyo hokuyo;

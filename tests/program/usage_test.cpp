@@ -179,7 +179,7 @@ TEST_CASE("program: an option that is given twice is wrong usage") {
 }
 
 TEST_CASE(
-    "program: a cloud after a window's numbers is accepted; where it is ambiguous the user is told where to put it") {
+    "program: a cloud after a window's numbers is accepted, where it is ambiguous the user is told where to put it") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.xyz", "1 1 0\n");
   for (const Words& window : {Words{"--origin", "0", "0", "--size", "4", "4"},

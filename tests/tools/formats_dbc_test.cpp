@@ -155,7 +155,7 @@ TEST_CASE("dbc: SIG_VALTYPE_ makes a float of 32 bits, and one of 64 is refused"
         "a.dbc:31: signal Wide is a float of 64 bits; expected a whole number or a float of 32 bits");
 }
 
-TEST_CASE("dbc: SG_MUL_VAL_ tells which multiplexor; what one number cannot say is refused") {
+TEST_CASE("dbc: SG_MUL_VAL_ tells which multiplexor, what one number cannot say is refused") {
   const auto multiplexor = found("Nested", "Flat").signal.multiplexor;
   REQUIRE(multiplexor);
   CHECK((multiplexor->start_bit == 0 && multiplexor->length == 4 && multiplexor->value == 1));

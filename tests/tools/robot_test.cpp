@@ -298,7 +298,7 @@ TEST_CASE("robot: a key or a word of any length leaves the message short, and on
   CHECK(parsed("# " + dots + "\nname = \"" + dots + "\"\n").name.size() == 300);
 }
 
-TEST_CASE("robot: a key after a string of any kind has its own depth; the string's contents are not keys") {
+TEST_CASE("robot: a key after a string of any kind has its own depth, the string's contents are not keys") {
   std::string deep = "k";
   for (int i = 0; i < 200'000; ++i) deep += ".k";
   const std::vector<std::string> strings{R"("")",       R"("\\")",     R"("\"#")",        R"("'")",

@@ -100,7 +100,7 @@ TEST_CASE("bend: it is told alike along the axes and across them") {
   CHECK(of_disc(turn) == Approx(of_disc(0.0)).epsilon(0.02));
 }
 
-TEST_CASE("bend: the noisier the cells, the less they say; without one nothing is said") {
+TEST_CASE("bend: the noisier the cells, the less they say, without one nothing is said") {
   const Halves road = halves([](double x, double) { return 0.01 * (x - 2.0) * (x - 2.0); });
   const Bend bend = bend_of(road);
   CHECK(likelier_bent(road.before, bend, 4 * noise_m2) == Approx(0.25f * likelier_bent(road.before, bend)));

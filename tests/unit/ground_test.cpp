@@ -98,7 +98,7 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
 //
 //           .:'.:'       grass of 10 cm, or rubble; an edging as low as that; a hedge
 //  ________|
-TEST_CASE("ground: wide ground is ground however rough it is, as long as it is lower than a step; no wall is as wide") {
+TEST_CASE("ground: wide ground is ground however rough it is, as long as it is lower than a step, no wall is as wide") {
   const auto rough = [](double begin, double end, double half_m) {
     return [=](double x, double y) {
       return x < begin || x >= end ? 0.0 : 0.05 + (static_cast<int>(y * 100) % 10 < 5 ? -half_m : half_m);
@@ -168,7 +168,7 @@ TEST_CASE(
 
 //        ___
 //   ____|   |_____     the same from above: 60 cm long and wide
-TEST_CASE("ground: the top of a box is an obstacle; lower than a stair, or at the window's end, it may be a way") {
+TEST_CASE("ground: the top of a box is an obstacle, lower than a stair, or at the window's end, it may be a way") {
   const auto block = [](double height_m, double from_x_m) {
     return
         [=](double x, double y) { return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 1.5 ? height_m : 0.0; };

@@ -100,7 +100,7 @@ TEST_CASE("pipeline: a narrow top is a wall's for a robot that stands, for one t
 
 //      __.--.__       two planes or more, one surface
 TEST_CASE(
-    "pipeline: cells of a cambered road are of one surface, by the label of one of its planes; before init() of none") {
+    "pipeline: cells of a cambered road are of one surface, by the label of one of its planes, before init() of none") {
   const auto pipeline = started(NoddingLaser::settings());
   test::Noise noise;
   pipeline->observe(test::sample({0, 4, -2, 2}, 0.05, 0.003, noise, [](double, double y) { return -0.0125 * y * y; }));
@@ -191,7 +191,7 @@ int passable_ahead(const FullPipeline& pipeline) {
 }
 
 TEST_CASE(
-    "pipeline: a person who stood before a stationary robot is forgotten after leaving; an object put down is seen") {
+    "pipeline: a person who stood before a stationary robot is forgotten after leaving, an object put down is seen") {
   const auto pipeline = started();
   NoddingLaser laser;
   const Street street{2.0, 0.12};

@@ -304,7 +304,7 @@ void climb(Pose& pose, int k) {
 }
 
 TEST_CASE(
-    "pose track: a robot has climbed once poses that jumped in a row have continued for a while, reported once; others "
+    "pose track: a robot has climbed once poses that jumped in a row have continued for a while, reported once, others "
     "have not") {
   const auto stepped = [](Pose& pose, int k) { pose.z_m += k >= 4 ? 0.04f : 0.0f; };
   const float off_m = GENERATE(0.02f, 0.1f, 1.0f);

@@ -299,7 +299,7 @@ TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
   }
 }
 
-TEST_CASE("tilt latency: the first sweep is not a new one; a turn begins one when two lines in a row show it") {
+TEST_CASE("tilt latency: the first sweep is not a new one, a turn begins one when two lines in a row show it") {
   TiltLatency latency = started();
   CHECK(latency.begin_line(0.20f, rate_rad_s, next_reading()) == Turn::none);
   CHECK(latency.begin_line(0.60f, rate_rad_s, next_reading()) == Turn::none);
