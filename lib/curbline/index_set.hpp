@@ -11,14 +11,8 @@ namespace curbline {
 template <int size>
 class IndexSet {
  public:
-  /// All of them.
-  static constexpr IndexSet all() {
-    IndexSet set;
-    for (int index = 0; index < size; ++index) set.insert(index);
-    return set;
-  }
   void clear() { words_.fill(0); }
-  constexpr void insert(int index) { words_[static_cast<std::size_t>(index) / 32] |= 1u << (index % 32); }
+  void insert(int index) { words_[static_cast<std::size_t>(index) / 32] |= 1u << (index % 32); }
   void insert(const IndexSet& other) {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
   }

@@ -11,7 +11,7 @@ namespace {
 LabelSite site(double nats) {
   LabelSite s;
   s.set_labels({2, 5, 7});
-  s.node = {0, static_cast<std::int16_t>(-nats * LabelSite::node_scale), -120 * LabelSite::node_scale};
+  s.node = {static_cast<std::int16_t>(-nats * LabelSite::node_scale), -120 * LabelSite::node_scale};
   return s;
 }
 

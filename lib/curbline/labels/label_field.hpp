@@ -220,9 +220,9 @@ void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMi
     const float u3 = u * u * u;
     candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
   };
-  for (const auto& planes : {near_by_.of_cell(i, j), PlanesNearBy<limits>::Planes::all()}) {
-    planes.for_each(consider);
-    if (candidates.label[0] != no_label) break;
+  near_by_.of_cell(i, j).for_each(consider);
+  if (candidates.label[0] == no_label) {
+    for (int k = 0; k < limits.planes; ++k) consider(k);
   }
   sites_[slot].set_candidates(candidates, mixture.covered(slot));
 }

@@ -47,8 +47,8 @@ struct LabelSite {
 
   Labels label{no_label, no_label, no_label};
   Label best = no_label;
-  std::array<std::int16_t, label_candidates> node{};  ///< log potential of each candidate
-  std::array<Message, directions> sent{};             ///< last message to the neighbour in each direction
+  std::array<std::int16_t, label_candidates - 1> node{};  ///< log potential of each candidate but the best: its is 0
+  std::array<Message, directions> sent{};                 ///< last message to the neighbour in each direction
 
   static Coupling coupling(float nats) {
     return {exp(nats) - 1.0f, static_cast<std::uint8_t>(round_to_int(nats * float{message_scale}))};
@@ -102,7 +102,7 @@ inline void LabelSite::set_candidates(const Candidates& candidates, bool covered
   if (covered) return;
   for (std::size_t c = 1; c < label.size() && label[c] != no_label; ++c) {
     const float below = -0.5f * log(candidates.doubt[c] / candidates.doubt[0]);
-    node[c] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
+    node[c - 1] = static_cast<std::int16_t>(round_to_int((below < -127.0f ? -127.0f : below) * float{node_scale}));
   }
 }
 
@@ -134,7 +134,8 @@ inline void LabelSite::hear(const Labels& others, const Message& said, bool same
 
 inline auto LabelSite::log_belief(const Heard& heard) const -> Nats {
   Nats logs;
-  for (std::size_t c = 0; c < label.size(); ++c) logs[c] = node[c] + heard[c] * (node_scale / message_scale);
+  for (std::size_t c = 0; c < label.size(); ++c) logs[c] = heard[c] * (node_scale / message_scale);
+  for (std::size_t c = 0; c < node.size(); ++c) logs[c + 1] += node[c];
   return logs;
 }
 
