@@ -1,6 +1,7 @@
 // Which planes are ground, drawn as cross-sections.
 #include "curbline/planes/ground.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -354,6 +355,18 @@ TEST_CASE("ground: the face of a curb is one in a window that is longer than wid
   };
   CHECK(borne_in(24, 12) == 3);
   CHECK(borne_in(12, 24) == 3);
+}
+
+//           ______
+//          /           across the way or along it, one row in four is seen, and the cells of the face at 1.1 m
+//  _______/
+TEST_CASE(
+    "ground: the face of a curb is one where scan lines are so sparse that most of its cells lie beside nothing") {
+  const auto kerb = [](double x) { return 0.08 * std::clamp((x - 1.12) / 0.08, 0.0, 1.0); };
+  const auto in_cell = [](double place_m, int cell) { return static_cast<int>(place_m * 10.0) % 4 == cell; };
+  const auto on_face = [](double x) { return x > 1.1 && x < 1.2; };
+  CHECK(borne([&](double x, double y) { return in_cell(y, 0) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
+  CHECK(borne([&](double x, double) { return in_cell(x, 3) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
 }
 
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {

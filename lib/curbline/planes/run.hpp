@@ -89,11 +89,14 @@ struct Strip {
 
   const Run &before, &run, &next;
 
-  /// Does a step from the run before to the next lead over it?
-  bool carries_step() const {
+  /// Is it between two other runs, neither more than `gap` cells away?
+  bool between(int gap) const {
+    return before.any() && next.any() && run.first - before.last <= gap && next.first - run.last <= gap;
+  }
+  /// Is it between the heights of those two?
+  bool rises_between() const {
     const float from = before.last_height_m, to = next.first_height_m;
-    return before.any() && next.any() && run.first - before.last <= widest_gap && next.first - run.last <= widest_gap &&
-           ((from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to));
+    return (from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to);
   }
   /// For a strip that carries a step: if the step leads down as the laser sees it, and the strip is no wider than its
   /// shadow (shadow.hpp) and a cell, as those at its ends hold some of the planes, how far the strip falls. Inlined:

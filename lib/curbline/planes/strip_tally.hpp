@@ -37,8 +37,10 @@ struct StripTally {
   /// ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
+  static constexpr int sparse_gap = 5;   ///< cells: scan lines on the ground are up to that far apart
 
-  float cells = 0.0f;  ///< of the plane's region
+  float cells = 0.0f;                   ///< of the plane's region
+  std::array<float, 2> silent_cells{};  ///< in short strips with an unseen side, by axis
   // Of strips that carry a step.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
   // By the axis along which the strip was found, x and y.
@@ -59,10 +61,13 @@ struct StripTally {
     strip_weight += run.weight;
   }
 
+  /// Is the plane a face? At least half of its cells must be in strips that carry a step, those with an unseen side
+  /// left out, on rows or on columns: between sparse scan lines only the face is seen.
   bool face() const {
-    const float mean_step_m = step_m / (strips > 0.0f ? strips : 1.0f);
+    if (!(strips > 0.0f) || 2.0f * strip_cells < cells - std::max(silent_cells[0], silent_cells[1])) return false;
+    const float mean_step_m = step_m / strips;
     // A step spread evenly over a width of w cells has a standard deviation of step / (w sqrt(12)) within each.
-    return most(strip_cells) && mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
+    return mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
   }
   bool veil(const Plane& plane) const {
     const bool steep = plane.steeper_than_ground();
@@ -106,7 +111,7 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
-      const bool carries_step = strip.carries_step();
+      const bool rises = strip.rises_between(), carries_step = rises && strip.between(widest_gap);
       if (carries_step || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
@@ -121,7 +126,11 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
-      if (carries_step && !obstacles.is(before.label) && !obstacles.is(next.label)) tally.add(strip);
+      if (!strip.between(StripTally::sparse_gap)) {
+        tally.silent_cells[axis] += cells;
+      } else if (rises && !obstacles.is(before.label) && !obstacles.is(next.label)) {
+        tally.add(strip);
+      }
     });
   }
   return tallies;
