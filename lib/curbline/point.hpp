@@ -40,6 +40,7 @@ struct Viewpoint {
   /// The window's size on a robot that drives: cells were seen from as far away as the window's end. 0 on one that
   /// stands.
   float end_x_m = 0.0f, end_y_m = 0.0f;
+  bool localisation_steps = false;  ///< it has been found to step: PoseOffset::localisation_steps()
 
   bool drives() const { return end_x_m > 0.0f; }
   /// Factor of the variance that errors of scan lines in tilt and pose give to cells about (px_m, py_m), whose places

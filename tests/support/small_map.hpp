@@ -82,7 +82,10 @@ struct Stages {
     for (int pass = 0; pass < 3; ++pass) infer(true);
   }
   void trace(float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
-    tracer.trace(dem, mixture, field, {robot_x_m, robot_y_m, view.z_m}, work.curbs(), counters);
+    Viewpoint from = view;
+    from.x_m = robot_x_m;
+    from.y_m = robot_y_m;
+    tracer.trace(dem, mixture, field, from, work.curbs(), counters);
   }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }

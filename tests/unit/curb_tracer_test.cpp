@@ -627,15 +627,11 @@ TEST_CASE("curb tracer: between planes of different slope the height is as uncer
   CHECK(std::sqrt(by_place_m2) == Approx(0.15f * sloped.position_sd_m).epsilon(0.1));
 }
 
-TEST_CASE(
-    "curb tracer: a step that grows along its piece is as uncertain as it grows, where it was seen from several "
-    "places") {
-  const auto deviation_m = [](double growth, bool drives) {
+TEST_CASE("curb tracer: a step that grows along its piece is as uncertain as it grows, if the localisation steps") {
+  const auto deviation_m = [](double growth, bool steps) {
     const auto stages = traced([=](double x, double y) { return x < 1.4 ? 0.0 : 0.12 + growth * (y - 1.2); });
-    if (drives) {
-      for (const float x_m : {-1.0f, 0.0f}) stages->dem.look_from(x_m, 0.0f);
-      stages->trace();
-    }
+    stages->view.localisation_steps = steps;
+    stages->trace();
     REQUIRE(stages->tracer.curbs().size() == 1);
     return static_cast<double>(stages->tracer.curbs()[0].height_sd_m);
   };

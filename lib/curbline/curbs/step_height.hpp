@@ -90,12 +90,12 @@ void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) 
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
 }
 
-/// Where slopes differ, the height is as uncertain as the piece's position. If its sides were seen from several places,
-/// with different errors of poses, it may also be that of any other place along the piece.
+/// Where slopes differ, the height is as uncertain as the piece's position. If the localisation steps, both sides may
+/// have been seen before and after a step, and the height may also be that of any other place along the piece.
 template <Limits limits>
 void StepHeight<limits>::doubt_place(float place_variance_m2) {
   variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;
-  if (stages_.dem.seen_from_several()) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
+  if (stages_.view.localisation_steps) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
 }
 
 /// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
