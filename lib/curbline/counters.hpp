@@ -29,7 +29,7 @@ struct Counters {
   std::uint32_t cells_deferred = 0;  ///< labels put off to a later call (LabelSettings::max_messages)
   std::uint32_t regions_full = 0;    ///< leaves that found no room, and are in no region
   std::uint32_t links_full = 0;      ///< pairs of cells whose regions were not linked
-  std::uint32_t planes_full = 0;     ///< regions that deserved a plane and got none
+  std::uint32_t planes_full = 0;     ///< regions large enough for a plane that got none
   std::uint32_t borders_full = 0;    ///< border points left out
   std::uint32_t curbs_full = 0;      ///< pieces of curb left out
 };

@@ -17,7 +17,7 @@ struct Limits {
   int regions = 384;      ///< leaves and standing regions that one merging pass holds
   int links = 1024;       ///< links between them
   int borders = 512;      ///< border points between planes, at most 65534
-  int curbs = 96;         ///< pieces of curb given out: at most 32 on random streets
+  int curbs = 96;         ///< pieces of curb given out; random streets have at most 32
 };
 
 }  // namespace curbline

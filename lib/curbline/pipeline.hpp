@@ -63,11 +63,11 @@ class Pipeline {
   /// Pose::furthest_m, its quaternion not of unit length, or before init().
   bool add_pose(const Pose& pose);
 
-  /// Takes a scan line: observe(), then one half of infer(), in turn regions and planes, and labels and curbs, so that
-  /// no line costs more than a quarter of what a small core can do between two. Its tilt readings and poses should be
-  /// in already: beams later than the newest are extrapolated, within TiltSettings::max_extrapolation_s. Bounded by the
-  /// limits. A refused line (not_initialised, line_too_long, line_out_of_order, no_pose, no_tilt) changes nothing but
-  /// counters.
+  /// Takes a scan line: observe(), then one half of infer(): after one line regions and planes, after the next labels
+  /// and curbs, for both, so that no line costs more than a quarter of what a small core can do between two. Its tilt
+  /// readings and poses should be in already: beams later than the newest are extrapolated, within
+  /// TiltSettings::max_extrapolation_s. Bounded by the limits. A refused line (not_initialised, line_too_long,
+  /// line_out_of_order, no_pose, no_tilt) changes nothing but counters.
   Status take(const ScanLine& line);
 
   /// Beams to points, points to cells. About 170 operations a beam, 120 outside the window.
@@ -89,12 +89,12 @@ class Pipeline {
   /// the passes made.
   int settle(int passes = 10);
 
-  /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and the
-  /// window be where it was then. Valid until the next take(), infer(), settle() or init().
+  /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and lie in
+  /// the window as it was then. Valid until the next take(), infer(), settle() or init().
   std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
   /// May a robot that can take steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or
-  /// over one of curbs()? See passability.hpp.
+  /// over one of curbs()? A curb may be a line older than the planes. See passability.hpp.
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
     return ready_ && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
@@ -103,9 +103,9 @@ class Pipeline {
     return ready_ && curbline::passable(curb, side(curb.near_label), side(curb.far_label), {max_step_m, max_slope_rad});
   }
 
-  /// The plane that the readings in cell (i, j) belong to; no_label if there are none, or none on a plane of ground. i
-  /// counts along x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label
-  /// may outlive its plane by a line.
+  /// The plane of ground that the readings in cell (i, j) most likely belong to; below an obstacle, that of the cells
+  /// around. no_label without readings, or as long as no plane of ground is known. i counts along x, j along y, from
+  /// the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive its plane by a line.
   Label label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label; }
   /// The probability of that label; 0 before init().
   float label_probability(int i, int j) const;
@@ -123,7 +123,7 @@ class Pipeline {
   Label surface(Label label) const { return ready_ ? curb_tracer_.surfaces().name(label) : label; }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
-  /// What is taken off the poses, for steps of the localisation, about the robot's place: see pose_offset.hpp.
+  /// What is added to the poses, against steps of the localisation, about the robot's place: see pose_offset.hpp.
   const PoseShift& pose_offset() const { return line_intake_.pose_offset().offset(); }
   const TiltLatency& tilt_latency() const { return line_intake_.tilt_latency(); }
   const Settings& settings() const { return settings_; }

@@ -121,8 +121,8 @@ struct Plane {
 };
 
 /// Posterior mean of the plane, with a prior on slopes whose standard deviation is the steepest ramp: what a row of
-/// cells leaves open is as steep as ground. Its variance is the mean square residual, at least the part of the expected
-/// noise that the points of a cell share.
+/// cells leaves open is taken to be no steeper than ground. Its variance is the mean square residual, at least the part
+/// of the expected noise that the points of a cell share.
 Plane fit_plane(const PlaneMoments& moments, const PlanePrior& prior);
 
 /// The same from mean heights of cells (their own zz is 0): the variance is that of such means, with three degrees of

@@ -6,7 +6,7 @@
 namespace curbline {
 namespace {
 
-/// In [low, high]; false for NaN. Not inlined: for each setting that takes 400 bytes of flash.
+/// In [low, high]; false for NaN. Not inlined: a copy for each setting takes 400 bytes of flash in all.
 [[gnu::noinline]] bool within(float x, float low, float high) {
   return x >= low && x <= high;
 }

@@ -95,7 +95,7 @@ enum class PlaneUpdate : unsigned char {
 };
 
 struct PlaneSettings {
-  PlanePrior prior{};      ///< of the noise and the slopes of ground
+  PlanePrior prior{};      ///< of the ground's noise and curvature
   float min_cells = 4.0f;  ///< fewer cells make no plane, 3 to 1e6; 4 is one more than a plane has parameters
   PlaneUpdate update = PlaneUpdate::regions;
 };

@@ -6,8 +6,8 @@
 namespace curbline {
 
 struct TiltReading {
-  /// A greater angle is a damaged frame: no servo winds further, and up to there, extrapolated too, sine and cosine
-  /// hold.
+  /// A greater angle is a damaged frame: no servo winds further. Up to here sin_cos() can still reduce the angle,
+  /// extrapolated too.
   static constexpr float furthest_rad = 1e6f;
   std::int64_t time_ns = 0;  ///< nanoseconds of the epoch of ScanLine::time_ns
   float angle_rad = 0.0f;    ///< tilt > 0 looks down; continuous: no wrap of the encoder within the sweep

@@ -20,7 +20,7 @@ TEST_CASE("curb: the overlap of two pieces is what of the one lies along the oth
   CHECK(overlap_m(piece(1.3f, 0.5f, 1.5f), before, 0.2f) == 0.0f);
 }
 
-TEST_CASE("curb: of parallel steps the longest is reported, in any order, of equal ones one") {
+TEST_CASE("curb: of parallel steps the longest is reported, in any order, and of equal ones one") {
   const auto step = [](float x_m, float length_m) {
     return Curb{.x0_m = x_m, .y0_m = 0.0f, .x1_m = x_m, .y1_m = length_m, .kind = CurbKind::step_up};
   };
@@ -135,7 +135,7 @@ TEST_CASE("curb: a step exceeds two deviations of its height, of its cells and o
   CHECK((Meeting{.first_lean = 0.1, .second_lean = 0.1}.least_step_m(angle, drawn)) == about(0.006));
 }
 
-TEST_CASE("curb: a face, steeper than ground, begins anywhere in half a gap, a ramp does not") {
+TEST_CASE("curb: a face, steeper than ground, begins anywhere in half a gap, but a ramp does not") {
   const DrawnBorder drawn{0.0f, 0.0f, 0.05f, 0.0f, 9e-6f};
   const auto about = [](double m) { return Approx(m).margin(1.5e-4); };
   CHECK((Meeting{.second_lean = 0.4}.least_step_m(0.3, drawn)) == about(0.4 * 0.05 + 0.006));

@@ -757,7 +757,7 @@ TEST_CASE("curb tracer: clutter makes no curb, the ground beside it does") {
   }
 }
 
-TEST_CASE("curb tracer: the side of a box, higher than any curb, is none, a drop is told, however deep") {
+TEST_CASE("curb tracer: the side of a box, higher than any curb, is none, but a drop is told, however deep") {
   const auto height = [](double step_m) { return [step_m](double x, double) { return x < 1.4 ? 0.0 : step_m; }; };
   CHECK(traced(height(0.29))->tracer.curbs().size() == 1);
   CHECK(traced(height(0.32))->tracer.curbs().empty());

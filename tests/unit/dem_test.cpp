@@ -423,7 +423,8 @@ TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, how
 
 TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame, through sweeps and marks") {
   Map dem = make_map(moving());
-  const Viewpoint now{7.0f, 8.0f, 1.1f, 4.0f, 4.0f};
+  Viewpoint now{7.0f, 8.0f, 1.1f, 4.0f, 4.0f};
+  now.localisation_steps = true;
   dem.look_from(-2.0f, 1.0f);
   REQUIRE(dem.add(at(0.05, 0.05)));
   CHECK_FALSE(dem.seen_from_several());
@@ -440,6 +441,7 @@ TEST_CASE("dem: a cell knows from where it was seen last, in the window's frame,
   CHECK(seen_from(0.15f).y_m == Approx(1.0 + 0.8));
   CHECK(seen_from(0.15f).z_m == now.z_m);
   CHECK(seen_from(0.15f).end_x_m == now.end_x_m);
+  CHECK(seen_from(0.15f).localisation_steps);
   REQUIRE(dem.add(at(0.05, 0.05)));
   CHECK(seen_from(0.05f).x_m == Approx(0.0));
   CHECK_FALSE(dem.mapped_before(slot_at(dem, 0.05f, 0.05f)));

@@ -169,7 +169,7 @@ TEST_CASE(
 
 //        ___
 //   ____|   |_____     the same from above: 60 cm long and wide
-TEST_CASE("ground: the top of a box is an obstacle, lower than a stair, or at the window's end, it may be a way") {
+TEST_CASE("ground: the top of a box is an obstacle, but one lower than a stair or at the window's end may be a way") {
   const auto block = [](double height_m, double from_x_m) {
     return
         [=](double x, double y) { return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 1.5 ? height_m : 0.0; };
@@ -367,6 +367,13 @@ TEST_CASE(
   const auto on_face = [](double x) { return x > 1.1 && x < 1.2; };
   CHECK(borne([&](double x, double y) { return in_cell(y, 0) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
   CHECK(borne([&](double x, double) { return in_cell(x, 3) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
+}
+
+//           ______
+//     ?    /           as a road is seen, a cell wide, beside what a parked car hides
+TEST_CASE("ground: a strip beside hidden ground on one side is no face, where most of it is beside that") {
+  const auto kerb = [](double x) { return 0.08 * std::clamp((x - 1.12) / 0.08, 0.0, 1.0); };
+  CHECK(borne([&](double x, double y) { return x < 1.1 && y > 0.6 ? std::nan("") : kerb(x); }) == 3);
 }
 
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {

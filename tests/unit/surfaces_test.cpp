@@ -58,7 +58,8 @@ const auto everywhere = [](double, double) { return true; };
 
 //      __.--.__       a road of 4 m, 5 cm higher in the middle than at its curbs, at any angle;
 //    _/        \_     or as high, but made of two planes
-TEST_CASE("surfaces: a cambered road is one, of planes that meet at no crease, two that meet at one as steep are two") {
+TEST_CASE(
+    "surfaces: a cambered road is one, of planes that meet at no crease, while two that meet at one as steep are two") {
   const bool creased = GENERATE(false, true);
   const double across_x = GENERATE(1.0, 0.6, 0.0), across_y = std::sqrt(1.0 - across_x * across_x);
   const auto stages = traced([&](double x, double y) {

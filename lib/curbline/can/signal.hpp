@@ -1,4 +1,4 @@
-// A number inside a CAN frame, as which a servo reports its angle. Bytes to numbers and back: no I/O, no state, no
+// The number in a CAN frame by which a servo reports its angle. Bytes to numbers and back: no I/O, no state, no
 // heap, no libm, the same bits on every platform. The first step on the way: frame -> angle -> tilt track.
 //
 // A Signal has the terms of a DBC file, so that a servo that is not among the presets (servo_presets.hpp) needs a

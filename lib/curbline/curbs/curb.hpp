@@ -14,8 +14,8 @@ namespace curbline {
 enum class CurbKind : std::uint8_t {
   step_up,    ///< the far side is higher
   step_down,  ///< the far side is lower
-  crease,     ///< planes of different slope that meet at one height: a gutter, a change of cross-fall; also the end of
-              ///< a curb's face with no ground in view beyond
+  crease,  ///< planes of different slope that may meet at one height: a gutter, a change of cross-fall; also the end of
+           ///< a curb's face with no ground in view beyond
   ramp_edge,  ///< a crease of which exactly one side rises or falls away by more than 1 in 20: a ramp, by ISO 21542
 };
 const char* to_string(CurbKind kind);

@@ -85,8 +85,8 @@ struct CurbPiece {
   enum class End : std::uint8_t { first, second };  ///< of its line
   /// Continues the line beyond the end of its chain, where one side is hidden and so there are no borders: cell by
   /// cell, as long as one side is of its plane, the other of no other plane, and the height stays even; at most to the
-  /// middle of the widest gap that a chain bridges, and by a quarter of the length, where the variance of its position
-  /// has doubled.
+  /// middle of the widest gap that a chain bridges, and by at most a quarter of the length, where the variance of its
+  /// position has doubled.
   void go_on(const Stages& stages, int link_reach, End end);
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of

@@ -1,11 +1,9 @@
 // Edges found with no ground in view beyond, on a row or column of the window:
-//   - the end of a face: of a strip that rises away from the laser more steeply than a ramp. Had it gone on, the laser
-//   would
-//     see it as well as the face; what follows is flatter than the rays.
+//   - the end of a face: of a strip that rises away from the laser more steeply than a ramp. Had it gone on, the
+//     laser would see it as well as the face; what follows is flatter than the rays.
 //   - a brink: where the ground is followed, away from the laser, by lower readings that mix an edge with what lies
-//   behind it
-//     (veils, ground.hpp), are too few for a plane, or belong to an obstacle. They fall as far as is visible of the
-//     step.
+//     behind it (veils, ground.hpp), are too few for a plane, or belong to an obstacle. They fall as far as is
+//     visible of the step.
 // Cost: a look at each cell of a face, a veil and an obstacle.
 #pragma once
 

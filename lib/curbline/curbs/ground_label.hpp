@@ -15,8 +15,8 @@
 namespace curbline {
 
 /// By the step nearest to the middle of cell (i, j), within two cells (farther away readings are of their own side), if
-/// it parts the plane of the readings from another that is in view and still alive (a curb may be a line old). Else the
-/// cell's label.
+/// it parts the plane of the readings from another that is in view and still alive (a curb may be a scan line old).
+/// Else the cell's label.
 template <Limits limits>
 Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
                    std::span<const Curb> curbs, int i, int j) {

@@ -28,7 +28,7 @@ struct CrossedCell {
 ///   - a vertical face with any number of points: 1/2 - far_share + centroid is its place;
 ///   - a sloped face as dense as the planes;
 ///   - a gap without points that reaches into the cells on both sides: their centroids show how far, and half of it
-///   counts.
+///     counts.
 /// The centroid is not clamped: the random errors of a few points average out.
 float before_middle(const CrossedCell& cell);
 

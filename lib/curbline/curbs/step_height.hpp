@@ -86,12 +86,12 @@ void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) 
   variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
   if (is_step && !one_sided) follow_ground(part);
   if (is_step) follow_ground_beside();
-  // Rough ground may begin anywhere within its roughness, uniformly.
+  // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
 }
 
 /// Where slopes differ, the height is as uncertain as the piece's position. If the localisation steps, both sides may
-/// have been seen before and after a step, and the height may also be that of any other place along the piece.
+/// have been seen before and after a jump of it, and the height may also be that of any other place along the piece.
 template <Limits limits>
 void StepHeight<limits>::doubt_place(float place_variance_m2) {
   variance_m2_ += square(piece_.planes.slope_across(piece_.line)) * place_variance_m2;

@@ -1,6 +1,6 @@
 // Extrapolation beyond the ends of a track of samples. Two samples a moment apart differ mostly by their errors: poses
 // of two sources, or a servo's frame that waited on the bus and is stamped just before the next. Extrapolated at the
-// rate between them, these errors would be multiplied.
+// rate between them, these errors would grow by the ratio of the time beyond to the time between them.
 #pragma once
 
 #include <cstdint>

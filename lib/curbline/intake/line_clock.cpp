@@ -8,7 +8,7 @@
 namespace curbline {
 namespace {
 
-/// Smaller delays count as none: ground 5 m away, nodding at 1 rad/s, moves by a millimetre meanwhile.
+/// Smaller delays count as none: by a laser that nods at 1 rad/s, ground 5 m away is misplaced by a millimetre.
 constexpr float exact_ns = 250e3f;
 /// A slower sensor is no scanner.
 constexpr float longest_turn_s = 10.0f;
@@ -18,7 +18,7 @@ constexpr float most_slower = 0.005f;
 constexpr std::int64_t most_turns = 16;
 /// Arrivals needed to know the turns: at first, and after stamps that did not keep to them.
 constexpr int enough_at_first = 8, enough_again = 32;
-/// Consecutive lines later than usual, by chance once in 9 million, after which the turns have changed.
+/// After so many consecutive lines later than usual, by chance once in 9 million, the turns have changed.
 constexpr int most_late = 8;
 /// Times the mean delay: later than usual is one line in seven.
 constexpr float usual = 2.0f;

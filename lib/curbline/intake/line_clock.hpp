@@ -6,13 +6,11 @@
 //   scanner --> LineClock::time_of() --> LineQueue --> Pipeline::take()
 //
 //   - A stamp on a turn is kept: nothing changes for a scanner with exact stamps.
-//   - Stamps are also kept where they lie anywhere between turns (a mean delay of half a turn), where turns take over
-//   1/200
-//     more or less than the settings say, and at first, until there are enough.
+//   - Stamps are also kept where they lie anywhere between turns (a mean delay of half a turn), where a turn
+//     differs by more than 1/200 from the settings, and at first, until there are enough.
 //   - A stamp that goes back is passed on: the pipeline drops and counts the line.
-//   - A line late by a turn or more looks like the next one after a loss. One that may be either gets no time: it is
-//   better
-//     left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
+//   - A line late by a turn or more looks like the next one after a loss. One that may be either gets no time: it
+//     is better left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
 //
 // A constant part of the delay is left to the tilt latency. No clock: times come in. 40 operations for each of 64 lines
 // a call, 1.1 kB. One context.
@@ -75,7 +73,7 @@ class LineClock {
   std::int64_t usual_turns_ = 1, last_turns_ = 1;  ///< from line to line
   std::int64_t lost_turns_ = 0;                    ///< that were taken for lost before the newest
   int waited_ = 0;                ///< lines for which one may have waited: so many ago one had, by whole turns
-  int late_ = 0, turn_late_ = 0;  ///< arrivals on end that were later than usual, by a turn and more
+  int late_ = 0, turn_late_ = 0;  ///< consecutive arrivals later than usual, and by a turn and more
   RisingTimes stamps_{};
   std::int64_t time_ns_ = INT64_MIN;  ///< the newest that was given
   std::uint32_t set_back_ = 0, left_out_ = 0;

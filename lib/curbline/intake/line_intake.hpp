@@ -37,7 +37,7 @@ class LineIntake {
     ProjectedLine<limits> projected;
   };
 
-  /// While nothing calls add_tilt(), from an interrupt or another thread. Settings are valid.
+  /// Call while nothing calls add_tilt(), from an interrupt or another thread. Settings are valid.
   [[gnu::cold]] void init(const Settings& settings);
 
   /// A reading of the tilt servo; false if dropped. Wait-free: TiltTrack::push().
@@ -72,7 +72,7 @@ class LineIntake {
 
   float tilt_rate_rad_s_ = 0.0f;     ///< of the current line
   bool jumped_ = false;              ///< poses jumped during the last line ...
-  std::int64_t jumps_since_ns_ = 0;  ///< ... and, or the robot climbed, during all lines from this time on
+  std::int64_t jumps_since_ns_ = 0;  ///< ... since when all lines saw jumps or a climb
   RisingTimes line_times_{};
   TiltTrack<limits> tilt_track_{};
   TiltLatency tilt_latency_{};

@@ -110,8 +110,9 @@ class PoseTrack {
   /// Has the newest pose come within 12 ms of the one before, so that the next one replaces it?
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
-  /// How far the pose of `age` deviates from going on from that of age `before`, at the speed over the `most` poses up
-  /// to that of age `last`; nothing if there are too few. Not inlined: it is called from three places.
+  /// How far the pose of `age` deviates from going on from that of age `before`, at the speed from the pose `most`
+  /// before that of age `last`, or the oldest, to it; nothing if there are too few. Not inlined: it is called from
+  /// three places.
   [[gnu::noinline]] detail::PoseResidual residual(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;

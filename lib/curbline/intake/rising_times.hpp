@@ -1,6 +1,6 @@
-// Times that must rise: of readings, poses and scan lines. One that is not later than the newest is refused. But if 16
-// in a row are refused and rise among themselves, the newest was wrong (a damaged stamp, or a clock set back since),
-// and they are right: no queue before the pipeline holds as many in order. O(1); one context.
+// Times that must rise: of readings, poses and scan lines. One that is not later than the newest is refused. But of 16
+// in a row that are not later but rise among themselves the last is taken: the newest was wrong (a damaged stamp, or a
+// clock set back since), since no queue before the pipeline holds as many in order. O(1); one context.
 #pragma once
 
 #include <cstdint>

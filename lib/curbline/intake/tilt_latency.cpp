@@ -180,7 +180,7 @@ float TiltLatency::sd_s() const {
 /// Driving, the constant; standing, the mean of both directions, weighted by variance. Single sweeps differ from it at
 /// random, standing too (and both of two that were taken to be alike). If the mean of a drive's last two sweeps, one of
 /// each direction, deviates from the constant by more than that, the servo's latency may have changed, and the constant
-/// lag.
+/// lags.
 TiltLatency::Usual TiltLatency::usual() const {
   const auto& p = covariance_;
   if (!turned_ || known(now)) return {offset_s_, sd_s()};

@@ -3,16 +3,15 @@
 // from the map's by the errors of both offsets, each times the growth of a height with a second of latency. A Kalman
 // filter estimates the offset of this sweep and that of the ground mapped before; a correction of the latter corrects
 // the map (Correction).
-//   - For a robot that stands, the first two sweeps, of opposite direction, are taken to be equally late. Their ground
-//   is
-//     the datum of all later ones: each has its own offset, starting from that of the last sweep of its direction.
-//   - A robot that drives leaves its datum behind. The ground before is always that of the last sweep, and every offset
-//   is
-//     a constant plus a small difference, bounded by a share of the prior: else upward and downward sweeps would come
-//     to agree on tilted ground.
-// A latency that steps by more than that (the servo was restarted, a clock was set) contradicts the estimate: after ten
-// consecutive lines that do, and agree with each other, it is as uncertain as at the beginning. Cost: 30 operations a
-// point, and a pass over the window for each line that corrects the map.
+//   - For a robot that stands, the first two sweeps, of opposite direction, are taken to be equally late. Their
+//     ground is the datum of all later ones: each has its own offset, starting from that of the last sweep of its
+//     direction.
+//   - A robot that drives leaves its datum behind. The ground before is always that of the last sweep, and every
+//     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
+//     upward and downward sweeps would come to agree on tilted ground.
+// A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the estimate:
+// after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning. Cost: 30
+// operations a point, and a pass over the window for each line that corrects the map.
 #pragma once
 
 #include <array>
@@ -90,7 +89,7 @@ class TiltLatency {
   };
 
   struct Observation {
-    float missing_s;  ///< error of this sweep's offset less mapped_share times that of the ground's
+    float missing_s;  ///< what this sweep's offset lacks, less mapped_share times what the ground's lacks
     float variance_s2;
     float mapped_share;
   };

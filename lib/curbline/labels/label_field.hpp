@@ -254,7 +254,7 @@ void LabelField<limits>::hear_neighbours(Visit& visit) const {
   }
 }
 
-/// What a cell has heard that does not send itself.
+/// A visit of a cell with what it has heard, for cells that are not in the list of visits.
 template <Limits limits>
 auto LabelField<limits>::heard_by(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
   Visit here = visit_to(dem, i, j, slot);

@@ -47,7 +47,7 @@ struct LabelSite {
 
   Labels label{no_label, no_label, no_label};
   Label best = no_label;
-  std::array<std::int16_t, label_candidates - 1> node{};  ///< log potential of each candidate but the best: its is 0
+  std::array<std::int16_t, label_candidates - 1> node{};  ///< log potential of each candidate but the first, whose is 0
   std::array<Message, directions> sent{};                 ///< last message to the neighbour in each direction
 
   static Coupling coupling(float nats) {

@@ -1,6 +1,6 @@
 // The planes near each cell: those of regions in its block or the eight around it. Only these are candidates for its
-// label, so that two pavements of equal height on both sides of a road keep different labels. Cost: a pass over the
-// window when regions have changed their planes or the window has moved.
+// label (all planes, if none of these is ground), so that two pavements of equal height on both sides of a road keep
+// different labels. Cost: a pass over the window when regions have changed their planes or the window has moved.
 #pragma once
 
 #include <array>

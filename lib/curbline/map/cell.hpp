@@ -12,7 +12,7 @@ struct CellPrior {
 };
 
 /// Sufficient statistics. A point of weight w is a height with the variance (noise variance of the cell) / w, so that a
-/// noisier reading moves the mean less. Offsets are from the cell's centre: as exact in float wherever the map is.
+/// noisier reading moves the mean less. Offsets are from the cell's centre: equally exact in float wherever the map is.
 struct Cell {
   float points = 0.0f;      ///< their number; faded ones count in part
   float weight = 0.0f;      ///< kappa: sum of their weights

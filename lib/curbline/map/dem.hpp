@@ -111,7 +111,7 @@ class Dem : public Window<limits> {
   float common_m2() const { return common_m2_; }
   /// The same for distant cells with few points, by Viewpoint::reach_m2(): at least as much.
   float common_m2(float reach_m2) const { return std::max(common_m2_, line_rad2_ * reach_m2); }
-  /// In evidences, the shared part is at least the ground's texture.
+  /// Sets both as estimated; in evidences the shared part counts as at least the ground's texture.
   void set_common(float found_m2, float found_line_rad2) {
     common_m2_ = found_m2;
     line_rad2_ = found_line_rad2;
@@ -177,7 +177,10 @@ class Dem : public Window<limits> {
   [[gnu::noinline]] Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
     const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
-    return {from.x_m - origin_x_m(), from.y_m - origin_y_m(), now.z_m, now.end_x_m, now.end_y_m};
+    Viewpoint view = now;
+    view.x_m = from.x_m - origin_x_m();
+    view.y_m = from.y_m - origin_y_m();
+    return view;
   }
   /// Has the laser moved? If not, all cells were seen from one place.
   bool seen_from_several() const { return viewpoints_.moved(); }

@@ -26,8 +26,8 @@ struct CleanFit {
   float bias_m2 = 0.0f;                              ///< of the latter, weighted
 
   /// Call for each cell of the region, before any is added. A cell that mixes both sides of a step spreads by any
-  /// amount more than the others, so precisions are averaged, not variances. n points yield (n - 3) / scatter, with a
-  /// relative variance of 2 / (n - 5).
+  /// amount more than the others, so precisions are averaged, not variances. The precision from n points is (n - 3) /
+  /// scatter, with a relative variance of 2 / (n - 5).
   void look_at(const Cell& cell) {
     cells += 1.0f;
     points += cell.points;

@@ -5,7 +5,7 @@ namespace {
 
 /// Factor of a cell's variance for neighbours along an axis that correlate by r.
 float inflation(float r) {
-  constexpr float most = 0.9f;  // over ten cells, a patch: a longer correlation looks like its plane
+  constexpr float most = 0.9f;  // reaches over ten cells, a patch: a longer correlation looks like its plane
   if (r > most) r = most;
   if (!(r > -most)) r = -most;
   return (1.0f + r) / (1.0f - r);

@@ -1,19 +1,17 @@
 // Which planes are ground. A region may fit a plane on which no wheel could stand:
-//   - a face: a strip between two others, at a height between theirs. The heights within its cells spread over most of
-//   the
-//     step, beyond the noise of the planes beside it: it is narrower than a cell and a half, and its plane is a mixture
-//     of both sides.
+//   - a face: a strip between two others, at a height between theirs. The heights within its cells spread over most
+//     of the step, beyond the noise of the planes beside it: it is narrower than a cell and a half, and its plane
+//     is a mixture of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
-//   itself,
-//     as no visible surface does; or it is no wider than the shadow of a step down, and steeper than ground, or falls
-//     there at least a quarter as far as the rays, as around a bent edge, or is so narrow that its slope is unknown.
-//     What is visible beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair, with
-//     half of the next one in the cells at both ends, falls by half a step where the rays fall by two.
-//   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is long,
-//   that
-//     rises above the ground: readings that mix the obstacle with the ground around it. One that falls away from the
-//     laser as its rays do is a veil before the obstacle.
+//     itself, as no visible surface does; or it is no wider than the shadow of a step down, and steeper than
+//     ground, or falls there at least a quarter as far as the rays, as around a bent edge, or is so narrow that its
+//     slope is unknown. What is visible beyond an edge is flatter than the ray that grazes it, and so wider. The
+//     tread of a stair, with half of the next one in the cells at both ends, falls by half a step where the rays
+//     fall by two.
+//   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
+//     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
+//     away from the laser as its rays do is a veil before the obstacle.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their heights
 // say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one

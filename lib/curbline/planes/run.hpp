@@ -90,17 +90,18 @@ struct Strip {
   const Run &before, &run, &next;
 
   /// Is it between two other runs, neither more than `gap` cells away?
-  bool between(int gap) const {
-    return before.any() && next.any() && run.first - before.last <= gap && next.first - run.last <= gap;
-  }
+  bool between(int gap) const { return follows(gap) && precedes(gap); }
+  /// Is no other run within `gap` cells of it, on either side?
+  bool alone(int gap) const { return !follows(gap) && !precedes(gap); }
   /// Is it between the heights of those two?
   bool rises_between() const {
     const float from = before.last_height_m, to = next.first_height_m;
     return (from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to);
   }
-  /// For a strip that carries a step: if the step leads down as the laser sees it, and the strip is no wider than its
-  /// shadow (shadow.hpp) and a cell, as those at its ends hold some of the planes, how far the strip falls. Inlined:
-  /// calls would cost the worst line of a Cortex-M7 20,000 instructions (tools/budget).
+  /// For a strip between two planes (between(widest_gap), rises_between()): if the step leads down as the laser sees
+  /// it, and the strip is no wider than its shadow (shadow.hpp) and a cell, as those at its ends hold some of the
+  /// planes, how far the strip falls. Inlined: calls would cost the worst line of a Cortex-M7 20,000 instructions
+  /// (tools/budget).
   [[gnu::always_inline]] std::optional<Fall> fall_in_shadow(const Sight& sight) const {
     const bool ahead = sight.ahead(run.first);
     const float near_m = ahead ? before.last_height_m : next.first_height_m;
@@ -112,7 +113,8 @@ struct Strip {
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
   }
-  /// Height of the step down from the next run toward the laser to this one; 0 if there is none.
+  /// Height of the step down from the next run toward the laser to this one: negative for a step up, 0 without such a
+  /// run.
   float begins_below_m(const Sight& sight) const {
     if (sight.ahead(run.first)) return before.any() ? before.last_height_m - run.first_height_m : 0.0f;
     return next.any() ? next.first_height_m - run.last_height_m : 0.0f;
@@ -128,6 +130,10 @@ struct Strip {
     const float shadow = away_m > 0.0f && step_m <= fall_m && step_m >= -fall_m ? away_m * fall_m : 0.0f;
     return 1.0f + (spot + shadow) / (above_m * sight.cell_m);
   }
+
+ private:
+  bool follows(int gap) const { return before.any() && run.first - before.last <= gap; }
+  bool precedes(int gap) const { return next.any() && next.first - run.last <= gap; }
 };
 
 /// Calls visit(strip, line) for each run along x (axis 0) or y (1); `line` numbers the columns, or rows, in order.

@@ -40,8 +40,8 @@ struct StripTally {
   static constexpr int sparse_gap = 5;   ///< cells: scan lines on the ground are up to that far apart
 
   float cells = 0.0f;                   ///< of the plane's region
-  std::array<float, 2> silent_cells{};  ///< in short strips with an unseen side, by axis
-  // Of strips that carry a step.
+  std::array<float, 2> silent_cells{};  ///< in short strips that are alone, by axis
+  // Of strips that rise or fall between two planes, up to sparse_gap cells away.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
   // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
@@ -61,8 +61,8 @@ struct StripTally {
     strip_weight += run.weight;
   }
 
-  /// Is the plane a face? At least half of its cells must be in strips that carry a step, those with an unseen side
-  /// left out, on rows or on columns: between sparse scan lines only the face is seen.
+  /// Is the plane a face? At least half of its cells, counted along x and along y, must be in such strips, strips that
+  /// are alone left out, on rows or on columns: between sparse scan lines only the face is seen.
   bool face() const {
     if (!(strips > 0.0f) || 2.0f * strip_cells < cells - std::max(silent_cells[0], silent_cells[1])) return false;
     const float mean_step_m = step_m / strips;
@@ -126,9 +126,10 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
-      if (!strip.between(StripTally::sparse_gap)) {
+      if (strip.alone(StripTally::sparse_gap)) {
         tally.silent_cells[axis] += cells;
-      } else if (rises && !obstacles.is(before.label) && !obstacles.is(next.label)) {
+      } else if (rises && strip.between(StripTally::sparse_gap) && !obstacles.is(before.label) &&
+                 !obstacles.is(next.label)) {
         tally.add(strip);
       }
     });
