@@ -30,15 +30,15 @@ TEST_CASE("beside: the ground beside a border is carried on to it, and found by 
   CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
 }
 
-TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cells' deviation beyond their errors") {
+TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cells' deviation beyond chance") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
-  CHECK(lying(0.004f).height_variance_m2() == Approx((1.6e-5 - 5e-6) / 12));
+  CHECK(lying(0.006f).height_variance_m2() == Approx((3.6e-5 - 4 * 5e-6) / 12));
   CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side is below
-  CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 5e-6) / 12));
+  CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 4 * 5e-6) / 12));
   CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
-  CHECK(lying(0.002f).height_variance_m2() == 0.0f);  // within chance
+  CHECK(lying(0.004f).height_variance_m2() == 0.0f);  // within chance
   CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
 }

@@ -63,13 +63,13 @@ struct Deviation {
   /// of the part that does not average out.
   bool found() const { return away_m > 0.0f && square(away_m) > gate * variance_m2 && square(away_m) > common_m2; }
   /// Variance of the side's height there: the cells' own if they decide it; else the plane may be wrong by anything up
-  /// to half of the deviation beyond that.
-  float height_variance_m2() const { return found() ? variance_m2 : (1.0f / 12) * beyond_m2(); }
+  /// to half of the deviation beyond two standard deviations, what chance makes of it.
+  float height_variance_m2() const { return found() ? variance_m2 : (1.0f / 12) * beyond_m2(4.0f); }
   /// Mean square, over of_borders borders, of a deviation by which the planes are farther apart than the ground is.
-  float too_far_m2(float of_borders) const { return away_m < 0.0f ? borders / of_borders * beyond_m2() : 0.0f; }
+  float too_far_m2(float of_borders) const { return away_m < 0.0f ? borders / of_borders * beyond_m2(1.0f) : 0.0f; }
 
  private:
-  float beyond_m2() const { return std::max(0.0f, square(away_m) - variance_m2); }
+  float beyond_m2(float variances) const { return std::max(0.0f, square(away_m) - variances * variance_m2); }
 };
 
 /// The deviation of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow.
