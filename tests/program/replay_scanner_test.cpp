@@ -185,7 +185,7 @@ TEST_CASE("program: a scanner that is not there, or has other beams than the rob
   check_refused(curbline(logs.replay("scans", "scip2:no.such.host.invalid")),
                 "scip2:no.such.host.invalid: ", "expected the name or address");
   check_refused(curbline(logs.replay("scans", "lms200:")), "lms200:: ", "no device; expected lms200:DEVICE");
-  check_refused(curbline(logs.replay("scans", "lms200:/dev/null")), "lms200:/dev/null: ", "bear no time");
+  check_refused(curbline(logs.replay("scans", "lms200:/dev/null")), "lms200:/dev/null: ", "have no time stamps");
   const Playing scanner(Protocol::cola, logs.path("scans.carmen"));
   const Outcome outcome = curbline(
       {"replay", "--scans", scanner.address(), "--can", logs.path("can.log"), "--robot", shipped_robot("lms151")});
