@@ -53,8 +53,8 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
   const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
   if (rise <= steepest_ramp || line.away(stages_.view, first.along) != toward) return std::nullopt;
 
-  const int widest =
-      static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);  // cells that it touches, wherever it begins in one
+  // Cells that the widest face touches, wherever it begins in one.
+  const int widest = static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);
   int last = first.along;
   while (const int g = line.next_valid(last, toward, link_reach_)) {
     last += toward * g;

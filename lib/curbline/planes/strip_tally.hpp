@@ -111,7 +111,8 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
-      const bool rises = strip.rises_between(), carries_step = rises && strip.between(widest_gap);
+      const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between();
+      const bool carries_step = rises && strip.between(widest_gap);
       if (carries_step || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
@@ -128,8 +129,7 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
       if (strip.alone(StripTally::sparse_gap)) {
         tally.silent_cells[axis] += cells;
-      } else if (rises && strip.between(StripTally::sparse_gap) && !obstacles.is(before.label) &&
-                 !obstacles.is(next.label)) {
+      } else if (rises && !obstacles.is(before.label) && !obstacles.is(next.label)) {
         tally.add(strip);
       }
     });
