@@ -6,7 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include "support/noisy_poses.hpp"
 #include "support/small_map.hpp"
 
 namespace curbline {
@@ -37,9 +36,10 @@ struct Intake {
     work = std::make_unique<LineIntake<small_limits>::Work>();
     return intake->place({time_ns, ranges_m}, stages->dem, *work);
   }
-  bool project(std::int64_t time_ns, float ceiling_m = 1e9f) {
-    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, ceiling_m, 10);
-    return intake->project({time_ns, ranges_m}, map, stages->dem, *work, stages->counters);
+  bool project(std::int64_t time_ns) {
+    const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 10);
+    const Bounds bounds = stages->dem.surroundings(1e9f);
+    return intake->project({time_ns, ranges_m}, bounds, map, stages->dem, *work, stages->counters);
   }
 
   std::vector<float> ranges_m;
@@ -72,45 +72,6 @@ TEST_CASE("line intake: points lie where the pose that was placed has them") {
   CHECK(middle.x_m == Approx(0.5 + 2 * std::cos(0.5)));
   CHECK(middle.y_m == Approx(1.0).margin(1e-6));
   CHECK(middle.z_m == Approx(1.0 - 2 * std::sin(0.5)));
-}
-
-/// Poses of a stationary robot; the last two have stepped.
-void add_poses(Intake& in, float step_m) {
-  for (int n = 0; n < 8; ++n) REQUIRE(in.intake->add_pose({n * 20 * ms, 0.5f, 1.0f, n < 6 ? 0.0f : step_m}));
-}
-
-TEST_CASE("line intake: ground above the ceiling is kept as long as it is open who has stepped") {
-  Settings settings = settings_of(false, true);
-  settings.pose = test::noisy_poses();
-  Intake stepped(settings), stands(settings);
-  add_poses(stepped, 0.6f);
-  add_poses(stands, 0.0f);
-  REQUIRE(stepped.place(141 * ms) == Status::ok);
-  REQUIRE(stands.place(141 * ms) == Status::ok);
-  REQUIRE(stepped.intake->pose_offset().undecided());
-  REQUIRE(stepped.project(141 * ms, 0.5f));
-  CHECK(stepped.work->projected.outside() == 0);
-  REQUIRE(stepped.work->projected.points().size() == 11);
-  for (const Point& p : stepped.work->projected.points()) CHECK(p.z_m > 0.6f);
-  REQUIRE(stands.project(141 * ms, 0.0f));  // the ground is 4 cm above that
-  CHECK(stands.work->projected.points().empty());
-  CHECK(stands.work->projected.outside() == 11);
-}
-
-TEST_CASE("line intake: ground that a localisation has stepped to above the ceiling is set back to below it") {
-  Settings settings = settings_of(false, true);
-  settings.pose = test::noisy_poses();
-  Intake in(settings);
-  test::fill(in.stages->dem, [](double, double) { return 0.043; });  // the laser sees it at 41 to 46 mm
-  in.stages->settle();
-  add_poses(in, 0.3f);
-  REQUIRE(in.place(141 * ms) == Status::ok);
-  REQUIRE(in.intake->pose_offset().undecided());
-  REQUIRE(in.project(141 * ms, 0.343f));  // part of the line is below and decides
-  CHECK_FALSE(in.intake->pose_offset().undecided());
-  CHECK(in.work->projected.outside() == 0);
-  REQUIRE(in.work->projected.points().size() == 11);
-  for (const Point& p : in.work->projected.points()) CHECK(p.z_m == Approx(0.043).margin(0.01));
 }
 
 TEST_CASE("line intake: when the servo turns, what the map holds is that of an earlier sweep") {

@@ -16,13 +16,9 @@ namespace curbline {
 template <Limits limits>
 class MapComparison {
  public:
-  /// Points above the ceiling, z of the map frame, are not of the ground. Unmarked cells are searched up to `reach`
-  /// cells away, on a row or column.
-  MapComparison(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-                float ceiling_m, int reach)
-      : dem_(dem), mixture_(mixture), field_(field), ceiling_m_(ceiling_m), reach_(reach) {}
-
-  float ceiling_m() const { return ceiling_m_; }
+  /// Unmarked cells are searched up to `reach` cells away, on a row or column.
+  MapComparison(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int reach)
+      : dem_(dem), mixture_(mixture), field_(field), reach_(reach) {}
 
   /// While it is undecided whose a jump was: gives `offset` the line's heights above unmarked cells, and applies the
   /// correction to the line.
@@ -56,7 +52,6 @@ class MapComparison {
   const Dem<limits>& dem_;
   const PlaneMixture<limits>& mixture_;
   const LabelField<limits>& field_;
-  float ceiling_m_;
   int reach_;
 };
 
@@ -86,7 +81,6 @@ void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const Til
                                     PoseOffset& offset) const {
   Ground ground;
   for (const Point& p : line.points()) {
-    if (p.z_m > ceiling_m_) continue;
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside()) continue;
     const Place near = dem_.nearest_unmarked(place, reach);
@@ -107,7 +101,6 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
                                            const PoseOffset& offset, TiltLatency& latency) const {
   Ground ground;
   for (const Point& p : line.points()) {
-    if (p.z_m > ceiling_m_) continue;
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside() || !dem_.mapped_before(dem_.slot(place.i, place.j)) || !ground_at(p, place, place, ground))
       continue;
