@@ -336,8 +336,8 @@ void Pipeline<limits>::follow_curbs() {
 
 template <Limits limits>
 void Pipeline<limits>::follow_noise() {
-  common_noise_.follow(dem_, plane_mixture_, view());
-  dem_.set_common(common_noise_.common_m2(settings_.planes.prior, tilt_latency().sd_s()), common_noise_.line_rad2());
+  common_noise_.follow(dem_, plane_mixture_);
+  dem_.set_common(common_noise_.common_m2(settings_.planes.prior, tilt_latency().sd_s()), common_noise_.line_m2());
 }
 
 template <Limits limits>

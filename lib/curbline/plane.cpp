@@ -21,7 +21,6 @@ Plane fitted(const PlaneMoments& m, const PlanePrior& prior, float weight, float
   plane.slope_y = fit.slope_y;
   plane.variance_m2 = plane.fit_variance_m2 = std::max(least_m2, fit.residual_m2 / weight);
   plane.cells = m.cells;
-  plane.scatter_m2 = (m.xx + m.yy) / m.weight;
   plane.pxx = (m.yy + ridge) * per_cell;
   plane.pxy = -m.xy * per_cell;
   plane.pyy = (m.xx + ridge) * per_cell;

@@ -91,7 +91,6 @@ struct Plane {
   float cells = 0.0f;                        ///< number of cells that it is fitted to; 0: no such plane
   float points_a_cell = 1.0f;                ///< mean, of its region
   float rough_m2 = 0.0f;                     ///< variance within a cell beyond noise and slope (CleanFit)
-  float scatter_m2 = 0.0f;                   ///< mean square distance of the cells from the centroid
   float pxx = 0.0f, pxy = 0.0f, pyy = 0.0f;  ///< inverse scatter of the cells' positions, 1/m^2
 
   bool alive() const { return cells > 0.0f; }

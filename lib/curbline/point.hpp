@@ -43,14 +43,6 @@ struct Viewpoint {
   bool localisation_steps = false;  ///< it has been found to step: PoseOffset::localisation_steps()
 
   bool drives() const { return end_x_m > 0.0f; }
-  /// Factor of the variance that errors of scan lines in tilt and pose give to cells about (px_m, py_m), whose places
-  /// scatter by scatter_m2: the square of the distance from the laser along the ground, over the number of points of a
-  /// cell. A robot that drives has seen the ground from near and from afar: there the points alone count, as if all
-  /// were 1 m away.
-  float reach_m2(float px_m, float py_m, float scatter_m2, float points_a_cell) const {
-    const float away_m2 = drives() ? 1.0f : square(px_m - x_m) + square(py_m - y_m) + scatter_m2;
-    return away_m2 / points_a_cell;
-  }
 };
 
 }  // namespace curbline

@@ -5,6 +5,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -53,7 +54,7 @@ CommonNoise<limits> noise_of(const Stages<limits>& stages) {
   CommonNoise<limits> common_noise;
   common_noise.init();
   for (int row = 0; row < stages.dem.rows(); row += PatchResiduals::side) {
-    common_noise.follow(stages.dem, stages.mixture, stages.view);
+    common_noise.follow(stages.dem, stages.mixture);
   }
   return common_noise;
 }
@@ -166,36 +167,30 @@ TEST_CASE("common noise: cells that are no neighbours do not tell how alike neig
   CHECK(share_of(stages, PlanePrior{}) == Approx(0.12).epsilon(0.4));  // 0.16 from all patches, 0.48 with correlations
 }
 
-TEST_CASE("common noise: what grows with the distance is found as that, not as what the evenest, near patches share") {
+/// Cells that err by sd_m(points) each; half of the window has 16 points a cell, the other one.
+CommonNoise<limits> noise_of_lines(const std::function<double(int)>& sd_m) {
   const Unevenness even(1.0, 0.0, 0.0);
   Stages<limits> stages(map_settings());
-  stages.view = {0.0f, 2.0f, 1.2f};
-  const auto sd_m = [](double x_m, double y_m) { return 1e-3 * std::hypot(x_m, y_m - 2.0); };  // 1 mrad
-  test::fill(stages.dem, [&](double x_m, double y_m) { return sd_m(x_m, y_m) * even(x_m, y_m); });
+  for (std::size_t i = 0; i < side; ++i) {
+    const int points = i < side / 2 ? 16 : 1;
+    for (std::size_t j = 0; j < side; ++j) {
+      const double x_m = 0.1 * static_cast<double>(i) + 0.05, y_m = 0.1 * static_cast<double>(j) + 0.05;
+      const auto z_m = static_cast<float>(sd_m(points) * even(x_m, y_m));
+      for (int k = 0; k < points; ++k) stages.dem.add({static_cast<float>(x_m), static_cast<float>(y_m), z_m, 1e-4f});
+    }
+  }
   stages.infer(true);
-  const CommonNoise<limits> noise = noise_of(stages);
-  CHECK(noise.line_rad2() == Approx(4 * 1e-6).epsilon(0.5));  // of each of the four points of a cell
-  const float there_m2 = noise.line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
-  CHECK(there_m2 == Approx(sd_m(3.5, 2.0) * sd_m(3.5, 2.0)).epsilon(0.5));
-  CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * there_m2);
+  return noise_of(stages);
 }
 
-TEST_CASE("common noise: ground that is uneven alike everywhere is not taken for what grows with the distance") {
-  const Unevenness even(0.001, 0.0, 0.0);
-  Stages<limits> stages(map_settings());
-  stages.view = {0.0f, 2.0f, 1.2f};
-  test::fill(stages.dem, even);
-  stages.infer(true);
-  const float there_m2 = noise_of(stages).line_rad2() * stages.view.reach_m2(3.5f, 2.0f, 0.0f, 4.0f);
-  CHECK(there_m2 < 1.5f * 1e-6f);  // the median of equally weighted patches would make it twice as much
+TEST_CASE("common noise: what scan lines err is found as that, not as what the evenest patches, of many lines, share") {
+  const CommonNoise<limits> noise = noise_of_lines([](int points) { return 0.004 / std::sqrt(points); });
+  CHECK(noise.line_m2() == Approx(1.6e-5).epsilon(0.3));
+  CHECK(noise.common_m2(PlanePrior{}, 0.0f) < 0.2f * noise.line_m2());
 }
 
-TEST_CASE("common noise: cells err by the less, the more points they hold, of a robot that drives at any distance") {
-  Viewpoint view{0.0f, 2.0f, 1.2f};
-  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == Approx(9.0 / 4));
-  view.end_x_m = 4.0f;
-  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == view.reach_m2(0.5f, 2.0f, 0.0f, 4.0f));
-  CHECK(view.reach_m2(3.0f, 2.0f, 0.0f, 4.0f) == 4.0f * view.reach_m2(3.0f, 2.0f, 0.0f, 16.0f));
+TEST_CASE("common noise: ground that is uneven alike everywhere is not taken for what scan lines err") {
+  CHECK(noise_of_lines([](int) { return 0.001; }).line_m2() < 1.5e-6f);  // with equally weighted patches 8e-6
 }
 
 TEST_CASE("common noise: what is not known of the tilt's latency is common to all that a sweep has seen") {

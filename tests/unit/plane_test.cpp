@@ -386,16 +386,5 @@ TEST_CASE("plane: steeper than ground, how high above another, how wrong some wa
   CHECK(known.rise_variance_m2(2.0f, 1.0f) == Approx(1e-4 * (4 * 0.5 - 2 * 2 * 0.3 + 0.7)));
 }
 
-TEST_CASE("plane fit: how far the cells lie from the centroid is told along both axes") {
-  Noise noise;
-  const auto scatter_m2 = [&](double along_x, double along_y) {
-    const auto points =
-        test::sample({1, 1 + along_x, 2, 2 + along_y}, 0.02, 0.0, noise, [](double, double) { return 0.0; });
-    return static_cast<double>(fit_plane(of_points(points), PlanePrior{}).scatter_m2);
-  };
-  CHECK(scatter_m2(2.0, 1.0) == Approx((4.0 + 1.0) / 12).epsilon(0.02));
-  CHECK(scatter_m2(1.0, 3.0) == Approx((1.0 + 9.0) / 12).epsilon(0.02));
-}
-
 }  // namespace
 }  // namespace curbline

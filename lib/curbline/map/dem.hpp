@@ -109,12 +109,12 @@ class Dem : public Window<limits> {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }
-  /// The same for distant cells with few points, by Viewpoint::reach_m2(): at least as much.
-  float common_m2(float reach_m2) const { return std::max(common_m2_, line_rad2_ * reach_m2); }
+  /// The same for cells of few points, which tell little of what scan lines err: at least as much.
+  float common_m2(float points_a_cell) const { return std::max(common_m2_, line_m2_ / points_a_cell); }
   /// Sets both as estimated; in evidences the shared part counts as at least the ground's texture.
-  void set_common(float found_m2, float found_line_rad2) {
+  void set_common(float found_m2, float found_line_m2) {
     common_m2_ = found_m2;
-    line_rad2_ = found_line_rad2;
+    line_m2_ = found_line_m2;
     prior_.common_share = std::max(prior_.texture_m2, found_m2) / prior_.noise_m2;
   }
 
@@ -229,8 +229,8 @@ class Dem : public Window<limits> {
   std::uint8_t flags_ = seen_bits;              ///< of a cell seen now
   PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
   PerCell<std::uint16_t, limits> distances_{};  ///< from a valid cell to the next valid ones, four bits a direction
-  float line_rad2_ = 0.0f;  ///< CommonNoise::line_rad2(). Placed behind the cells: before them it costs the worst line
-                            ///< of a Cortex-R5F 9,000 instructions (tools/budget)
+  float line_m2_ = 0.0f;  ///< CommonNoise::line_m2(). Placed behind the cells: before them it costs the worst line
+                          ///< of a Cortex-R5F 9,000 instructions (tools/budget)
   bool any_touched_ = false;
 };
 
@@ -239,7 +239,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   Window<limits>::init(settings);
   prior_ = prior;
   common_m2_ = prior.common_m2();
-  line_rad2_ = 0.0f;
+  line_m2_ = 0.0f;
   cells_.fill(Cell{});
   seen_.fill(0);
   flags_ = seen_bits;

@@ -5,9 +5,8 @@
 // for a first-order autoregression). It is estimated in patches of 10 x 10 cells, each about a plane of its own, so
 // that a step that does not divide planes yet affects only the patches that it crosses. Independent noise of a cell's
 // points is included, the less the more there are. The uncertainty of the tilt's latency, which a single sweep does not
-// show, is added. Errors of tilt and poses are those of whole scan lines, and grow with distance: so each patch also
-// yields its variance relative to its distance and points a cell, since a plane far away, or seen in a few lines, errs
-// by more than the evenest patches, near the robot, show.
+// show, is added. Errors of tilt and poses are those of whole scan lines: so each patch also yields its variance as if
+// its cells had one point each, since a plane seen in a few lines errs by more than the evenest patches show.
 #pragma once
 
 #include <array>
@@ -49,16 +48,16 @@ class CommonNoise {
 
   /// Examines the next row of patches; after the last, the first again. About 45 operations for each cell of these ten
   /// rows.
-  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view);
+  void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
   /// Variance that the points of a cell share: the lower quartile of the patches, weighted by cells, since curbs on
   /// both sides of a street and the end of a ramp may cross all others. Between PlanePrior::least_common_share and
   /// PlanePrior::common_share of the expected noise; the latter as long as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// Variance of a scan line's error in tilt and pose: the shared variance over Viewpoint::reach_m2(). Near the laser
-  /// the latter is small, and uneven ground makes the ratio large, so patches are weighted by it too, as in a ratio of
-  /// sums. The median, as no curb is missed for it; 0 as long as there is no plane.
-  float line_rad2() const;
+  /// Variance of the height of a cell of one point, by a scan line's error in tilt and pose: the shared variance times
+  /// the points of a cell. Where these are many, uneven ground makes it large, so patches are weighted by cells over
+  /// points, as in a ratio of sums. The median, as no curb is missed for it; 0 as long as there is no plane.
+  float line_m2() const;
 
  private:
   static constexpr int side = PatchResiduals::side;
@@ -73,7 +72,7 @@ class CommonNoise {
   struct Patch {
     float cells = 0.0f;  ///< 0: too few
     float common_m2 = 0.0f;
-    float reach_m2 = 0.0f;      ///< Viewpoint::reach_m2()
+    float points_a_cell = 1.0f;
     float growth_m2_s2 = 0.0f;  ///< sum of squares of Dem::growth_m_s()
   };
   /// Sums of a patch, while its cells are examined.
@@ -98,20 +97,18 @@ class CommonNoise {
 };
 
 template <Limits limits>
-void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const Viewpoint& view) {
+void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
   PatchRow row;
   for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) {
     dem.for_each_valid_in_row(i, [&](int, int j, int s) { look_at(dem, mixture, i, j, s, row); });
   }
   Patch* patch = &patches_[static_cast<std::size_t>(first_row_ / side) * patches_in_row];
-  const float x_m = dem.cell_x_m() * (static_cast<float>(first_row_) + 0.5f * side);
   for (std::size_t k = 0; k < patches_in_row; ++k, ++patch) {
     *patch = Patch{};
     const PatchSums& sums = row.patch[k];
     const float cells = sums.residuals.cells;
     if (cells < PatchResiduals::least_cells) continue;
-    const float y_m = dem.cell_y_m() * side * (static_cast<float>(k) + 0.5f);
-    *patch = {cells, sums.residuals.common_m2(), view.reach_m2(x_m, y_m, 0.0f, sums.points / cells), sums.growth_m2_s2};
+    *patch = {cells, sums.residuals.common_m2(), sums.points / cells, sums.growth_m2_s2};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -156,11 +153,11 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
 }
 
 template <Limits limits>
-float CommonNoise<limits>::line_rad2() const {
+float CommonNoise<limits>::line_m2() const {
   std::array<Shown, patches> shown;
   for (std::size_t k = 0; k < patches; ++k) {
-    const float reach_m2 = patches_[k].reach_m2;
-    shown[k] = {reach_m2 > 0.0f ? patches_[k].common_m2 / reach_m2 : 0.0f, patches_[k].cells * reach_m2};
+    const float points = patches_[k].points_a_cell;
+    shown[k] = {patches_[k].common_m2 * points, patches_[k].cells / points};
   }
   return quantile(shown, 0.5f);
 }
