@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include "support/small_map.hpp"
@@ -309,41 +308,6 @@ TEST_CASE("border finder: the face of a step up is no step down for a robot that
 
 TEST_CASE("border finder: a veil at the window's end hides a step all the same") {
   CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
-}
-
-//  .............       seen from above: the rays cross the edge obliquely and fall along it, not across it, and their
-//  _____________       spots are wider than the two rows of mixed readings in the window; from near by the spot is
-//  o                   small, and a bank is a bank
-TEST_CASE("border finder: an edge that the spots of rays askew blur is a step down, from near by a bank") {
-  const auto steps_down = [](const Viewpoint& view) {
-    Stages<small_limits> stages(small_settings());
-    test::fill(stages.dem, [](double, double y) { return y < 2.2 ? 0.0 : -0.3 * (y - 2.2); });
-    stages.view = view;
-    stages.settle();
-    stages.trace(view.x_m, view.y_m);
-    return std::count_if(stages.tracer.curbs().begin(), stages.tracer.curbs().end(), [](const Curb& curb) {
-      return curb.kind == CurbKind::step_down && std::abs(curb.y0_m - 2.2f) < 0.05f && curb.x1_m - curb.x0_m > 2.0f;
-    });
-  };
-  CHECK(steps_down({-2.0f, 1.2f, 1.0f}) == 1);
-  CHECK(steps_down({1.2f, 1.2f, 1.0f}) == 0);
-}
-
-// ____________          from far away the shadow of a step of 6 cm and the laser's spot together are as long as the
-//             \____     40 cm over which the ground falls; from near by they are shorter, and it is a ramp
-TEST_CASE("border finder: what falls over the shadow of an edge and the spot on it is a step, from near by a ramp") {
-  const auto kinds = [](float laser_y_m) {
-    Stages<small_limits> stages(small_settings());
-    test::fill(stages.dem, [](double, double y) { return y < 1.2 ? 0.0 : y < 1.6 ? -0.14 * (y - 1.2) : -0.056; });
-    stages.view = {1.2f, laser_y_m, 1.3f};
-    stages.settle();
-    stages.trace(stages.view.x_m, stages.view.y_m);
-    std::set<CurbKind> found;
-    for (const Curb& curb : stages.tracer.curbs()) found.insert(curb.kind);
-    return found;
-  };
-  CHECK(kinds(-3.3f) == std::set{CurbKind::step_down});
-  CHECK(kinds(0.6f) == std::set{CurbKind::ramp_edge});
 }
 
 TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which there is ground, are no brinks") {

@@ -418,23 +418,6 @@ TEST_CASE("ground: a plane through the laser is ground if it is no higher above 
   CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any curb: a veil
 }
 
-//  o
-//  ------____
-//            ------____     a pavement on a hill, of which a robot sees little: 40 cm, from afar
-TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is steeper than a ramp") {
-  const auto may_blur = [](double hill, double strip) {
-    Stages<small_limits> stages(small_settings());
-    stages.view = {0.0f, 1.2f, 1.0f, 8.0f, 8.0f};
-    fill(stages.dem, [=](double x, double) { return x < 2.0 ? -hill * x : -hill * 2.0 + 0.06 - strip * (x - 2.0); });
-    stages.settle();
-    return stages.mixture.may_be_veil(stages.label_at(22, 12));
-  };
-  CHECK(may_blur(0.0, 0.15));
-  CHECK_FALSE(may_blur(0.12, 0.15));
-  CHECK(may_blur(0.12, 0.27));
-  CHECK(may_blur(0.04, 0.15));  // a street
-}
-
 TEST_CASE("ground: what is ground is so whatever way the window lies, and on whatever side of it the laser stands") {
   const int quarters = GENERATE(1, 2, 3);
   const auto borne_turned = [=](const Viewpoint& view, auto&& height_m) {
@@ -616,36 +599,6 @@ TEST_CASE("ground: what falls half as steeply as the rays from any height may be
     CHECK(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.65 * rays)));
     CHECK_FALSE(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.35 * rays)));
   }
-}
-
-//  ____            from far away a slope of 30 cm may be the blurred edge of the ground before it; not if it begins
-//      __          far below or above, as then it is not the slope of that edge
-//        --__
-TEST_CASE("ground: a slope that a higher step parts from the ground before it is no blurred edge") {
-  const int quarters = GENERATE(0, 1, 2, 3);
-  const auto slope_after = [=](double step_m, double before_m = 3.0, double behind_m = std::nan("")) {
-    const auto slope = [=](double, double y) {
-      if (y < 1.2) return before_m;
-      if (y > 1.9) return behind_m;
-      return y < 1.6 ? std::nan("") : 3.0 + step_m - 0.14 * (y - 1.6);
-    };
-    const auto [x, y] = turned(1.25, 1.75, quarters);
-    return may_be_veil(turned({1.2f, -3.3f, 5.0f}, quarters), x, y, turned_ground(slope, quarters));
-  };
-  CHECK(slope_after(0.0));
-  CHECK(slope_after(0.0, std::nan(""), 2.958));  // nothing is seen before it
-  CHECK_FALSE(slope_after(-0.1));
-  CHECK_FALSE(slope_after(0.1));
-}
-
-TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
-  const auto falls = [](double slope) {
-    return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {
-      return y < 1.6 ? 0.0 : y > 1.9 ? std::nan("") : -slope * (y - 1.6);
-    });
-  };
-  CHECK(falls(0.14));
-  CHECK_FALSE(falls(0.11));
 }
 
 TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fringe and covers the ground") {

@@ -85,8 +85,6 @@ struct Run {
 
 /// A run, and the runs before and after it on its row or column.
 struct Strip {
-  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
-
   const Run &before, &run, &next;
 
   /// Is it between two other runs, neither more than `gap` cells away?
@@ -112,23 +110,6 @@ struct Strip {
     const float own_m = ahead ? run.first_height_m - run.last_height_m : run.last_height_m - run.first_height_m;
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
-  }
-  /// Height of the step down from the next run toward the laser to this one: negative for a step up, 0 without such a
-  /// run.
-  float begins_below_m(const Sight& sight) const {
-    if (sight.ahead(run.first)) return before.any() ? before.last_height_m - run.first_height_m : 0.0f;
-    return next.any() ? next.first_height_m - run.last_height_m : 0.0f;
-  }
-  /// Number of cells that hold something of both sides of an edge here: the length of the spot on the ground and of the
-  /// shadow of the run's own fall, and one more. If a higher step separates it from the run toward the laser, the run
-  /// is not the fall of that edge, and casts no shadow. `aside_m`: distance of the row or column from the laser.
-  float blurred_cells(const Sight& sight, float aside_m) const {
-    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
-    if (!(above_m > 0.0f)) return 0.0f;
-    const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
-    const float fall_m = run.highest_m - run.lowest_m, step_m = begins_below_m(sight);
-    const float shadow = away_m > 0.0f && step_m <= fall_m && step_m >= -fall_m ? away_m * fall_m : 0.0f;
-    return 1.0f + (spot + shadow) / (above_m * sight.cell_m);
   }
 
  private:
