@@ -318,7 +318,6 @@ template <Limits limits>
 auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
   const int slot = dem.slot(i, j);
   const LabelSite& site = sites_[slot];
-  if (site.decided()) return {site.label, {site.label[0] == no_label ? 0.0f : 1.0f, 0.0f, 0.0f}};
   return {site.label, site.probabilities(heard_by(dem, i, j, slot).heard)};
 }
 
