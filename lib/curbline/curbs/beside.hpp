@@ -75,6 +75,13 @@ struct Deviation {
 /// The deviation of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow.
 /// `away` is 1 if the other side is below, -1 if above. Each cell is one observation; common_m2 is the variance that
 /// points of one place may share. 0 without borders.
-Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2);
+inline Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2) {
+  const float n = beside.borders;
+  if (!(n > 0.0f)) return {};
+  const float away_m = away * (beside.off_m + further_cells * beside.rise_m) / n;
+  const float q = beside.away_cells / n + further_cells;
+  const float of_two = square(1.0f + q) + square(q);
+  return {away_m, plane.fit_variance_m2 * of_two / n, common_m2 * of_two, n};
+}
 
 }  // namespace curbline

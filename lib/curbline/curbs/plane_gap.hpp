@@ -30,7 +30,9 @@ struct CrossedCell {
 ///   - a gap without points that reaches into the cells on both sides: their centroids show how far, and half of it
 ///     counts.
 /// The centroid is not clamped: the random errors of a few points average out.
-float before_middle(const CrossedCell& cell);
+inline float before_middle(const CrossedCell& cell) {
+  return 0.5f - std::clamp(cell.far_share, 0.0f, 1.0f) + cell.centroid;
+}
 
 template <Limits limits>
 class PlaneGap {
