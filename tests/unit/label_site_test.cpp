@@ -20,12 +20,12 @@ TEST_CASE("label site: what it has heard can be taken back to the bit, in any or
   LabelSite::Heard sum{};
   const LabelSite::Labels others{7, 2, no_label};
   const LabelSite::Message first{31, 12, 0}, second{3, 48, 9};
-  s.hear(others, first, false, 1, sum);
-  s.hear(s.label, second, true, 1, sum);
+  s.hear(others, first, 1, sum);
+  s.hear(s.label, second, 1, sum);
   CHECK(sum == LabelSite::Heard{15, 48, 40});  // label 2: 12 + 3, label 5: 48, label 7: 31 + 9
-  s.hear(others, first, false, -1, sum);
+  s.hear(others, first, -1, sum);
   CHECK(sum == LabelSite::Heard{3, 48, 9});
-  s.hear(s.label, second, true, -1, sum);
+  s.hear(s.label, second, -1, sum);
   CHECK(sum == LabelSite::Heard{});
 }
 

@@ -39,7 +39,6 @@ class LabelField {
     Slot<limits> slot;
     std::array<Slot<limits>, directions> neighbour;
     std::array<std::uint8_t, directions> distance;  ///< in cells; 0 where there is none
-    std::uint8_t same_labels;                       ///< a bit for each direction: the neighbour has the same candidates
     LabelSite::Heard heard;
   };
   /// Working memory of one update(): the cells that send, row by row, and the place of each in that list.
@@ -243,14 +242,11 @@ auto LabelField<limits>::visit_to(const Dem<limits>& dem, int i, int j, int slot
 template <Limits limits>
 void LabelField<limits>::hear_neighbours(Visit& visit) const {
   const LabelSite& site = sites_[visit.slot];
-  visit.same_labels = 0;
   visit.heard.fill(0);
   for (std::size_t d = 0; d < directions; ++d) {
     if (visit.distance[d] == 0) continue;
     const LabelSite& other = sites_[visit.neighbour[d]];
-    const bool same = site.label == other.label;
-    visit.same_labels |= static_cast<std::uint8_t>(same << d);
-    site.hear(other.label, other.sent[d ^ 1u], same, 1, visit.heard);
+    site.hear(other.label, other.sent[d ^ 1u], 1, visit.heard);
   }
 }
 
@@ -269,11 +265,10 @@ void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& 
   if (distance == 0) return;
   LabelSite& site = sites_[from.slot];
   const LabelSite& other = sites_[from.neighbour[direction]];
-  const bool same = (from.same_labels >> direction & 1) != 0;
   LabelSite::Message message{coupling_[distance].loudest, 0, 0};
   if (!site.decided()) {
     auto by_others = from.heard;
-    site.hear(other.label, other.sent[direction ^ 1u], same, -1, by_others);
+    site.hear(other.label, other.sent[direction ^ 1u], -1, by_others);
     message = LabelSite::message(site.probabilities(by_others), coupling_[distance]);
   }
   auto& sent = site.sent[direction];
@@ -286,8 +281,8 @@ void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& 
   auto& flag = flag_[from.neighbour[direction]];
   if ((flag & visited) != 0) {
     auto& sum = visits.visit[visits.index[from.neighbour[direction]]].heard;
-    other.hear(site.label, sent, same, -1, sum);
-    other.hear(site.label, message, same, 1, sum);
+    other.hear(site.label, sent, -1, sum);
+    other.hear(site.label, message, 1, sum);
   }
   flag |= heard;
   sent = message;

@@ -70,7 +70,7 @@ struct LabelSite {
   /// The same, with node potentials from their doubts; flat ones where the ground is covered.
   void set_candidates(const Candidates& candidates, bool covered);
   /// Adds a neighbour's message to `sum` (sign 1), or subtracts it (-1), for the candidates that both have.
-  void hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const;
+  void hear(const Labels& others, const Message& said, int sign, Heard& sum) const;
   /// The belief, from node potentials and messages heard.
   Probabilities probabilities(const Heard& heard) const;
   /// The message of a cell with belief p, without the receiver's own message; normalised to 1 for labels that it rules
@@ -120,11 +120,7 @@ inline void LabelSite::set_labels(const Labels& labels) {
   label = labels;
 }
 
-inline void LabelSite::hear(const Labels& others, const Message& said, bool same_labels, int sign, Heard& sum) const {
-  if (same_labels) {
-    for (std::size_t c = 0; c < label.size(); ++c) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[c]);
-    return;
-  }
+inline void LabelSite::hear(const Labels& others, const Message& said, int sign, Heard& sum) const {
   for (std::size_t c = 0; c < label.size() && label[c] != no_label; ++c) {
     for (std::size_t o = 0; o < others.size(); ++o) {
       if (label[c] == others[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[o]);
