@@ -98,7 +98,6 @@ Bad first_bad_of_inference(const Settings& s) {
   if (!within(s.planes.min_cells, 3.0f, 1e6f)) return "planes.min_cells";
   if (!within(s.labels.coupling, 0.01f, 7.9f)) return "labels.coupling";
   if (!reach(s.labels.link_reach)) return "labels.link_reach";
-  if (s.labels.refresh_rows < 0) return "labels.refresh_rows";
   if (s.labels.max_messages && *s.labels.max_messages < 4) return "labels.max_messages";
   if (!reach(s.curbs.link_reach)) return "curbs.link_reach";
   return positive(s.curbs.max_step_m) ? nullptr : "curbs.max_step_m";

@@ -95,7 +95,6 @@ Settings some_settings(Numbers& numbers) {
   numbers.change(s.planes.min_cells, 3.0f, 1e6f);
   if (numbers.flag()) s.planes.update = PlaneUpdate::responsibilities;
   numbers.change(s.labels.coupling, 0.01f, 7.9f);
-  numbers.change(s.labels.refresh_rows, 0, 20);
   if (numbers.flag()) s.labels.max_messages = numbers.whole(0, 100);
   numbers.change(s.curbs.max_step_m, 0.0f, 100.0f);
   return s;

@@ -264,13 +264,13 @@ TEST_CASE("label field: a cell that left the window is forgotten") {
   CHECK(stages->label_at(4, 4) == no_label);
 }
 
-TEST_CASE("label field: once its messages stand, a line that touches nothing costs the refreshing of its rows only") {
+TEST_CASE("label field: once its messages stand, a line that touches nothing sends none") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   for (int line = 0; line < 48; ++line) stages->infer();
   const auto before = stages->counters.messages;
   stages->infer();
-  CHECK(stages->counters.messages - before == 4u * static_cast<unsigned>(LabelSettings{}.refresh_rows) * 24u);
+  CHECK(stages->counters.messages == before);
 }
 
 TEST_CASE("label field: the budget of messages is kept, what waits is counted and catches up") {
@@ -324,11 +324,9 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end")
   CHECK(cells_without_label(*stages) == 0);
 }
 
-TEST_CASE("label field: a row that every line changes does not starve the others, however many rows are refreshed") {
+TEST_CASE("label field: a row that every line changes does not starve the others") {
   Settings settings = small_settings();
   settings.labels.max_messages = directions * 24;  // the messages of one row
-  settings.labels.refresh_rows = GENERATE(0, 1, 24);
-  REQUIRE(check(settings, Limits{}) == Status::ok);
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) {
@@ -347,7 +345,7 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
     for (const Point& p : points) stages->dem.add(p);
   }
   for (int pass = 0; pass < 20; ++pass) whole->infer(true);
-  for (int line = 0; line < 20 * 12; ++line) lines->infer();  // 12 lines refresh all rows once
+  for (int line = 0; line < 20 * 12; ++line) lines->infer();
   float worst = 0.0f;
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {

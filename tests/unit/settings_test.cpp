@@ -58,7 +58,6 @@ TEST_CASE("settings: the bounds themselves are good") {
   low.planes.prior = {1e-10f, 0.0f, 1.0f, PlanePrior::least_common_share, 0.0f};
   low.planes.min_cells = 3.0f;
   low.labels.coupling = 0.01f;
-  low.labels.refresh_rows = 0;
   low.labels.max_messages = 4;
   CHECK(std::string(named(low)) == "none");
 
@@ -177,7 +176,6 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, "planes.min_cells", [](Settings& s) -> float& { return s.planes.min_cells; }, {2.0f, nan});
   refuses(bad, "labels.coupling", [](Settings& s) -> float& { return s.labels.coupling; }, {0.0f, -1.0f, 8.0f, nan});
   refuses(bad, "labels.link_reach", [](Settings& s) -> int& { return s.labels.link_reach; }, {0, 16});
-  refuses(bad, "labels.refresh_rows", [](Settings& s) -> int& { return s.labels.refresh_rows; }, {-1});
   refuses(bad, "labels.max_messages", [](Settings& s) -> int& { return s.labels.max_messages.emplace(); },
           {3, 1, 0, -1});
   refuses(bad, "curbs.link_reach", [](Settings& s) -> int& { return s.curbs.link_reach; }, {0, 16});

@@ -32,7 +32,6 @@ void read_planes(TomlTable table, PlaneSettings& planes) {
 void read_labels(TomlTable table, LabelSettings& labels) {
   table.read("coupling", labels.coupling, {0.01, 7.9});
   table.read_whole("link_reach", labels.link_reach, 1, max_link_reach);
-  table.read_whole("refresh_rows", labels.refresh_rows, 0, 512);
   if (table.has("max_messages")) table.read_whole("max_messages", labels.max_messages.emplace(), 4, 100'000'000);
   table.done();
 }

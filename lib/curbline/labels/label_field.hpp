@@ -3,7 +3,7 @@
 // the cells that changed, and a new message makes its receiver one of those. A Potts message has two values, so it
 // costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) of the planes near by
 // (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of planes_near_by, four messages
-// for each cell that sends, and a visit of each plane near by for each cell whose candidates are chosen again.
+// for each cell that sends, and a visit of each plane near by for each cell that sends.
 #pragma once
 
 #include <array>
@@ -57,9 +57,8 @@ class LabelField {
   void note_touched(const Dem<limits>& dem);
 
   /// E-step. Cells count as changed if they were touched, if their region changed its plane, if a candidate of theirs
-  /// is gone, or if they heard a new message; also a band of rows that moves on with each call, since planes move as
-  /// they grow. Cells left over by max_messages are counted and wait for the next call. Returns how many labels
-  /// changed.
+  /// is gone, or if they heard a new message. Cells left over by max_messages are counted and wait for the next call.
+  /// Returns how many labels changed.
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
@@ -70,15 +69,14 @@ class LabelField {
  private:
   static constexpr int no_news = 2;  ///< a message that changes by no more, 1/16 nat, is not sent again
 
-  /// Bits; renew: choose its candidates again, too.
-  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, deferred = 4, renew = 8 };
+  /// Bits.
+  enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, waits = 4 };
 
   // Not inlined, so that send() is, in the loop over visits: saves 50,000 instructions a line on a Cortex-M7.
   [[gnu::noinline]] void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters);
-  int flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
-  std::uint8_t wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const;
-  bool must_renew(const PlaneMixture<limits>& mixture, int slot) const;
+  void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
+  bool changed(const PlaneMixture<limits>& mixture, int slot) const;
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
@@ -89,8 +87,7 @@ class LabelField {
 
   LabelSettings settings_{};
   PlanesNearBy<limits> near_by_{};
-  int band_ = 0;       ///< first row of the band in the next update()
-  int first_row_ = 0;  ///< row whose cells have the first right to send in it
+  int first_row_ = 0;  ///< row whose cells have the first right to send in the next update()
   std::array<LabelSite::Coupling, max_link_reach + 1> coupling_{};  ///< by distance
   PerCell<LabelSite, limits> sites_{};
   PerCell<std::uint8_t, limits> flag_{};
@@ -102,7 +99,7 @@ void LabelField<limits>::init(const LabelSettings& settings) {
   sites_.fill(LabelSite{});
   flag_.fill(quiet);
   near_by_.clear();
-  band_ = first_row_ = 0;
+  first_row_ = 0;
   for (std::size_t g = 1; g < coupling_.size(); ++g)
     coupling_[g] = LabelSite::coupling(settings.coupling / static_cast<float>(g));
 }
@@ -126,37 +123,27 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
 template <Limits limits>
 void LabelField<limits>::note_touched(const Dem<limits>& dem) {
   dem.for_each_valid([&](int, int, int s) {
-    if (dem.touched(s)) flag_[s] |= renew;
+    if (dem.touched(s)) flag_[s] |= waits;
   });
 }
 
-/// Changed cells first, then the band of rows.
 template <Limits limits>
 void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters) {
-  int left = flag_changed(dem, mixture, scope, counters);
-  const int band = band_ < dem.rows() ? band_ : 0;
-  band_ = band + settings_.refresh_rows;
+  flag_changed(dem, mixture, scope, counters);
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
-    auto& flag = flag_[s];
-    if (flag == quiet && i >= band && i < band_ && left > 0) {
-      flag = visited | renew;
-      --left;
-    }
-    if ((flag & visited) == 0) return;
-    if ((flag & renew) != 0) choose_candidates(dem, mixture, i, j, s);
-    flag = visited;
+    if ((flag_[s] & visited) == 0) return;
+    choose_candidates(dem, mixture, i, j, s);
     visits.index[s] = static_cast<Slot<limits>>(visits.size);
     visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
   });
 }
 
-/// Starts from a row that moves on, so that a small budget starves no cell as long as it suffices for a row. Returns
-/// how many visits are left.
+/// Starts from a row that moves on, so that a small budget starves no cell as long as it suffices for a row.
 template <Limits limits>
-int LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
-                                     Counters& counters) {
+void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
+                                      Counters& counters) {
   const int rows = dem.rows();
   const int first = first_row_ < rows ? first_row_ : 0;
   first_row_ = first + 1;
@@ -164,32 +151,22 @@ int LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<
   int left = scope == FieldScope::line ? messages / directions : capacity;
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
-      auto& flag = flag_[s];
-      flag = wanted(mixture, scope, s);
-      if (flag == quiet) return;
+      const bool wanted = scope == FieldScope::window || changed(mixture, s);
+      flag_[s] = !wanted ? quiet : left > 0 ? visited : waits;
+      if (!wanted) return;
       if (left > 0) {
         --left;
       } else {
-        flag ^= visited | deferred;
         ++counters.cells_deferred;
       }
     });
   }
-  return left;
 }
 
-/// `visited`, with `renew` or without, or `quiet`.
+/// Since the last call, or waits since then.
 template <Limits limits>
-std::uint8_t LabelField<limits>::wanted(const PlaneMixture<limits>& mixture, FieldScope scope, int slot) const {
-  const std::uint8_t before = flag_[slot];
-  if ((before & renew) != 0 || scope == FieldScope::window || must_renew(mixture, slot)) return visited | renew;
-  if ((before & (heard | deferred)) == 0) return quiet;
-  return mixture.any_relabelled() ? visited | renew : visited;  // the planes near by may have changed
-}
-
-template <Limits limits>
-bool LabelField<limits>::must_renew(const PlaneMixture<limits>& mixture, int slot) const {
-  if (mixture.relabelled(slot)) return true;
+bool LabelField<limits>::changed(const PlaneMixture<limits>& mixture, int slot) const {
+  if ((flag_[slot] & (heard | waits)) != 0 || mixture.relabelled(slot)) return true;
   const LabelSite& site = sites_[slot];
   if (mixture.any_fresh()) {
     if (mixture.region_label(slot) != no_label && mixture.fresh(mixture.region_label(slot))) return true;
