@@ -116,6 +116,17 @@ TEST_CASE("scores: two pavements of one height on either side of a road are two"
   CHECK(score_planes({{cells}, {}, {}}, road).v == Approx(1));
 }
 
+TEST_CASE("scores: lawns of one height on either side of an edging narrower than a cell are two") {
+  Truth edged = step_of(0.1);
+  const Polygon edging{{1.90, -2}, {1.98, -2}, {2.28, 2}, {2.20, 2}};  // across the columns of cells
+  edged.regions = {{"lawn", rectangle({0, -2}, {4, 2}), 0}, {"edging", edging, 1}};
+  std::vector<LabelledCell> cells = cells_of(edged);
+  for (LabelledCell& cell : cells) {
+    if (cell.cell.label == 0 && cell.x_m > 1.94 + 0.075 * (cell.y_m + 2)) cell.cell.label = 2;
+  }
+  CHECK(score_planes({{cells}, {}, {}}, edged).v == Approx(1));
+}
+
 TEST_CASE("scores: labels so far apart that no window holds them are refused with the line of one") {
   std::vector<LabelledCell> cells = cells_of(truth);
   cells[2].y_m = 1e300;

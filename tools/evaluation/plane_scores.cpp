@@ -19,7 +19,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t least_cells = 8;   ///< minimum for a plane whose slope is compared
-constexpr double most_places = 1 << 24;  ///< seen or not: as many as 64 of the largest windows have
+constexpr int places_along = 3;          ///< in a cell, each way: ground a third as wide parts what is beside it
+constexpr double most_places = 1 << 24;  ///< seen or not: as many as 7 of the largest windows have
 
 using Cells = std::vector<const LabelledCell*>;
 
@@ -53,17 +54,21 @@ long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*
   return std::max_element(cells.begin(), cells.end(), nearer) - cells.begin() + 2;
 }
 
-/// The grid from the lowest to the highest cell.
-Grid grid_of(const std::vector<LabelledCell>& cells) {
+/// The places from the lowest to the highest cell; the middle of each cell is that of a place.
+Grid places_of(const std::vector<LabelledCell>& cells) {
   const Axis x = axis_of(cells, &LabelledCell::x_m), y = axis_of(cells, &LabelledCell::y_m);
-  if (x.count * y.count > most_places) {
+  if (x.count * y.count * (places_along * places_along) > most_places) {
     const bool along_x = x.count > y.count;
     throw BadInput("labels.csv", line_far_off(cells, along_x ? &LabelledCell::x_m : &LabelledCell::y_m),
                    std::string(along_x ? "x_m" : "y_m") +
                        " lies too far from that of the other rows; expected rows of one window");
   }
-  return {x.low_m - x.pitch_m / 2,   y.low_m - y.pitch_m / 2,  x.pitch_m, y.pitch_m,
-          static_cast<int>(x.count), static_cast<int>(y.count)};
+  return {x.low_m - x.pitch_m / 2,
+          y.low_m - y.pitch_m / 2,
+          x.pitch_m / places_along,
+          y.pitch_m / places_along,
+          static_cast<int>(x.count) * places_along,
+          static_cast<int>(y.count) * places_along};
 }
 
 std::size_t place_of(const LabelledCell& cell, const Grid& grid) {
@@ -71,7 +76,7 @@ std::size_t place_of(const LabelledCell& cell, const Grid& grid) {
                  static_cast<int>((cell.y_m - grid.y0_m) / grid.dy_m));
 }
 
-/// Numbers all cells that are connected with cell (i, j) and belong to its plane.
+/// Numbers all places that are connected with place (i, j) and belong to its plane.
 void flood(const Grid& grid, const std::vector<int>& planes, int i, int j, int number, std::vector<int>& parts) {
   std::vector<std::pair<int, int>> open{{i, j}};
   const int plane = planes[grid.at(i, j)];
@@ -110,7 +115,7 @@ struct VMeasures {
 /// either side of a road are two parts. What hides the ground, a shadow or an object on it, does not separate parts.
 VMeasures v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
   if (cells.empty()) return {};
-  const Grid grid = grid_of(cells);
+  const Grid grid = places_of(cells);
   const std::vector<int> parts = parts_of(grid, truth);
   std::vector<int> of_truth, ground, readings;
   std::map<int, std::size_t> cells_of;

@@ -33,7 +33,7 @@ struct PlaneScores {
   /// V-measure of the labels of the ground at the cells' centres, where the truth is looked up, against connected parts
   /// of the true planes; mean over the windows in which at least two parts have 5 % of the cells or more. NaN if there
   /// is none, or if no cell has a label (methods that only find curbs). Connectivity is that of all ground between the
-  /// lowest and the highest cell, seen or not; only cells off obstacles count.
+  /// lowest and the highest cell, seen or not, to a third of a cell; only cells off obstacles count.
   double v = 0;
   double v_readings = 0;       ///< the same for the labels of what is seen in the cells
   double cell_rmse_m = 0;      ///< error of cells against the true ground
