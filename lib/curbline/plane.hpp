@@ -103,6 +103,10 @@ struct Plane {
   /// Its slope beyond 1 in 20, as a plane through the origin.
   Plane lean() const;
   bool steeper_than_ramp() const { return square(slope_x) + square(slope_y) > square(steepest_ramp); }
+  /// The same relative to the slope of the ground, lean().
+  bool steeper_than_ramp(const Plane& lean) const {
+    return square(slope_x - lean.slope_x) + square(slope_y - lean.slope_y) > square(steepest_ramp);
+  }
   /// Steeper than ground by three standard deviations of its slopes: a face.
   bool steeper_than_ground() const { return square(slope_x) + square(slope_y) > gate * square(steepest_ramp); }
 

@@ -310,6 +310,24 @@ TEST_CASE("border finder: a veil at the window's end hides a step all the same")
   CHECK(Street{.slope = -0.5, .from = 2.1, .to = 9.0}.one_sided().size() == 1);
 }
 
+//  .............       seen from above: the rays cross the edge obliquely and fall along it, not across it, and their
+//  _____________       spots are wider than the two rows of mixed readings in the window; from near by the spot is
+//  o                   small, and a bank is a bank
+TEST_CASE("border finder: an edge that the spots of rays askew blur is a step down, from near by a bank") {
+  const auto steps_down = [](const Viewpoint& view) {
+    Stages<small_limits> stages(small_settings());
+    test::fill(stages.dem, [](double, double y) { return y < 2.2 ? 0.0 : -0.3 * (y - 2.2); });
+    stages.view = view;
+    stages.settle();
+    stages.trace(view.x_m, view.y_m);
+    return std::count_if(stages.tracer.curbs().begin(), stages.tracer.curbs().end(), [](const Curb& curb) {
+      return curb.kind == CurbKind::step_down && std::abs(curb.y0_m - 2.2f) < 0.05f && curb.x1_m - curb.x0_m > 2.0f;
+    });
+  };
+  CHECK(steps_down({-2.0f, 1.2f, 1.0f}) == 1);
+  CHECK(steps_down({1.2f, 1.2f, 1.0f}) == 0);
+}
+
 TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which there is ground, are no brinks") {
   CHECK(Street{.slope = 0.0}.one_sided().empty());
   CHECK(Street{.slope = -0.12, .from = 1.4, .to = 1.7}.one_sided().empty());

@@ -418,6 +418,23 @@ TEST_CASE("ground: a plane through the laser is ground if it is no higher above 
   CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any curb: a veil
 }
 
+//  o
+//  ------____
+//            ------____     a pavement on a hill, of which a robot sees little: 30 cm, from afar
+TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is steeper than a ramp") {
+  const auto may_blur = [](double hill, double strip) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = {-8.0f, 1.2f, 6.0f, 8.0f, 8.0f};
+    fill(stages.dem, [=](double x, double) { return x < 2.1 ? -hill * x : -hill * 2.1 + 0.06 - strip * (x - 2.1); });
+    stages.settle();
+    return stages.mixture.may_be_veil(stages.label_at(22, 12));
+  };
+  CHECK(may_blur(0.0, 0.15));
+  CHECK_FALSE(may_blur(0.12, 0.15));
+  CHECK(may_blur(0.12, 0.27));
+  CHECK(may_blur(0.04, 0.15));  // a street
+}
+
 TEST_CASE("ground: what is ground is so whatever way the window lies, and on whatever side of it the laser stands") {
   const int quarters = GENERATE(1, 2, 3);
   const auto borne_turned = [=](const Viewpoint& view, auto&& height_m) {
@@ -599,6 +616,16 @@ TEST_CASE("ground: what falls half as steeply as the rays from any height may be
     CHECK(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.65 * rays)));
     CHECK_FALSE(may_be_veil({0.0f, 1.2f, static_cast<float>(laser_m)}, 1.55, 1.25, falls(0.35 * rays)));
   }
+}
+
+TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
+  const auto falls = [](double slope) {
+    return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {
+      return y < 1.6 ? 0.0 : y > 1.9 ? std::nan("") : -slope * (y - 1.6);
+    });
+  };
+  CHECK(falls(0.14));
+  CHECK_FALSE(falls(0.11));
 }
 
 TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fringe and covers the ground") {

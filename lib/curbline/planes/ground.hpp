@@ -15,8 +15,9 @@
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their heights
 // say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
-// that falls away as rays do, perhaps with a little of the ground behind in the window. Cost: three passes over the
-// window.
+// that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
+// steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge, at whatever
+// angle the rays cross it: it blurs that edge. Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -92,7 +93,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
   if (tally.veil(plane) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
-  return as_rays && steep ? Kind::doubtful : Kind::ground;
+  return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
 template <Limits limits>

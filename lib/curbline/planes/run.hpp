@@ -85,6 +85,8 @@ struct Run {
 
 /// A run, and the runs before and after it on its row or column.
 struct Strip {
+  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
+
   const Run &before, &run, &next;
 
   /// Is it between two other runs, neither more than `gap` cells away?
@@ -110,6 +112,14 @@ struct Strip {
     const float own_m = ahead ? run.first_height_m - run.last_height_m : run.last_height_m - run.first_height_m;
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
+  }
+  /// Number of cells that hold something of both sides of an edge here: the length of the laser's spot on the ground,
+  /// and one more. `aside_m`: distance of the row or column from the laser.
+  float blurred_cells(const Sight& sight, float aside_m) const {
+    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
+    if (!(above_m > 0.0f)) return 0.0f;
+    const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
+    return 1.0f + spot / (above_m * sight.cell_m);
   }
 
  private:

@@ -1,5 +1,6 @@
 // Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
-// lie in strips that carry a step, in the shadow of one, or beside a high obstacle. Cost: that of the runs.
+// lie in strips that carry a step, in the shadow of one, beside a high obstacle, or where an edge is blurred. Cost:
+// that of the runs.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +45,8 @@ struct StripTally {
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
   // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
-  std::array<float, 2> fringe_cells{};  ///< in strips beside an obstacle higher than a step
+  std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
+  std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
   /// Adds a strip between two others that are no obstacles (a step up onto one is no curb). Its cells' spread beyond
   /// noise is that beyond the spread of the quieter plane beside it.
@@ -72,8 +74,10 @@ struct StripTally {
     return veil(shadow[0], steep) || veil(shadow[1], steep);
   }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
+  bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
 
  private:
+  bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
   bool veil(const Shadowed& in_shadow, bool steep) const {
     return most(in_shadow.cells) &&
@@ -85,24 +89,39 @@ struct StripTally {
 template <Limits limits>
 using StripTallies = std::array<StripTally, limits.planes>;
 
+/// Does a plane fall away from the laser, more steeply than a ramp, relative to the ground's slope?
+inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& view) {
+  return plane.steeper_than_ramp(lean) &&
+         plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
+}
+
 /// Statistics of all planes. Shadows are those for the place from which the laser last saw a strip.
 template <Limits limits>
 StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                                   const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
   StripTallies<limits> tallies{};
-  for (std::size_t l = 0; l < tallies.size(); ++l) tallies[l].cells = obstacles.cells(l);
+  const Plane lean = obstacles.ground() == nullptr ? Plane{} : obstacles.ground()->lean();
+  std::array<bool, limits.planes> drops{};
+  for (std::size_t l = 0; l < tallies.size(); ++l) {
+    tallies[l].cells = obstacles.cells(l);
+    drops[l] = !obstacles.is(l) && drops_off(planes[l], lean, view);
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
       const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between();
-      if (rises && strip.between(widest_gap)) {
+      const bool carries_step = rises && strip.between(widest_gap);
+      if (carries_step || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
         const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
         const Sight across = along.across(planes[run.label], axis, aside_m);
-        if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
+        if (carries_step) {
+          if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
+        }
+        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, aside_m);
       }
       if (run.length() > StripTally::longest_strip) return;
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
