@@ -252,6 +252,16 @@ TEST_CASE("program: a cambered road is one surface, and its curbs are found, wit
   }
 }
 
+//    lawn _ footway
+//   _____| |_______       8 cm of edging, 6 cm high
+//                  |_____ road
+TEST_CASE("program: a footway and a lawn of its height on either side of an edging narrower than a cell are two") {
+  for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
+    INFO(robot);
+    CHECK(evaluate(Recording("edging", robot)).at("v").get<double>() > 0.75);
+  }
+}
+
 //   y      y = 1: a curb along the path that rises from 2 cm to 10 cm
 //   0      ->
 //   0                        8 m
