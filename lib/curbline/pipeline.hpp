@@ -26,6 +26,7 @@
 #include "curbline/labels/label_field.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
 #include "curbline/planes/common_noise.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/pose.hpp"

@@ -1,8 +1,6 @@
 // A point on its way from the laser into a cell, and the place from which it is seen.
 #pragma once
 
-#include "curbline/math.hpp"
-
 namespace curbline {
 
 /// Bound of growth_m_s: a servo at 3 rad/s, ground 10 m away. Beyond, a tilt reading is wrong.

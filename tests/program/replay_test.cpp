@@ -252,13 +252,23 @@ TEST_CASE("program: a cambered road is one surface, and its curbs are found, wit
   }
 }
 
+//  A step of 1.5 to 12 cm along a footway that falls to a crossing, on both of its sides.
+TEST_CASE("program: of a footway that falls to a crossing the curbs on both sides are found as far as they are steps") {
+  for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
+    INFO(robot);
+    const nlohmann::json figures = evaluate(Recording("parallel_ramp", robot));
+    CHECK(figures.at("recall").get<double>() > 0.9);
+    CHECK(figures.at("precision").get<double>() > 0.9);
+  }
+}
+
 //    lawn _ footway
 //   _____| |_______       8 cm of edging, 6 cm high
 //                  |_____ road
 TEST_CASE("program: a footway and a lawn of its height on either side of an edging narrower than a cell are two") {
   for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
     INFO(robot);
-    CHECK(evaluate(Recording("edging", robot)).at("v").get<double>() > 0.75);
+    CHECK(evaluate(Recording("edging", robot)).at("v").get<double>() > 0.8);
   }
 }
 

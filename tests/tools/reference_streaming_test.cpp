@@ -19,7 +19,7 @@ constexpr double noise_sd_m = 0.007;
 constexpr std::size_t chunk = 200;
 constexpr Grid window{0, -2, 0.1, 0.1, 40, 40};  // as in Settings{}
 
-constexpr int calls_to_settle = 40;
+constexpr int calls_to_settle = 40;  ///< by then messages stand, in every case here
 
 using Streaming = Pipeline<Limits{}>;
 

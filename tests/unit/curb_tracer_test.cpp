@@ -565,8 +565,7 @@ TEST_CASE("curb tracer: the height of a step is less certain where few points te
     for (int scan = 0; scan < scans; ++scan) fill(stages.dem, up);
     stages.settle();
     stages.dem.set_common(1e-8f, 1e-3f);
-    stages.tracer.trace(stages.dem, stages.mixture, stages.field, {0.0f, 1.2f, 1.0f, 2.4f, 2.4f}, stages.work.curbs(),
-                        stages.counters);
+    stages.trace(0.0f, 1.2f);
     REQUIRE(stages.tracer.curbs().size() == 1);
     return stages.tracer.curbs()[0].height_sd_m;
   };

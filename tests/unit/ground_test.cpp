@@ -618,6 +618,14 @@ TEST_CASE("ground: what falls half as steeply as the rays from any height may be
   }
 }
 
+//  ____
+//      ----____        40 cm: as long as the spot and the shadow of its own fall, longer than the spot alone
+TEST_CASE("ground: a slope that is no longer than the shadow of its own fall is no blurred edge for that") {
+  CHECK_FALSE(may_be_veil({1.2f, -3.3f, 1.3f}, 1.25, 1.45, [](double, double y) {
+    return y < 1.2 ? 0.0 : y < 1.6 ? -0.135 * (y - 1.2) : -0.054;
+  }));
+}
+
 TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
   const auto falls = [](double slope) {
     return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {

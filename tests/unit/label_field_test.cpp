@@ -1,5 +1,5 @@
 // Beliefs against the Potts field enumerated in double precision, and the behaviour of the field over time: deferral,
-// refreshing, settling.
+// settling.
 #include "curbline/labels/label_field.hpp"
 
 #include <algorithm>
@@ -345,7 +345,7 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
     for (const Point& p : points) stages->dem.add(p);
   }
   for (int pass = 0; pass < 20; ++pass) whole->infer(true);
-  for (int line = 0; line < 20 * 12; ++line) lines->infer();
+  for (int line = 0; line < 240; ++line) lines->infer();
   float worst = 0.0f;
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {

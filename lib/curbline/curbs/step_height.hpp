@@ -193,9 +193,9 @@ auto StepHeight<limits>::deviations() const -> Deviations {
 }
 
 /// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it
-/// is at least that of cells seen in as few lines. Scan lines err independently: even if all cells of
-/// one erred alike, a plane of n cells would know as much as its lines, sqrt(n) in a square one, which bounds the
-/// factor. With four cells or fewer the fit does not show the error of lines, and there is no bound.
+/// is at least that of cells seen in as few lines. Scan lines err independently: even if all cells of one erred alike,
+/// a plane of n cells would know as much as its lines, sqrt(n) in a square one, which bounds the factor. With four
+/// cells or fewer the fit does not show the error of lines, and there is no bound.
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
   float times = stages_.dem.common_m2(plane.points_a_cell) / plane.fit_variance_m2;

@@ -2,8 +2,8 @@
 // (paper, section III-D). Messages are kept from line to line; a call sends them once in each of four directions, from
 // the cells that changed, and a new message makes its receiver one of those. A Potts message has two values, so it
 // costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) of the planes near by
-// (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of planes_near_by, four messages
-// for each cell that sends, and a visit of each plane near by for each cell that sends.
+// (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of planes_near_by, and for each
+// cell that sends four messages and a visit of each plane near by.
 #pragma once
 
 #include <array>
@@ -57,8 +57,9 @@ class LabelField {
   void note_touched(const Dem<limits>& dem);
 
   /// E-step. Cells count as changed if they were touched, if their region changed its plane, if a candidate of theirs
-  /// is gone, or if they heard a new message. Cells left over by max_messages are counted and wait for the next call.
-  /// Returns how many labels changed.
+  /// is gone, or if they heard a new message; others keep the candidates and potentials of when they last sent, though
+  /// planes move as they grow. Cells left over by max_messages are counted and wait for the next call. Returns how many
+  /// labels changed.
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
@@ -69,14 +70,14 @@ class LabelField {
  private:
   static constexpr int no_news = 2;  ///< a message that changes by no more, 1/16 nat, is not sent again
 
-  /// Bits.
+  /// Bits: a neighbour's message was news; sends in this call; touched, or left over by max_messages.
   enum Flag : std::uint8_t { quiet = 0, heard = 1, visited = 2, waits = 4 };
 
   // Not inlined, so that send() is, in the loop over visits: saves 50,000 instructions a line on a Cortex-M7.
   [[gnu::noinline]] void choose_visits(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                        Visits& visits, Counters& counters);
   void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
-  bool changed(const PlaneMixture<limits>& mixture, int slot) const;
+  bool wants_to_send(const PlaneMixture<limits>& mixture, int slot) const;
   void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
@@ -151,21 +152,22 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   int left = scope == FieldScope::line ? messages / directions : capacity;
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
-      const bool wanted = scope == FieldScope::window || changed(mixture, s);
-      flag_[s] = !wanted ? quiet : left > 0 ? visited : waits;
-      if (!wanted) return;
-      if (left > 0) {
+      if (scope != FieldScope::window && !wants_to_send(mixture, s)) {
+        flag_[s] = quiet;
+      } else if (left > 0) {
+        flag_[s] = visited;
         --left;
       } else {
+        flag_[s] = waits;
         ++counters.cells_deferred;
       }
     });
   }
 }
 
-/// Since the last call, or waits since then.
+/// Whether the cell has changed since it last sent, or has no candidate.
 template <Limits limits>
-bool LabelField<limits>::changed(const PlaneMixture<limits>& mixture, int slot) const {
+bool LabelField<limits>::wants_to_send(const PlaneMixture<limits>& mixture, int slot) const {
   if ((flag_[slot] & (heard | waits)) != 0 || mixture.relabelled(slot)) return true;
   const LabelSite& site = sites_[slot];
   if (mixture.any_fresh()) {

@@ -13,6 +13,7 @@
 #include <cstddef>
 
 #include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 
 namespace curbline {

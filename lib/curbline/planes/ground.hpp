@@ -16,8 +16,8 @@
 // veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their heights
 // say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
 // that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
-// steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge, at whatever
-// angle the rays cross it: it blurs that edge. Cost: three passes over the window.
+// steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a cell, at
+// whatever angle the rays cross it: it blurs that edge. Cost: three passes over the window.
 #pragma once
 
 #include <array>
