@@ -252,8 +252,8 @@ TEST_CASE("program: a cambered road is one surface, and its curbs are found, wit
   }
 }
 
-//  A step of 1.5 to 12 cm along a footway that falls to a crossing, on both of its sides.
-TEST_CASE("program: of a footway that falls to a crossing the curbs on both sides are found as far as they are steps") {
+//  1.5 to 12 cm high, and changing along the footway
+TEST_CASE("program: the curbs on both sides of a footway that falls to a crossing are found") {
   for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
     INFO(robot);
     const nlohmann::json figures = evaluate(Recording("parallel_ramp", robot));
