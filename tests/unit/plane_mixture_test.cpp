@@ -16,6 +16,7 @@ namespace {
 using test::fill;
 using test::Noise;
 using test::Patch;
+using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
@@ -120,7 +121,7 @@ TEST_CASE("plane mixture: of a strip that a step crosses aslant nothing is taken
   for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages->dem.add(p);
   stages->infer();
   int strips = 0;
-  for (int l = 0; l < 16; ++l) {
+  for (int l = 0; l < small_limits.planes; ++l) {
     const Plane& plane = stages->mixture.plane(l);
     strips += plane.alive() && plane.x_m > 2.3f;
     CHECK(plane.rough_m2 < 1e-6f);
