@@ -486,6 +486,16 @@ TEST_CASE("ground: what lies in the shadow of a step down, but not between both 
   CHECK(borne(strip(0.1)) == 3);    // a curb stone
 }
 
+//  ______        ______
+//        |_    /
+//          `-_|        a channel, of which one side is in the shadow and the other steep
+TEST_CASE("ground: the floor of a channel is no veil, as beyond it there is a side of the channel, not ground") {
+  CHECK(borne([](double x, double) {
+          if (x < 1.4 || x >= 2.0) return 0.0;
+          return x < 1.7 ? -0.1 - 0.2 * (x - 1.55) : -0.4 + 2.0 * (x - 1.7);
+        }) == 3);
+}
+
 TEST_CASE("ground: a strip in the shadow of a step down is a veil however high the ground lies in the map") {
   const int quarters = GENERATE(0, 2);
   const auto down = [](double x, double) { return x < 1.4 ? 5.0 : x < 1.7 ? 4.9 - 0.2 * (x - 1.55) : 4.8; };

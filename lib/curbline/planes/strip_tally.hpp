@@ -41,15 +41,15 @@ struct StripTally {
 
   float cells = 0.0f;                   ///< of the plane's region
   std::array<float, 2> silent_cells{};  ///< in short strips that are alone, by axis
-  // Of strips that rise or fall between two planes, up to sparse_gap cells away.
+  // Of strips that rise or fall between two planes that are no obstacles, up to sparse_gap cells away.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
   // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
-  /// Adds a strip between two others that are no obstacles (a step up onto one is no curb). Its cells' spread beyond
-  /// noise is that beyond the spread of the quieter plane beside it.
+  /// Adds a strip between two others. Its cells' spread beyond noise is that beyond the spread of the quieter plane
+  /// beside it.
   void add(const Strip& strip) {
     const Run &before = strip.before, &run = strip.run, &next = strip.next;
     const float step = next.first_height_m - before.last_height_m;
@@ -111,7 +111,9 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
       const auto cells = static_cast<float>(run.length());
-      const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between();
+      // A step up onto an obstacle is no curb, nor does a veil end at one.
+      const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between() &&
+                         !obstacles.is(before.label) && !obstacles.is(next.label);
       const bool carries_step = rises && strip.between(widest_gap);
       if (carries_step || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
@@ -129,7 +131,7 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
       if (strip.alone(StripTally::sparse_gap)) {
         tally.silent_cells[axis] += cells;
-      } else if (rises && !obstacles.is(before.label) && !obstacles.is(next.label)) {
+      } else if (rises) {
         tally.add(strip);
       }
     });
