@@ -329,6 +329,20 @@ TEST_CASE("tilt latency: where readings come more slowly than lines a damaged on
   CHECK(latency.begin_line(0.60f, -rate_rad_s, 5) == Turn::new_sweep);
 }
 
+TEST_CASE("tilt latency: a servo that is too slow, or too coarse, for its rate to tell turns where its angle does") {
+  TiltLatency latency = started();
+  const float slow_rad_s = GENERATE(0.01f, -0.01f);  // of the wrong sign, too: the angle's noise decides
+  const auto angle_rad = [](int line) {              // a triangle from 0.2 to 1.0 rad
+    const int at = line % 160;
+    return 0.2f + 0.01f * static_cast<float>(at < 80 ? at : 160 - at) + (line % 2 == 0 ? 0.01f : 0.0f);
+  };
+  int sweeps = 0;
+  for (int line = 0; line < 480; ++line) {
+    sweeps += latency.begin_line(angle_rad(line), slow_rad_s, next_reading()) == Turn::new_sweep;
+  }
+  CHECK(sweeps == (slow_rad_s > 0.0f ? 5 : 6));  // the first begins in the wrong direction
+}
+
 TEST_CASE("tilt latency: play of a servo where a sweep begins is no sweep") {
   TiltLatency latency = started();
   latency.begin_line(0.20f, rate_rad_s, next_reading());
