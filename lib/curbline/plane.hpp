@@ -68,7 +68,7 @@ struct PlanePrior {
   /// Expected noise of a point of weight 1: repeatability of the range-finder. The pipeline uses at least half of
   /// LaserSettings::range_sd_m squared. [1e-10, 100]
   float noise_m2 = 0.01f * 0.01f;
-  /// The part of it that is the ground's: unevenness within a cell, whatever the sensor. [0, 100]
+  /// The part of it that is the ground's: unevenness within a cell, whatever the sensor. [0, noise_m2]
   float texture_m2 = 0.005f * 0.005f;
   float degrees = 2.0f;  ///< shape a0 of the inverse gamma; 2 is the weakest with a finite mean; [1, 1e6]
   /// Largest share of that variance that the points of a cell have in common: tilt timing, mount, texture. The pipeline

@@ -91,7 +91,7 @@ Bad first_bad_of_inference(const Settings& s) {
   if (!reach(s.segmentation.link_reach)) return "segmentation.link_reach";
   const PlanePrior& prior = s.planes.prior;
   if (!within(prior.noise_m2, 1e-10f, 100.0f)) return "planes.prior.noise_m2";
-  if (!within(prior.texture_m2, 0.0f, 100.0f)) return "planes.prior.texture_m2";
+  if (!within(prior.texture_m2, 0.0f, prior.noise_m2)) return "planes.prior.texture_m2";
   if (!within(prior.degrees, 1.0f, 1e6f)) return "planes.prior.degrees";
   if (!within(prior.common_share, PlanePrior::least_common_share, 1.0f)) return "planes.prior.common_share";
   if (!within(prior.curvature_1_m, 0.0f, 10.0f)) return "planes.prior.curvature_1_m";

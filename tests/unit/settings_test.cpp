@@ -166,7 +166,7 @@ TEST_CASE("settings: bad constants of inference are named") {
   refuses(bad, "planes.prior.noise_m2", [](Settings& s) -> float& { return s.planes.prior.noise_m2; },
           {0.0f, nan, infinity});
   refuses(bad, "planes.prior.texture_m2", [](Settings& s) -> float& { return s.planes.prior.texture_m2; },
-          {-1e-6f, nan, infinity});
+          {-1e-6f, 1.1e-4f, nan, infinity});  // no more than the noise of which it is a part
   refuses(bad, "planes.prior.degrees", [](Settings& s) -> float& { return s.planes.prior.degrees; },
           {0.9f, nan, infinity});
   refuses(bad, "planes.prior.common_share", [](Settings& s) -> float& { return s.planes.prior.common_share; },
