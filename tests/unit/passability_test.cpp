@@ -43,6 +43,13 @@ TEST_CASE("passability: a slope is passable up to its angle") {
   CHECK_FALSE(cell_passable(slope, 12, {0.05f, 0.09f}));
 }
 
+TEST_CASE("passability: what a slope rises by within a cell is no step") {
+  const auto slope = [](double x, double) { return 0.5 * x; };  // 5 cm a cell
+  CHECK(cell_passable(slope, 12, {0.01f, 0.6f}));
+  const auto stone = [=](double x, double y) { return slope(x, y) + (x > 1.25 && x < 1.3 ? 0.06 : 0.0); };
+  CHECK_FALSE(cell_passable(stone, 12, {0.01f, 0.6f}));
+}
+
 TEST_CASE("passability: ground that nobody has seen is not passable") {
   Stages<small_limits> stages(small_settings());
   CHECK_FALSE(passable(stages.dem, stages.mixture, stages.field, 3, 3, {1.0f, 1.0f}));

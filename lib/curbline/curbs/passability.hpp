@@ -22,8 +22,9 @@ bool passable(const Plane& plane, const Mobility& mobility);
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
 
 /// May a wheel stand in cell (i, j) and leave it? Yes, if its plane is ground and not too steep, if the heights within
-/// it spread over no more than the step (the width of a uniform distribution of their variance, less that of noise),
-/// and if neither it nor the next cell within two cells along x and y lies a step off the plane. O(1).
+/// it spread over no more than the step (the width of a uniform distribution of their variance, less that of noise and
+/// of the plane's slope), and if neither it nor the next cell within two cells along x and y lies a step off the plane.
+/// O(1).
 template <Limits limits>
 bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
               int j, const Mobility& mobility) {
@@ -37,7 +38,7 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
     return off_m * off_m <= square_m2;
   };
   const Cell& here = dem.cell(slot);
-  const float spread_m2 = dem.spread_m2(here);
+  const float spread_m2 = dem.spread_m2(here) - dem.slope_m2(plane) * here.weight;
   if (!level(i, j, here) || 12.0f * spread_m2 > square_m2 * here.weight) return false;
   for (std::size_t d = 0; d < directions; ++d) {
     const int g = dem.next_valid(slot, static_cast<int>(d), 2);
