@@ -1,6 +1,7 @@
 // What the pipeline dropped, refused or ran into, and how much work it did. Counters only grow, and wrap at 2^32,
 // points of 1081 beams after a day: take the difference of two snapshots. On a healthy robot only the first group,
-// `no_returns`, `echoes_alone` and `cells_deferred` move.
+// `no_returns`, `echoes_alone`, `cells_deferred`, `lines_off_map` while it climbs a curb and, without a LineQueue,
+// `beams_extrapolated` move.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct Counters {
   std::uint32_t echoes_alone = 0;        ///< left out: lone returns in the window (rain, dust, sun, noise)
   std::uint32_t lines_dropped = 0;       ///< refused by take(), see Status
   std::uint32_t beams_without_tilt = 0;  ///< beyond extrapolation or in a gap between readings
-  std::uint32_t beams_extrapolated = 0;  ///< beyond the last tilt reading, within the bound
+  std::uint32_t beams_extrapolated = 0;  ///< before the first tilt reading or after the last, within the bound
   std::uint32_t tilt_dropped = 0;        ///< readings not finite, not later than the one before, beyond 1e6 rad; as of
                                          ///< the last line
   std::uint32_t lines_off_map = 0;       ///< measured while poses jumped or the robot climbed, and off the map: taken

@@ -43,6 +43,8 @@ template <Limits limits>
 class Pipeline {
  public:
   static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
+  static_assert(limits.rows >= block_side && limits.cols >= block_side && limits.rows < 32768 && limits.cols < 32768,
+                "a row's and a column's number is 15 bits");
   static_assert(limits.planes >= 2 && limits.planes <= 255, "labels are 0 to 254 at most, 255 says none");
   static_assert(limits.borders >= 1 && limits.borders < 65535,
                 "a border's number is 16 bits, of which 65535 says none");
@@ -50,9 +52,9 @@ class Pipeline {
                 "every store has room for one at least");
 
   /// Checks the settings and empties everything. A Status other than ok names the part with a bad setting, and
-  /// bad_setting(settings, limits) the setting itself; the pipeline then refuses data and has no curbs, labels or
-  /// passable cells. May be called again to start afresh, as long as nothing calls add_tilt() meanwhile: mask its
-  /// interrupt, or stop its thread.
+  /// bad_setting(settings, limits) the setting itself; the pipeline then refuses lines, points and poses, and has no
+  /// curbs, labels or passable cells. May be called again to start afresh, as long as nothing calls add_tilt()
+  /// meanwhile: mask its interrupt, or stop its thread.
   // Cold, as are the large functions that it calls: compiled for size, not speed.
   [[gnu::cold]] Status init(const Settings& settings);
 

@@ -23,8 +23,8 @@ namespace curbline {
 struct PlanePair {
   const Plane &low, &high;  ///< by number
 
-  /// Does the step between them keep its height over (dx, dy)? From the middle of a piece to an end it may change by no
-  /// more than the repeatability of a range-finder.
+  /// Does the step between them keep its height over (dx, dy)? From one end of a piece to the other it may change by
+  /// no more than the repeatability of a range-finder.
   bool even(float dx_m, float dy_m) const {
     constexpr float most_change_m = 0.02f;
     return magnitude(change_m(dx_m, dy_m)) <= most_change_m;

@@ -2,7 +2,7 @@
 // (paper, section III-D). Messages are kept from line to line; a call sends them once in each of four directions, from
 // the cells that changed, and a new message makes its receiver one of those. A Potts message has two values, so it
 // costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) of the planes near by
-// (planes_near_by.hpp). Cost of a call: three passes over the window beside the two of planes_near_by, and for each
+// (planes_near_by.hpp). Cost of a call: three passes over the window beside that of planes_near_by, and for each
 // cell that sends four messages and a visit of each plane near by.
 #pragma once
 

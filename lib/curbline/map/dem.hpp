@@ -105,7 +105,7 @@ class Dem : public Window<limits> {
 
   // Spread of the heights within a cell, and noise.
 
-  /// The prior, with PlanePrior::common_share as last estimated.
+  /// The prior, with PlanePrior::common_share as last estimated, but at least the texture's part.
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }

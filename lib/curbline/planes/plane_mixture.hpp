@@ -32,7 +32,6 @@ class PlaneMixture {
     settings_ = settings;
     planes_.fill(Plane{});
     fresh_.clear();
-    any_relabelled_ = false;
     ground_.clear();
     region_label_.fill(no_label);
     relabelled_.clear();
@@ -90,7 +89,7 @@ class PlaneMixture {
   /// Is there an obstacle in the cell: do its heights spread as on 45 degrees, or is its ground covered?
   bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }
   bool any_fresh() const { return !fresh_.empty(); }
-  bool any_relabelled() const { return any_relabelled_; }
+  bool any_relabelled() const { return !relabelled_.empty(); }
   PlaneUpdate mode() const { return settings_.update; }
 
  private:
@@ -109,7 +108,6 @@ class PlaneMixture {
   Ground<limits> ground_{};
   CellLabels<limits> region_label_{};
   CellSet<limits> relabelled_{};
-  bool any_relabelled_ = false;  ///< whether relabelled_ has any; kept, since it is asked for each cell
 };
 
 template <Limits limits>
@@ -134,7 +132,6 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     if (region_label_[s] == label) return;
     region_label_[s] = label;
     relabelled_.insert(s);
-    any_relabelled_ = true;
   });
   const Fitted fitted = fit(dem, ranking);
   ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_.insert(label); });
@@ -238,8 +235,7 @@ float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, const Viewpoin
 
 template <Limits limits>
 void PlaneMixture<limits>::forget_changes() {
-  if (any_relabelled_) relabelled_.clear();
-  any_relabelled_ = false;
+  relabelled_.clear();
   fresh_.clear();
 }
 

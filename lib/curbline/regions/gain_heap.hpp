@@ -10,7 +10,7 @@ namespace curbline {
 template <typename Index, std::size_t capacity>
 class GainHeap {
  public:
-  /// Holds items 0 to count - 1, at most capacity - 1, unordered: set() each, then order().
+  /// Holds items 0 to count - 1 (count at most `capacity`), unordered: set() each, then order().
   void fill(std::size_t count) {
     size_ = count;
     for (std::size_t place = 0; place < count; ++place) put(place, static_cast<Index>(place));

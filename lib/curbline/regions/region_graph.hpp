@@ -28,7 +28,7 @@ class RegionGraph {
 
   RegionGraph() {}
 
-  /// Empties it; the sides of a cell.
+  /// Empties it. The arguments are a cell's sides.
   void clear(float cell_x_m, float cell_y_m) {
     nodes_ = links_ = 0;
     cell_x_m_ = cell_x_m;
