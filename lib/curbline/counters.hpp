@@ -17,7 +17,7 @@ struct Counters {
   std::uint32_t messages = 0;   ///< belief messages, four for each visit of a label
   // Bad data.
   std::uint32_t no_returns = 0;          ///< beams without a usable range, those into the open included
-  std::uint32_t echoes_alone = 0;        ///< left out: lone returns in the window (rain, dust, sun, noise)
+  std::uint32_t echoes_alone = 0;        ///< left out: lone returns in the window (rain, dust, sun, noise, grass)
   std::uint32_t lines_dropped = 0;       ///< refused by take(), see Status
   std::uint32_t beams_without_tilt = 0;  ///< beyond extrapolation or in a gap between readings
   std::uint32_t beams_extrapolated = 0;  ///< before the first tilt reading or after the last, within the bound
