@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "support/noisy_poses.hpp"
 #include "support/small_map.hpp"
 
 namespace curbline {
@@ -32,7 +33,7 @@ Settings settings_of(bool nods, bool drives) {
 struct Intake {
   explicit Intake(const Settings& s) : stages(std::make_unique<Stages<>>(s)) { intake->init(s); }
   Status place(std::int64_t time_ns, std::size_t beams = 11) {
-    ranges_m.assign(beams, 2.0f);
+    ranges_m.assign(beams, range_m);
     work = std::make_unique<LineIntake<small_limits>::Work>();
     return intake->place({time_ns, ranges_m}, stages->dem, *work);
   }
@@ -42,6 +43,7 @@ struct Intake {
     return intake->project({time_ns, ranges_m}, bounds, map, stages->dem, *work, stages->counters);
   }
 
+  float range_m = 2.0f;
   std::vector<float> ranges_m;
   std::unique_ptr<Stages<>> stages;
   std::unique_ptr<LineIntake<small_limits>> intake = std::make_unique<LineIntake<small_limits>>();
@@ -83,6 +85,53 @@ TEST_CASE("line intake: when the servo turns, what the map holds is that of an e
   CHECK_FALSE(in.stages->dem.mapped_before(slot));
   for (int n = 30; n < 40; ++n) REQUIRE(in.place(n * 20 * ms + ms) == Status::ok);
   CHECK(in.stages->dem.mapped_before(slot));
+}
+
+/// Lines with poses 20 ms apart. The localisation steps after 0.4 s and is found out; then the robot climbs by 8 cm on
+/// two poses, neither of which is next to a line, while the localisation steps by step_m. The last line is placed.
+struct Climb {
+  explicit Climb(float step_m, std::int64_t last_ns = last_line_ns) : in(settings()) {
+    test::fill(in.stages->dem, [](double, double) { return 0.0; });
+    in.stages->settle();
+    in.range_m = 1.0f / std::sin(0.5f);
+    for (std::int64_t time_ns = t0 + 110 * ms; time_ns < t0 + 900 * ms; time_ns += 100 * ms) {
+      place(time_ns, step_m);
+      REQUIRE(in.project(time_ns));
+    }
+    REQUIRE(in.intake->pose_offset().localisation_steps());
+    in.stages->dem.add({1.85f, 1.25f, 0.0f, 1e-4f});
+    in.range_m = 1.08f / std::sin(0.5f);
+    place(last_ns, step_m);
+    REQUIRE_FALSE(in.work->motion.jumps.any());
+  }
+  static Settings settings() {
+    Settings s = settings_of(false, true);
+    s.pose = test::noisy_poses();
+    return s;
+  }
+  void place(std::int64_t time_ns, float step_m) {
+    for (; t0 + poses * 20 * ms < time_ns + 20 * ms; ++poses) {
+      const float climbed_m = poses < 42 ? 0.0f : poses == 42 ? 0.05f : 0.08f;
+      const float stepped_m = poses < 20 ? 0.0f : poses < 43 ? 0.02f : 0.02f + step_m;
+      REQUIRE(in.intake->add_pose({t0 + poses * 20 * ms, 0.0f, 1.2f, climbed_m + stepped_m}));
+    }
+    REQUIRE(in.place(time_ns) == Status::ok);
+  }
+  /// Of ground that was seen before the climb.
+  bool marked() const { return in.stages->dem.marked(in.stages->dem.slot(18, 12)); }
+
+  static constexpr std::int64_t t0 = 5000 * ms, last_line_ns = t0 + 930 * ms;
+  Intake in;
+  int poses = 0;
+};
+
+TEST_CASE("line intake: where no line sees a jump of a climb, the next one begins it all the same") {
+  Climb climb(0.0f), stepping(0.02f), over(0.0f, Climb::last_line_ns + 200 * ms);
+  CHECK_FALSE(climb.marked());
+  CHECK_FALSE(over.marked());
+  CHECK(climb.in.project(Climb::last_line_ns));
+  CHECK_FALSE(stepping.in.project(Climb::last_line_ns));
+  CHECK(stepping.in.stages->counters.lines_off_map == 1);
 }
 
 }  // namespace

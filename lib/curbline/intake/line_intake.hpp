@@ -132,7 +132,7 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
 }
 
 /// Follows the poses up to a line. Ground seen while poses jump, or later, does not count as mapped before the jump;
-/// nor, while the robot climbs, does that seen between jumps.
+/// nor, while the robot climbs, does that seen between jumps. All jumps of a climb may lie between two lines.
 template <Limits limits>
 void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem) {
   pose_offset_.begin_line(pose.x_m, pose.y_m);
@@ -140,11 +140,12 @@ void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bo
   bool begun = false;
   while (const auto step = pose_track_.next_step(line_ns)) {
     pose_offset_.follow(*step);
-    begun = step->kind == PoseStepNews::Kind::begun || (begun && pose_offset_.undecided());
+    const bool new_climb = climbs() && !climbed;
+    begun = step->kind == PoseStepNews::Kind::begun || (begun && (new_climb || pose_offset_.undecided()));
   }
   if (!jumped_ && !(climbed && climbs())) {
     if (jumping || begun) dem.begin_marking();
-    if (jumping) jumps_since_ns_ = line_ns;
+    if (jumping || climbs()) jumps_since_ns_ = line_ns;
   }
   jumped_ = jumping;
 }
