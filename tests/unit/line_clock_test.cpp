@@ -206,6 +206,18 @@ TEST_CASE("line clock: a line that comes before its turn, out of order, leaves w
   CHECK(off < 10);
 }
 
+TEST_CASE("line clock: of lines that come out of order, none older than the newest passes for a newer one") {
+  LineClock clock = clock_of(utm30lx);
+  for (int i = 0; i < 100; ++i) clock.time_of(t0 + i * 25 * ms);
+  const std::int64_t turn_ns = t0 + 100 * 25 * ms;
+  const auto set_back_ns = clock.time_of(turn_ns + 5 * ms);
+  REQUIRE(set_back_ns);
+  REQUIRE(*set_back_ns < turn_ns + ms);
+  CHECK(clock.time_of(turn_ns + 2 * ms) == std::nullopt);
+  CHECK(clock.left_out() == 1);
+  CHECK(clock.time_of(*set_back_ns) == set_back_ns);  // the pipeline drops it, and counts it
+}
+
 TEST_CASE("line clock: a sensor without a beam interval does not turn, and keeps its stamps") {
   std::vector<std::int64_t> stamps;
   for (const Line& line : late_lines(utm30lx, 5.0)) stamps.push_back(line.stamp_ns);

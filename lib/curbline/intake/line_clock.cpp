@@ -39,9 +39,8 @@ void LineClock::init(const LaserSettings& laser) {
 std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
   if (turn_ns_ == 0) return stamp_ns;
   if (!stamps_.admits(stamp_ns)) {
-    const bool once_more = size_ > 0 && stamp_ns == newest().stamp_ns && stamp_ns != time_ns_;
-    if (!once_more) return stamp_ns;
-    ++left_out_;
+    if (!RisingTimes::is_time(stamp_ns) || stamp_ns <= time_ns_) return stamp_ns;
+    ++left_out_;  // the pipeline would take it for a newer line: the newest was set back, or got no time
     return std::nullopt;
   }
   stamps_.take(stamp_ns);

@@ -8,7 +8,8 @@
 //   - A stamp on a turn is kept: nothing changes for a scanner with exact stamps.
 //   - Stamps are also kept where they lie anywhere between turns (a mean delay of half a turn), where a turn
 //     differs by more than 1/200 from the settings, and at first, until there are enough.
-//   - A stamp that goes back is passed on: the pipeline drops and counts the line.
+//   - A stamp that goes back is passed on if it is not later than the newest time given: the pipeline drops and counts
+//     the line. A later one gets no time.
 //   - A line late by a turn or more looks like the next one after a loss. One that may be either gets no time: it
 //     is better left out than mapped a turn off. So is the first line after a loss, if stamps jitter.
 //
