@@ -233,8 +233,9 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   ++counters_.lines;
   if (!work.motion.still) follow_robot(work.motion.T_map_base_last);
   const MapComparison<limits> map(dem_, plane_mixture_, label_field_, settings_.segmentation.link_reach);
-  if (!line_intake_.project(line, dem_.surroundings(ceiling_m_), map, dem_, work, counters_)) return Status::ok;
+  const bool taken = line_intake_.project(line, dem_.surroundings(ceiling_m_), map, dem_, work, counters_);
   counters_.outside += work.projected.outside();
+  if (!taken) return Status::ok;
   for (const Point& p : work.projected.points()) take(p);
   return Status::ok;
 }

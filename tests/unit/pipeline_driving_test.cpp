@@ -318,6 +318,7 @@ TEST_CASE("pipeline: of a localisation that was never found to step a climb is t
 struct Rise {
   std::unique_ptr<FullPipeline> pipeline = with_noisy_poses();
   std::vector<Point> points;
+  std::uint32_t outside = 0;  ///< as counted for that line, taken or not
 };
 
 Rise rise(const std::vector<float>& last_poses_m, double robot_m) {
@@ -337,7 +338,9 @@ Rise rise(const std::vector<float>& last_poses_m, double robot_m) {
     const Street below{-1.0, line == last_line ? -robot_m : 0.0};
     out.points.clear();
     const auto ranges = laser.ranges(below, line, x);
+    const std::uint32_t before = out.pipeline->counters().outside;
     out.pipeline->project({NoddingLaser::ns(t), ranges}, [&](const Point& p) { out.points.push_back(p); });
+    out.outside = out.pipeline->counters().outside - before;
     out.pipeline->observe(out.points);
     out.pipeline->infer();
   }
@@ -350,6 +353,12 @@ TEST_CASE("pipeline: a line is left out of the map if a localisation has stepped
   CHECK(stepped.pipeline->counters().lines_off_map == 1);
   CHECK(bumped.points.size() > 200);
   CHECK(bumped.pipeline->counters().lines_off_map == 0);
+}
+
+TEST_CASE("pipeline: of a line that is left out of the map, what lies outside is counted as of any other") {
+  const Rise stepped = rise({0.02f}, 0.0), bumped = rise({0.02f}, 0.01);
+  CHECK(bumped.outside > 100);
+  CHECK(stepped.outside > 100);
 }
 
 /// Poses of a climbing robot: the last ones, and its height halfway between the last two.
