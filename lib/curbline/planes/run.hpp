@@ -1,6 +1,6 @@
-// Runs: consecutive cells of one plane's region on a row or column of the window, and how the laser sees them. Used to
-// find strips between two planes, or beside an obstacle (ground.hpp). Cost: a pass over the window along x, and one
-// along y.
+// Runs: cells of one plane's region on a row or column of the window, with no cell of another between, and how the
+// laser sees them. Used to find strips between two planes, or beside an obstacle (ground.hpp). Cost: a pass over the
+// window along x, and one along y.
 #pragma once
 
 #include <cstddef>
@@ -52,10 +52,12 @@ struct Fall {
   float own_m = 0.0f, of_rays_m = 0.0f;
 };
 
-/// Consecutive cells of one plane; of no plane before the first and after the last of a row or column.
+/// Cells of one plane, with none of another between; of no plane before the first and after the last of a row or
+/// column.
 struct Run {
   Label label = no_label;
   int first = 0, last = 0;
+  int cells = 0;  ///< that have been seen
   float first_height_m = 0.0f, last_height_m = 0.0f, lowest_m = 0.0f, highest_m = 0.0f;
   float scatter_m2 = 0.0f, weight = 0.0f;
 
@@ -64,6 +66,7 @@ struct Run {
       : label(plane),
         first(at),
         last(at),
+        cells(1),
         first_height_m(cell.height_m),
         last_height_m(cell.height_m),
         lowest_m(cell.height_m),
@@ -73,6 +76,7 @@ struct Run {
 
   void add(int at, const Cell& cell) {
     last = at;
+    ++cells;
     last_height_m = cell.height_m;
     if (cell.height_m < lowest_m) lowest_m = cell.height_m;
     if (cell.height_m > highest_m) highest_m = cell.height_m;

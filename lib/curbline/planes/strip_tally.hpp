@@ -55,7 +55,7 @@ struct StripTally {
     const float step = next.first_height_m - before.last_height_m;
     const float one_m2 = before.scatter_m2 / before.weight, other_m2 = next.scatter_m2 / next.weight;
     strips += 1.0f;
-    strip_cells += static_cast<float>(run.length());
+    strip_cells += static_cast<float>(run.cells);
     step_m += magnitude(step);
     strip_spread_m2 += run.scatter_m2 - run.weight * std::min(other_m2, one_m2);
     strip_weight += run.weight;
@@ -110,7 +110,7 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
     for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {
       const Run &before = strip.before, &run = strip.run, &next = strip.next;
       StripTally& tally = tallies[run.label];
-      const auto cells = static_cast<float>(run.length());
+      const auto cells = static_cast<float>(run.cells);
       // A step up onto an obstacle is no curb, nor does a veil end at one.
       const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between() &&
                          !obstacles.is(before.label) && !obstacles.is(next.label);
