@@ -93,6 +93,8 @@ TEST_CASE("scene: bad files are refused with line and key") {
   refused("[[region]]\nz = 1\nrectangle = [0, 0, 1, 1]\ncircle = [0, 0, 1]\n", ":1:", "exactly one");
   refused("[[region]]\nz = 1\ncircle = [0, 0, -1]\n", ":3:", "circle");
   refused("[[region]]\nz = 1\nrectangle = [2, 0, 1, 1]\n", ":3:", "rectangle");
+  refused("[[region]]\npolygon = [[0, 0], [0.1, 0.3], [0.2, 0.6], [2, 0]]\ncorner_z = [0, 0, 0.1]\n",
+          ":3:", "on one line");
   refused(bump + "[[cylinder]]\nat = [0, 0]\nradius = 0\nheight = 1\n", ":9:", "radius");
   refused(bump + "[[box]]\nat = [0, 0]\nsize = [1, 1]\nheight = 1\nrepeat = { count = [0, 1], step = [1, 1] }\n",
           ":11:", "count");

@@ -81,6 +81,13 @@ Polygon read_outline(TomlTable& table) {
   return polygon;
 }
 
+/// Whether the first three corners lie on one line, and so fix no plane.
+bool first_on_one_line(const Polygon& corners) {
+  const Point2 a{corners[1].x - corners[0].x, corners[1].y - corners[0].y};
+  const Point2 b{corners[2].x - corners[0].x, corners[2].y - corners[0].y};
+  return std::abs(a.x * b.y - a.y * b.x) <= 1e-9 * std::hypot(a.x, a.y) * std::hypot(b.x, b.y);
+}
+
 /// The plane through three corners with given heights.
 SurfacePlane plane_through(const Polygon& corners, const std::vector<double>& z) {
   Eigen::Matrix3d rows;
@@ -96,6 +103,9 @@ SurfacePlane read_level(TomlTable& table, const Polygon& corners) {
   if (table.has("corner_z")) {
     if (corners.empty() || table.has("circle") || table.has("z") || table.has("slope")) {
       table.refuse("corner_z", "does not fit; expected a polygon or a rectangle, and neither z nor slope beside it");
+    }
+    if (first_on_one_line(corners)) {
+      table.refuse("corner_z", "is of corners on one line; expected the first three corners of the polygon not to be");
     }
     return plane_through(corners, table.numbers("corner_z", 3, any));
   }
