@@ -7,6 +7,10 @@
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "curbline keeps its bits and drops what is not finite: build without -ffast-math and -ffinite-math-only"
+#elif defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)  // gcc's; clang does not say that it reorders
+#error "curbline keeps its bits: build without -funsafe-math-optimizations and its parts"
+#elif __FLT_EVAL_METHOD__ == 1 || __FLT_EVAL_METHOD__ == 2
+#error "curbline keeps its bits: build for registers of float, on x86 with -msse2 -mfpmath=sse"
 #endif
 
 namespace curbline {
