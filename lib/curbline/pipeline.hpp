@@ -42,14 +42,14 @@ namespace curbline {
 template <Limits limits>
 class Pipeline {
  public:
-  static_assert(limits.rows % block_side == 0 && limits.cols % block_side == 0, "the window is made of whole blocks");
-  static_assert(limits.rows >= block_side && limits.cols >= block_side && limits.rows < 32768 && limits.cols < 32768,
-                "a row's and a column's number is 15 bits");
-  static_assert(limits.planes >= 2 && limits.planes <= 255, "labels are 0 to 254 at most, 255 says none");
+  static_assert(limits.rows > 0 && limits.rows % block_side == 0 && limits.cols > 0 && limits.cols % block_side == 0,
+                "Limits: rows and cols must be multiples of 4 above 0, as the window is made of whole blocks");
+  static_assert(limits.rows < 32768 && limits.cols < 32768, "Limits: rows and cols must be below 32768");
+  static_assert(limits.planes >= 2 && limits.planes <= 255, "Limits: planes must be 2 to 255, as label 255 says none");
   static_assert(limits.borders >= 1 && limits.borders < 65535,
-                "a border's number is 16 bits, of which 65535 says none");
+                "Limits: borders must be 1 to 65534, as a border's number is 16 bits, of which 65535 says none");
   static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
-                "every store has room for one at least");
+                "Limits: beams, poses, regions, links and curbs must be 1 at least");
 
   /// Checks the settings and empties everything. A Status other than ok names the part with a bad setting, and
   /// bad_setting(settings, limits) the setting itself; the pipeline then refuses lines, points and poses, and has no
