@@ -323,6 +323,17 @@ TEST_CASE("program: evaluate has a list of curbs when none is visible") {
   CHECK(figures.at("height_error_median_m").is_null());
 }
 
+TEST_CASE("program: evaluate says how many curbs are too short for its list, as those round an island") {
+  const TemporaryDirectory dir;
+  const std::string island = "[ground]\nz = 0.0\n[[region]]\nz = 0.1\ncircle = [2.2, 0.0, 1.0]\n";
+  const Recording logs(dir.write("island.toml", island), "utm30lx");
+  const Outcome outcome = curbline({"evaluate", logs.folder()});
+  CHECK_THAT(outcome.out, Catch::Matchers::Contains("curbs found: 0 of 0, without 4") &&
+                              Catch::Matchers::Contains("less than 0.3 m in view"));
+  CHECK_THAT(curbline({"evaluate", Recording("straight_curb", "utm30lx").folder()}).out,
+             Catch::Matchers::Contains("curbs found: 1 of 1\n"));
+}
+
 TEST_CASE("program: evaluate says what the reference makes of the same sweep, and the paper's figure") {
   const Recording logs("street", "utm30lx");
   const nlohmann::json figures = evaluate(logs);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double tolerance_m = 0.1;      ///< one cell of the default grid: within it, curbs match
 constexpr double found_share = 0.5;      ///< minimum share of a curb's visible length for it to count as found
-constexpr double least_visible_m = 0.3;  ///< a few cells: shorter curbs are not scored
+constexpr double least_visible_m = 0.3;  ///< a few cells: shorter curbs are not listed
 constexpr std::size_t most_reference_cells = 6400;  ///< the reference takes minutes for more
 
 /// Everything that is scored, and the truth it is scored against.
@@ -80,15 +80,23 @@ struct CurbRow {
   bool found() const { return match.covered >= found_share; }
 };
 
-std::vector<CurbRow> curb_rows(const Evaluation& e) {
-  const std::vector<CurbMatch> matches = match_steps(e.found, e.truth, e.seen);
+struct CurbRows {
   std::vector<CurbRow> rows;
+  int too_short = 0;  ///< in view, but not in the rows
+};
+
+CurbRows curb_rows(const Evaluation& e) {
+  const std::vector<CurbMatch> matches = match_steps(e.found, e.truth, e.seen);
+  CurbRows of;
   for (std::size_t k = 0; k < matches.size(); ++k) {
-    if (matches[k].visible_m < least_visible_m) continue;
+    if (matches[k].visible_m < least_visible_m) {
+      of.too_short += matches[k].visible_m > 0;
+      continue;
+    }
     const bool known = e.run && k < e.run->detections.size();
-    rows.push_back({line_of(e.truth.curbs[k]), matches[k], known ? e.run->detections[k] : Detections::Detection{}});
+    of.rows.push_back({line_of(e.truth.curbs[k]), matches[k], known ? e.run->detections[k] : Detections::Detection{}});
   }
-  return rows;
+  return of;
 }
 
 void print_rows(const std::vector<CurbRow>& rows) {
@@ -107,6 +115,13 @@ void print_rows(const std::vector<CurbRow>& rows) {
     if (d.seen_s && d.found_s) std::printf("  %5.1f s, %.1f m off", *d.found_s - *d.seen_s, d.distance_m);
     std::printf("\n");
   }
+}
+
+void print_sum(std::ptrdiff_t found, const CurbRows& of) {
+  std::printf("\ncurbs found: %d of %zu", static_cast<int>(found), of.rows.size());
+  if (of.too_short > 0)
+    std::printf(", without %d of less than %.1f m in view, which only count below", of.too_short, least_visible_m);
+  std::printf("\n\n");
 }
 
 nlohmann::json rows_json(const std::vector<CurbRow>& rows) {
@@ -174,12 +189,13 @@ nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   const Scored here = scored(e.found, e.truth, e.seen);
   std::optional<Scored> reference;
   if (e.reference) reference = scored(*e.reference, e.truth, e.seen);
-  const std::vector<CurbRow> rows = curb_rows(e);
+  const CurbRows listed = curb_rows(e);
+  const std::vector<CurbRow>& rows = listed.rows;
   const DetectionSummary detection = summary_of(rows);
   const auto found = std::count_if(rows.begin(), rows.end(), [](const CurbRow& row) { return row.found(); });
   if (print) {
     print_rows(rows);
-    std::printf("\ncurbs found: %d of %zu\n\n", static_cast<int>(found), rows.size());
+    print_sum(found, listed);
     print_score_table(here, reference, detection);
   }
 
