@@ -48,6 +48,13 @@ TEST_CASE("trajectory: a quaternion near norm 1 is normalised, another one refus
   CHECK(error_in(dir, "1 0 0 0 1e200 0 0 0\n").starts_with("p.tum:1: the quaternion's norm"));
 }
 
+TEST_CASE("trajectory: a robot that lies on its back is refused, as poses with qw first have it") {
+  const TemporaryDirectory dir;
+  CHECK(error_in(dir, "1 0 0 0 0 0 0 1\n2 0 0 0 0.995 0 0 0.0998\n") ==
+        "p.tum:2: the robot's tilt is \"169 deg\"; expected at most 90 deg, by qx qy qz qw in this order, z up");
+  CHECK(error_in(dir, "1 0 0 0 0.6 0 0 0.8\n").empty());
+}
+
 TEST_CASE("trajectory: positions in coordinates of a national grid are refused, with their field") {
   const TemporaryDirectory dir;
   CHECK(error_in(dir, "1 465000.5 -1e6 400 0 0 0 1\n2 465000.5 5247000.25 400 0 0 0 1\n") ==

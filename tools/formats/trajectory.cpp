@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
@@ -16,6 +17,14 @@ double read_position(Fields& fields, std::string_view name) {
   if (std::abs(metres) > static_cast<double>(Pose::furthest_m))
     fields.fail(name, readable(metres, 3), "metres within 1000 km, better 1 km, of the map's origin");
   return metres;
+}
+
+/// Refuses a robot that lies on its back: so a quaternion that has qw first turns it.
+void check_upright(const Fields& fields, const TrajectoryPose& pose) {
+  const double up = 1 - 2 * (pose.qx * pose.qx + pose.qy * pose.qy);  // of the base's z axis along the map's
+  if (up < 0)
+    fields.fail("the robot's tilt", readable(std::acos(std::max(up, -1.0)) * 180 / std::numbers::pi, 0) + " deg",
+                "at most 90 deg, by qx qy qz qw in this order, z up");
 }
 
 TrajectoryPose read_pose(Fields& fields) {
@@ -32,6 +41,7 @@ TrajectoryPose read_pose(Fields& fields) {
   const double norm = std::sqrt(pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw);
   if (!(std::abs(norm - 1.0) <= 0.01)) fields.fail("the quaternion's norm", readable(norm, 3), "1 within 0.01");
   for (double* part : {&pose.qx, &pose.qy, &pose.qz, &pose.qw}) *part /= norm;
+  check_upright(fields, pose);
   return pose;
 }
 

@@ -28,7 +28,8 @@ class TrajectoryReader {
 
   /// The next pose; nothing at the end. Throws BadInput for a line that is truncated or contains anything but numbers,
   /// for a position beyond 1000 km, for a quaternion whose norm differs from 1 by more than 0.01 (otherwise it is
-  /// normalised), for a time before the last one, and for a file without a pose.
+  /// normalised) or that tilts the robot by more than 90 degrees, for a time before the last one, and for a file
+  /// without a pose.
   std::optional<TrajectoryPose> next();
 
   const std::string& path() const { return source_.path(); }
