@@ -509,6 +509,14 @@ TEST_CASE("program: tilt frames in another order than their times are dropped an
   CHECK(replayed.outcome.err.ends_with(" tilt readings were dropped; expected times that rise\n"));
 }
 
+TEST_CASE("program: tilt frames further apart than max_gap_s are refused with that setting") {
+  const Recording logs("street", "utm30lx", {"--duration", "1"});
+  const std::string robot = with_key(read_file(shipped_robot("utm30lx")), "max_gap_s", "0.005");
+  const Outcome outcome = curbline(logs.replay("robot", logs.directory().write("gap.toml", robot)));
+  CHECK(outcome.status == 1);
+  CHECK(outcome.err.ends_with("and tilt frames at most max_gap_s, 0.005 s, apart\n"));
+}
+
 TEST_CASE("program: a window that no point falls in is told") {
   const Recording logs("street", "utm30lx", {"--duration", "1"});
   const Outcome outcome = curbline(logs.replay() + Words{"--origin", "1000", "1000", "--size", "4", "4"});

@@ -222,10 +222,12 @@ std::string Replay::remarks() const {
 void Replay::check_complete() const {
   if (can_ && tilt_readings_ == 0)
     throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
-  if (lines_taken_ == 0) {
-    throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
-                   "; expected times that agree with the tilt log and the poses");
-  }
+  if (lines_taken_ > 0) return;
+  const std::string gap = status_ == Status::no_tilt
+                              ? ", and tilt frames at most max_gap_s, " + shortest(robot_.tilt.max_gap_s) + " s, apart"
+                              : "";
+  throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
+                 "; expected times that agree with the tilt log and the poses" + gap);
 }
 
 std::vector<MapCurb> Replay::all_curbs() const {
