@@ -206,8 +206,16 @@ void Daemon::take_line(const ScanLine& line) {
   const std::int64_t before_ns = scanner::steady_now_ns();
   const Status status = pipeline_->take(line);
   if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
+  note_dropped(status);
   give_curbs(line.time_ns);
   if (can_out_) send_curbs(status == Status::ok);
+}
+
+/// A silent servo or localisation is told as such.
+void Daemon::note_dropped(Status status) {
+  const SourceWatch* const poses = poses_.report().watch;
+  if (status == Status::no_tilt && tilt_watch_.state() == SourceState::ok) ++lines_without_tilt_;
+  if (status == Status::no_pose && poses != nullptr && poses->state() == SourceState::ok) ++lines_without_pose_;
 }
 
 /// Sends the curbs to the clients if they have changed.
@@ -285,6 +293,8 @@ Report Daemon::make_report() {
   }
   s.not_recorded = clock_.recorded() == nullptr ? 0 : static_cast<std::uint64_t>(clock_.not_recorded());
   s.lines = inbox_.counters();
+  s.lines_without_tilt = lines_without_tilt_;
+  s.lines_without_pose = lines_without_pose_;
   s.pipeline = pipeline_->counters();
   s.curbs = pipeline_->curbs().size();
   s.curbs_left_out = curbs_left_out_;

@@ -67,6 +67,7 @@ class Daemon {
   void take_log();
   void take_lines();
   void take_line(const ScanLine& line);
+  void note_dropped(Status status);
   void give_curbs(std::int64_t line_ns);
   void send_curbs(bool taken);
   void look_around();
@@ -104,6 +105,7 @@ class Daemon {
   std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; 255 so that the first CurbAhead has 0
   std::uint64_t heap_calls_before_ = 0;
   std::uint32_t curbs_left_out_ = 0;
+  std::uint64_t lines_without_tilt_ = 0, lines_without_pose_ = 0;  ///< as in Report
   LatencyHistogram latency_, work_;
   ScannerState scanner_state_;
   Troubles troubles_;

@@ -37,6 +37,7 @@ struct Report {
   const socketcan::SocketCan* bus = nullptr;
   const ScannerState* scanner = nullptr;
   LineQueueCounters lines{};
+  std::uint64_t lines_without_tilt = 0, lines_without_pose = 0;  ///< dropped, though frames or poses come
   Counters pipeline{};
   std::size_t curbs = 0;
   std::uint32_t curbs_left_out = 0;

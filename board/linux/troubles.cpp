@@ -89,6 +89,8 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {s.not_recorded, "tilt frames that the recording does not have"},
       {std::uint64_t{s.lines.dropped} + s.lines.crowded, "scan lines came faster than they are taken"},
       {s.lines.bad_time, "scan lines with a damaged stamp, dropped"},
+      {s.lines_without_tilt, "scan lines with no tilt angle at their time, dropped; see max_gap_s"},
+      {s.lines_without_pose, "scan lines with no pose at their time, dropped"},
       {scanner.other_beams + s.lines.too_long, "scan lines whose beams are not those of the robot's laser, dropped"},
       {scanner.damaged, "damaged telegrams of the scanner"},
       {s.server.too_slow, "a client was too slow, and dropped"},

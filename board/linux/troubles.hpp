@@ -21,7 +21,7 @@ class Troubles {
 
   socketcan::LinkState link_ = socketcan::LinkState::up;
   bool scanner_connected_ = false, scanner_told_ = false;
-  std::array<Trouble, 20> counted_{};
+  std::array<Trouble, 22> counted_{};
 };
 
 }  // namespace curbline::daemon

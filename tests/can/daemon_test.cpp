@@ -410,6 +410,23 @@ TEST_CASE("daemon: without the recording's CAN log beside the scan log the user 
   CHECK(service.end().status == 0);
 }
 
+TEST_CASE("daemon: scan lines that are dropped while servo and localisation report are told", "[daemon]") {
+  const TemporaryDirectory dir;
+  std::string robot = read_file(recording().path("robot.toml"));
+  const std::string allowed = "max_gap_s = 0.05\n";
+  REQUIRE(robot.find(allowed) != robot.npos);
+  robot.replace(robot.find(allowed), allowed.size(), "max_gap_s = 0.005\n");  // frames come every 10 ms
+  const std::string late = dir.write("late.tum", "1700009999 0 0 0 0 0 0 1\n");
+  Words words = daemon_words();
+  words.back() = dir.write("gap.toml", robot);
+  Service gap(words), drives(daemon_words({"--poses", late}));
+  play(recording().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  const Outcome of_gap = gap.end(), of_drive = drives.end();
+  CHECK(status_of(of_gap).at("pipeline").at("lines") == 0);
+  CHECK(times_said(of_gap.err, "scan lines with no tilt angle at their time, dropped; see max_gap_s (") == 1);
+  CHECK(times_said(of_drive.err, "scan lines with no pose at their time, dropped (") == 1);
+}
+
 TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus on the host's clock", "[daemon]") {
   const std::string command = CURBLINE_SCANNER " scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
   std::FILE* const scanner = ::popen(command.c_str(), "r");
