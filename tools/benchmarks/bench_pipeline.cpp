@@ -179,8 +179,10 @@ void bytes(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(sizeof(Pipeline<limits>));
   state.counters["pipeline_KiB"] = sizeof(Pipeline<limits>) / 1024.0;
   state.counters["dem_KiB"] = sizeof(Dem<limits>) / 1024.0;
-  state.counters["segmentation_KiB"] = sizeof(Segmentation<limits>) / 1024.0;
-  state.counters["labels_KiB"] = (sizeof(LabelField<limits>) + sizeof(PlaneMixture<limits>)) / 1024.0;
+  state.counters["intake_KiB"] = sizeof(LineIntake<limits>) / 1024.0;
+  state.counters["regions_KiB"] = sizeof(Segmentation<limits>) / 1024.0;
+  state.counters["planes_KiB"] = (sizeof(PlaneMixture<limits>) + sizeof(CommonNoise<limits>)) / 1024.0;
+  state.counters["labels_KiB"] = sizeof(LabelField<limits>) / 1024.0;
   state.counters["curbs_KiB"] = sizeof(CurbTracer<limits>) / 1024.0;
   state.counters["shared_KiB"] = sizeof(Workspace<limits>) / 1024.0;
 }
