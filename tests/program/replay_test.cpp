@@ -272,6 +272,20 @@ TEST_CASE("program: a footway and a lawn of its height on either side of an edgi
   }
 }
 
+//  ____        ____ 12 cm
+//      \______/          over 8 cm: faces that lean
+TEST_CASE("program: splayed curbs, down and up, are found as steps, and nothing else is") {
+  for (const std::string robot : {"utm30lx", "lms151", "lms200"}) {
+    INFO(robot);
+    const nlohmann::json figures = evaluate(Recording("splayed_curbs", robot));
+    check_curbs(figures);
+    CHECK(figures.at("v").get<double>() > 0.9);
+    for (const nlohmann::json& band : figures.at("step_bands")) {
+      if (band.at("found_samples") > 0) CHECK(band.at("precision").get<double>() > 0.95);
+    }
+  }
+}
+
 //   y      y = 1: a curb along the path that rises from 2 cm to 10 cm
 //   0      ->
 //   0                        8 m

@@ -127,6 +127,19 @@ TEST_CASE("scores: lawns of one height on either side of an edging narrower than
   CHECK(score_planes({{cells}, {}, {}}, edged).v == Approx(1));
 }
 
+TEST_CASE("scores: what lies on the face of a step is no ground") {
+  Truth splayed = step_of(0.1);
+  splayed.planes.push_back({"face", {-1.9, 1, 0}});
+  splayed.regions.push_back({"face", rectangle({1.9, -2}, {2, 2}), 2, true});
+  std::vector<LabelledCell> cells = cells_of(splayed);
+  for (LabelledCell& cell : cells) {
+    if (splayed.plane_at(cell.x_m, cell.y_m) < 0) cell.cell.label = static_cast<int>(10 * cell.y_m) + 30;
+  }
+  const PlaneScores scores = score_planes({{cells}, {}, {}}, splayed);
+  CHECK(scores.v == Approx(1));
+  CHECK(scores.plane_rmse_m == Approx(0).margin(1e-9));
+}
+
 TEST_CASE("scores: labels so far apart that no window holds them are refused with the line of one") {
   std::vector<LabelledCell> cells = cells_of(truth);
   cells[2].y_m = 1e300;

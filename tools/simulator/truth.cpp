@@ -1,6 +1,7 @@
 #include "simulator/truth.hpp"
 
 #include "simulator/boundary.hpp"
+#include "simulator/face.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,13 +82,16 @@ int Truth::region_at(double x_m, double y_m) const {
 
 int Truth::plane_at(double x_m, double y_m) const {
   const int region = region_at(x_m, y_m);
-  return region < 0 ? -1 : regions[static_cast<std::size_t>(region)].plane;
+  if (region < 0) return -1;
+  const TruthRegion& here = regions[static_cast<std::size_t>(region)];
+  return here.face ? -1 : here.plane;
 }
 
 double Truth::terrain_height(double x_m, double y_m) const {
-  const int plane = plane_at(x_m, y_m);
-  return plane < 0 ? std::numeric_limits<double>::quiet_NaN()
-                   : planes[static_cast<std::size_t>(plane)].plane.height_m({x_m, y_m});
+  const int region = region_at(x_m, y_m);
+  if (region < 0) return std::numeric_limits<double>::quiet_NaN();
+  const int plane = regions[static_cast<std::size_t>(region)].plane;
+  return planes[static_cast<std::size_t>(plane)].plane.height_m({x_m, y_m});
 }
 
 bool Truth::obstacle_at(double x_m, double y_m) const {
@@ -99,10 +103,13 @@ bool Truth::obstacle_at(double x_m, double y_m) const {
 Truth make_truth(const Scene& scene, double start_time_s) {
   Truth truth;
   truth.start_time_s = start_time_s;
-  for (const GroundRegion& region : scene.regions) {
-    truth.regions.push_back({region.name, region.outline, plane_index(region, truth.planes)});
+  const std::vector<Boundary> pieces = visible_boundaries(scene.regions);
+  const std::vector<bool> faces = faces_of(scene.regions, pieces);
+  for (std::size_t r = 0; r < scene.regions.size(); ++r) {
+    const GroundRegion& region = scene.regions[r];
+    truth.regions.push_back({region.name, region.outline, plane_index(region, truth.planes), faces[r]});
   }
-  for (const Boundary& piece : visible_boundaries(scene.regions)) {
+  for (const Boundary& piece : across_faces(scene.regions, pieces, faces)) {
     if (piece.left < 0 || piece.right < 0) {
       continue;
     }

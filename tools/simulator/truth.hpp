@@ -20,9 +20,11 @@ struct TruthRegion {
   std::string name;
   Polygon outline;  ///< empty: everywhere
   int plane = 0;
+  bool face = false;  ///< of a step: no ground (face.hpp)
 };
 
-/// A straight piece of the line between two planes; left and right as seen when going from `from` to `to`.
+/// A straight piece of the line between two planes; left and right as seen when going from `from` to `to`. Where the
+/// face of a step leans, the line is its middle, at which both planes are compared.
 struct TruthCurb {
   Point2 from, to;
   double from_step_m = 0, to_step_m = 0;  ///< left minus right at each end; the sign does not change along its length
@@ -45,8 +47,8 @@ struct Truth {
   std::vector<TruthObstacle> obstacles;
 
   int region_at(double x_m, double y_m) const;          ///< index, or -1 in the void
-  int plane_at(double x_m, double y_m) const;           ///< index, or -1 in the void
-  double terrain_height(double x_m, double y_m) const;  ///< metres; NaN in the void
+  int plane_at(double x_m, double y_m) const;           ///< index of the ground's, or -1 in the void and on a face
+  double terrain_height(double x_m, double y_m) const;  ///< metres, on a face too; NaN in the void
   bool obstacle_at(double x_m, double y_m) const;
 };
 

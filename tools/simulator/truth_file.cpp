@@ -34,6 +34,7 @@ Json regions_json(const Truth& truth) {
   Json out = Json::array();
   for (const TruthRegion& r : truth.regions) {
     out.push_back({{"name", r.name}, {"plane", r.plane}, {"polygon_m", r.outline}});
+    if (r.face) out.back()["face"] = true;
   }
   return out;
 }
@@ -104,6 +105,13 @@ class Part {
     part.check(part.json_.is_string(), "a string");
     return part.json_.get<std::string>();
   }
+  /// False if absent.
+  bool flag(const std::string& key) const {
+    if (!has(key)) return false;
+    const Part part = at(key);
+    part.check(part.json_.is_boolean(), "true or false");
+    return part.json_.get<bool>();
+  }
   /// An index below `count`.
   int index(const std::string& key, std::size_t count) const {
     const Part part = at(key);
@@ -145,7 +153,8 @@ void take(const Part& file, Truth& truth) {
     truth.planes.push_back({p.text("name"), {p.number("z0_m"), p.number("sx"), p.number("sy"), camber_of(p)}});
   }
   for (const Part& r : file.at("regions").parts()) {
-    truth.regions.push_back({r.text("name"), r.polygon("polygon_m"), r.index("plane", truth.planes.size())});
+    const int plane = r.index("plane", truth.planes.size());
+    truth.regions.push_back({r.text("name"), r.polygon("polygon_m"), plane, r.flag("face")});
   }
   for (const Part& c : file.at("curbs").parts()) {
     truth.curbs.push_back({{c.place_m("x0_m"), c.place_m("y0_m")},
