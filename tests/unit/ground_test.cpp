@@ -255,7 +255,7 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - slope * (x - 1.55) : -0.2; };
   };
   CHECK(borne(down(0.4)) == 2);
-  CHECK(borne(down(0.2)) == 2);  // less than half as steep as the rays, as where the edge is bent
+  CHECK(borne(down(0.2)) == 3);  // less than half as steep as the rays
   CHECK(borne(down(0.0)) == 3);
   CHECK(borne([](double x, double) {
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
@@ -397,6 +397,22 @@ TEST_CASE("ground: the veil of an edge that bends about the laser is left to bot
 }
 
 //  _____
+//       `-._           a tread of a flight down, of which little is seen: its cells hold something of those beside it
+//           `-___
+TEST_CASE("ground: a tread that falls less than half as steeply as the rays is no veil, near the laser neither") {
+  const auto tread = [](double from_x_m, double slope) {
+    return [=](double x, double) {
+      const double beyond_m = x - from_x_m;
+      return beyond_m < 0.0 ? 0.0 : beyond_m < 0.3 ? -0.15 - slope * (beyond_m - 0.15) : -0.3;
+    };
+  };
+  CHECK(borne(tread(1.4, 0.25)) == 3);  // the rays fall by 0.71
+  CHECK(borne(tread(0.9, 0.42)) == 3);  // by 1.11
+  CHECK(borne(tread(1.4, 0.4)) == 2);
+  CHECK(borne(tread(0.9, 0.6)) == 2);
+}
+
+//  _____
 //       _              one cell wide: its slope is not known
 //        ______
 TEST_CASE(
@@ -478,12 +494,12 @@ TEST_CASE("ground: what is ground is so whatever way the window lies, and on wha
 //        |_`-__|                   |____       lower than the road behind it: a gutter; higher than the pavement: a
 //                                              curb stone
 TEST_CASE("ground: what lies in the shadow of a step down, but not between both sides, is no veil of it") {
-  const auto strip = [](double z_m) {  // falls a third as steeply as the rays
-    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.2 * (x - 1.4) : -0.2; };
+  const auto strip = [](double z_m) {  // falls more than half as steeply as the rays
+    return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.4 * (x - 1.4) : -0.2; };
   };
   CHECK(borne(strip(-0.08)) == 2);  // a veil
   CHECK(borne(strip(-0.23)) == 3);  // a gutter
-  CHECK(borne(strip(0.1)) == 3);    // a curb stone
+  CHECK(borne(strip(0.15)) == 3);   // a curb stone
 }
 
 //  ______        ______
@@ -498,7 +514,7 @@ TEST_CASE("ground: the floor of a channel is no veil, as beyond it there is a si
 
 TEST_CASE("ground: a strip in the shadow of a step down is a veil however high the ground lies in the map") {
   const int quarters = GENERATE(0, 2);
-  const auto down = [](double x, double) { return x < 1.4 ? 5.0 : x < 1.7 ? 4.9 - 0.2 * (x - 1.55) : 4.8; };
+  const auto down = [](double x, double) { return x < 1.4 ? 5.0 : x < 1.7 ? 4.9 - 0.4 * (x - 1.55) : 4.8; };
   const auto seen_from = [&](float z_m) {
     return borne_from(turned({0.0f, 0.0f, z_m}, quarters), turned_ground(down, quarters));
   };
@@ -511,14 +527,6 @@ TEST_CASE("ground: a veil that is mostly a cell wide is left to both sides, thou
           const bool wider = static_cast<int>(y * 10) % 3 == 0;
           return x < 1.4 ? 0.0 : x < 1.5 || (wider && x < 1.6) ? -0.1 : -0.2;
         }) == 2);
-}
-
-TEST_CASE("ground: near the laser, where rays are steep, what is steeper than ground in a step's shadow is a veil") {
-  const auto down = [](double slope) {
-    return [=](double x, double) { return x < 0.5 ? 0.0 : x < 0.7 ? -0.1 - slope * (x - 0.55) : -0.25; };
-  };
-  CHECK(borne(down(0.42)) == 2);  // the rays fall five times as steeply
-  CHECK(borne(down(0.2)) == 3);
 }
 
 TEST_CASE("ground: a step that the laser is straight above has no shadow") {
@@ -535,7 +543,7 @@ TEST_CASE("ground: a strip that lies farther from a step's sides than a face is 
     return [=](double x, double) {
       if (x > 1.4 - before_m && x < 1.4) return std::nan("");
       if (x > 1.7 && x < 1.7 + behind_m) return std::nan("");
-      return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.2 * (x - 1.55) : -0.2;
+      return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2;
     };
   };
   CHECK(borne(apart(0.1, 0.1)) == 2);

@@ -4,11 +4,10 @@
 //     is a mixture of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
-//     itself, as no visible surface does; or it is no wider than the shadow of a step down, and steeper than
-//     ground, or falls there at least a quarter as far as the rays, as around a bent edge, or is so narrow that its
-//     slope is unknown. What is visible beyond an edge is flatter than the ray that grazes it, and so wider. The
-//     tread of a stair, with half of the next one in the cells at both ends, falls by half a step where the rays
-//     fall by two.
+//     itself, as no visible surface does; or it is no wider than the shadow of a step down, and falls there at
+//     least half as far as the rays, or is so narrow that its slope is unknown. What is visible beyond an edge is
+//     flatter than the ray that grazes it, and so wider. The tread of a stair, with half of the next one in the
+//     cells at both ends, falls by half a step where the rays fall by two.
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
@@ -92,7 +91,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
-  if (tally.veil(plane) || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
+  if (tally.veil() || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 

@@ -29,7 +29,7 @@ struct Shadowed {
     fall.own_m += of_strip.own_m;
     fall.of_rays_m += of_strip.of_rays_m;
   }
-  bool falls_with_rays() const { return 4.0f * fall.own_m >= fall.of_rays_m; }
+  bool falls_with_rays() const { return 2.0f * fall.own_m >= fall.of_rays_m; }
 };
 
 struct StripTally {
@@ -69,19 +69,15 @@ struct StripTally {
     // A step spread evenly over a width of w cells has a standard deviation of step / (w sqrt(12)) within each.
     return mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
   }
-  bool veil(const Plane& plane) const {
-    const bool steep = plane.steeper_than_ground();
-    return veil(shadow[0], steep) || veil(shadow[1], steep);
-  }
+  bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
   bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
 
  private:
   bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
-  bool veil(const Shadowed& in_shadow, bool steep) const {
-    return most(in_shadow.cells) &&
-           (steep || in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
+  bool veil(const Shadowed& in_shadow) const {
+    return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
   }
 };
 
