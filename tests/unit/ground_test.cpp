@@ -451,6 +451,21 @@ TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is 
   CHECK(may_blur(0.04, 0.15));  // a street
 }
 
+//  o    ____
+//           `--.___
+//                  |____      a tread of a flight down, seen from afar, tilted by cells that hold something of the next
+TEST_CASE("ground: what falls by little of the step between the planes beside it is a tread, no blurred edge") {
+  const auto may_blur = [](double slope) {
+    Stages<small_limits> stages(small_settings());
+    stages.view = {-8.0f, 1.2f, 6.0f, 8.0f, 8.0f};
+    fill(stages.dem, [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.09 - slope * (x - 1.55) : -0.18; });
+    stages.settle();
+    return stages.mixture.may_be_veil(stages.label_at(15, 12));
+  };
+  CHECK_FALSE(may_blur(0.13));
+  CHECK(may_blur(0.17));
+}
+
 TEST_CASE("ground: what is ground is so whatever way the window lies, and on whatever side of it the laser stands") {
   const int quarters = GENERATE(1, 2, 3);
   const auto borne_turned = [=](const Viewpoint& view, auto&& height_m) {

@@ -16,7 +16,8 @@
 // say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
 // that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
 // steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a cell, at
-// whatever angle the rays cross it: it blurs that edge. Cost: three passes over the window.
+// whatever angle the rays cross it: it blurs that edge, unless it falls by too little of it, as the tread of a stair.
+// Cost: three passes over the window.
 #pragma once
 
 #include <array>

@@ -43,6 +43,7 @@ struct StripTally {
   std::array<float, 2> silent_cells{};  ///< in short strips that are alone, by axis
   // Of strips that rise or fall between two planes that are no obstacles, up to sparse_gap cells away.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
+  float along_step_m = 0.0f;  ///< how far they rise or fall themselves, as the step does
   // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
@@ -57,6 +58,8 @@ struct StripTally {
     strips += 1.0f;
     strip_cells += static_cast<float>(run.cells);
     step_m += magnitude(step);
+    const float rise_m = run.last_height_m - run.first_height_m;
+    along_step_m += step < 0.0f ? -rise_m : rise_m;
     strip_spread_m2 += run.scatter_m2 - run.weight * std::min(other_m2, one_m2);
     strip_weight += run.weight;
   }
@@ -71,11 +74,15 @@ struct StripTally {
   }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
-  bool blurred_edge() const { return all(blurred_cells[0]) || all(blurred_cells[1]); }
+  bool blurred_edge() const { return (all(blurred_cells[0]) || all(blurred_cells[1])) && follows_step(); }
 
  private:
   bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
+  /// The blur of an edge goes from the one plane to the other: of n cells, from the first to the last, by 1 - 1/n of
+  /// the step. A quarter of that is less than any; the tread of a stair is level, but for what its end cells hold of
+  /// the next.
+  bool follows_step() const { return 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
   bool veil(const Shadowed& in_shadow) const {
     return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
   }
