@@ -72,9 +72,9 @@
 #include "curbline/curbs/plane_gap.hpp"         // where between two planes the edge lies, to a part of a cell
 #include "curbline/curbs/border_finder.hpp"     // all such points of the window
 #include "curbline/curbs/ground_end.hpp"        // edges with only one side in view
-#include "curbline/line_fit.hpp"                // a line through borders
+#include "curbline/curbs/line_fit.hpp"          // a line through borders
 #include "curbline/curbs/curb_piece.hpp"        // borders on one line
-#include "curbline/shadow.hpp"                  // of a step down
+#include "curbline/curbs/shadow.hpp"            // of a step down
 #include "curbline/curbs/curb.hpp"              // out: a curb
 #include "curbline/curbs/step_height.hpp"       // the height of a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations

@@ -1,5 +1,5 @@
 // The line through a chain of border points.
-#include "curbline/line_fit.hpp"
+#include "curbline/curbs/line_fit.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

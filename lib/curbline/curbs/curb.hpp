@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/curbs/line_fit.hpp"
 #include "curbline/grid.hpp"
-#include "curbline/line_fit.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 

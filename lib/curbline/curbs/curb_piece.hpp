@@ -10,7 +10,7 @@
 #include "curbline/curbs/beside.hpp"
 #include "curbline/curbs/borders.hpp"
 #include "curbline/curbs/curb_stages.hpp"
-#include "curbline/line_fit.hpp"
+#include "curbline/curbs/line_fit.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"

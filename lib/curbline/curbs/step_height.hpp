@@ -10,13 +10,13 @@
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/shadow.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
-#include "curbline/shadow.hpp"
 
 namespace curbline {
 

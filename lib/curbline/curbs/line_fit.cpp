@@ -1,4 +1,4 @@
-#include "curbline/line_fit.hpp"
+#include "curbline/curbs/line_fit.hpp"
 
 #include <algorithm>
 

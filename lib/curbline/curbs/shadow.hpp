@@ -7,7 +7,7 @@
 // without state.
 #pragma once
 
-#include "curbline/line_fit.hpp"
+#include "curbline/curbs/line_fit.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {

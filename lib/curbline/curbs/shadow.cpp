@@ -1,4 +1,4 @@
-#include "curbline/shadow.hpp"
+#include "curbline/curbs/shadow.hpp"
 
 #include <algorithm>
 
