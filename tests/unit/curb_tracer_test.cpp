@@ -61,6 +61,21 @@ TEST_CASE("curb tracer: a step is one piece with its place, height and direction
   CHECK(curb.far_label == stages->label_at(23, 0));
 }
 
+//  A A A B B
+//  A . . . B   on one row the border lies aside, and the chain comes back to it last
+//  A A A B B
+TEST_CASE("curb tracer: a curb reaches its outermost borders, in whatever order they were chained") {
+  for (const int row : {3, 4, 5}) {
+    INFO("row " << row);
+    const auto stages = traced([&](double x, double y) {
+      const bool hidden = static_cast<int>(y * 10) == row && x > 0.8 && x < 1.2;
+      return hidden ? std::nan("") : x < 1.2 ? 0.0 : 0.12;
+    });
+    REQUIRE(stages->tracer.curbs().size() == 1);
+    CHECK(length_m(stages->tracer.curbs()[0]) == Approx(2.4).margin(0.02));
+  }
+}
+
 //  . . B B     the corners of a road and of a pavement meet at a cell that nobody has seen: along its row and its
 //  A . o B     column they border in the same place
 //  A A A .

@@ -24,6 +24,23 @@ TEST_CASE("line fit: a line through points lies within them, whatever its direct
   CHECK(std::abs(s.normal_x * ux + s.normal_y * uy) < 0.01);
 }
 
+TEST_CASE("line fit: a line reaches a margin beyond a point outside its ends, and is not changed by one within") {
+  LineFit fit;
+  for (int k = 0; k <= 4; ++k) fit.add(static_cast<float>(k), 0.0f);
+  for (const bool turned : {false, true}) {
+    auto s = turned ? fit.segment(3.0f, 0.0f, 1.0f, 0.0f, 0.1f) : fit.segment(1.0f, 0.0f, 3.0f, 0.0f, 0.1f);
+    const auto before = s;
+    s.reach(2.0f, 0.5f, 0.1f);
+    CHECK(s.x0_m == before.x0_m);
+    CHECK(s.x1_m == before.x1_m);
+    s.reach(4.0f, 0.5f, 0.1f);
+    s.reach(-1.0f, 0.0f, 0.1f);
+    CHECK((turned ? s.x1_m : s.x0_m) == Approx(-1.1));
+    CHECK((turned ? s.x0_m : s.x1_m) == Approx(4.1));
+    CHECK(s.y0_m == Approx(0.0).margin(1e-6));
+  }
+}
+
 TEST_CASE("line fit: points count by their weight, and no more once they are removed") {
   LineFit fit, weighed;
   for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) fit.add(x, x < 1.5f ? 0.01f : -0.01f);

@@ -99,9 +99,10 @@ class Borders {
   /// False if the store is full.
   [[gnu::noinline]] bool add(const Dem<limits>& dem, const Border& border);  // as CellLine::slot()
 
-  /// Chains the polyline through a border, from one of its ends: each is followed by the nearest border of the same
-  /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. About
-  /// 50 look-ups a border; (2 reach + 1)^2 where no other is within two cells.
+  /// Chains the polyline from one of its ends, found from a border: each is followed by the nearest border of the same
+  /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. Where
+  /// borders lie side by side it may pass over some, now and then that border too. About 50 look-ups a border; (2 reach
+  /// + 1)^2 where no other is within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
   /// The borders at(first) to at(last).

@@ -129,6 +129,7 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
   // For a single border, or two at one place, where surfaces meet at an unseen cell.
   if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
+  for (const Border& border : part) line.reach(border.x_m, border.y_m, half_cell_m);  // the last need not be outermost
   low_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
   low_is_near = one_sided() || low_is_right == has_right(stages.view);
   take_means(part);

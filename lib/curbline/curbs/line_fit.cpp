@@ -31,6 +31,15 @@ LineFit::Segment LineFit::segment(float x0_m, float y0_m, float x1_m, float y1_m
   return {x_ + t0 * ux, y_ + t0 * uy, x_ + t1 * ux, y_ + t1 * uy, -uy, ux};
 }
 
+void LineFit::Segment::reach(float x_m, float y_m, float margin_m) {
+  float ux = normal_y, uy = -normal_x;  // from the first end to the second
+  if ((x1_m - x0_m) * ux + (y1_m - y0_m) * uy < 0.0f) ux = -ux, uy = -uy;
+  const float before_m = (x0_m - x_m) * ux + (y0_m - y_m) * uy + margin_m;
+  const float after_m = (x_m - x1_m) * ux + (y_m - y1_m) * uy + margin_m;
+  if (before_m > 0.0f) x0_m -= before_m * ux, y0_m -= before_m * uy;
+  if (after_m > 0.0f) x1_m += after_m * ux, y1_m += after_m * uy;
+}
+
 LineFit::Segment LineFit::across(float x_m, float y_m, float way_x, float way_y, float margin_m) {
   const float length = square_root(way_x * way_x + way_y * way_y);
   const float nx = length > 0.0f ? way_x / length : 1.0f, ny = length > 0.0f ? way_y / length : 0.0f;

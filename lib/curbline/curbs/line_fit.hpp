@@ -10,6 +10,8 @@ class LineFit {
     float normal_x, normal_y;  ///< unit normal
 
     bool has_direction() const { return normal_x != 0.0f || normal_y != 0.0f; }
+    /// Lengthens a line with a direction, as far as needed, to `margin_m` beyond a point's projection.
+    void reach(float x_m, float y_m, float margin_m);
   };
 
   void add(float x_m, float y_m, float weight = 1.0f) {
