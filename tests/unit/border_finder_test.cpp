@@ -216,11 +216,11 @@ TEST_CASE("border finder: where a veil follows the ground and nothing is seen be
 //  o
 //  _________   ____
 //           .           the same veil with only three cells in the middle; or a drain with ground seen behind it
-TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain does not") {
-  const auto curbs = [](double to_m) {
+TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, a drain and a single reading do not") {
+  const auto curbs = [](double to_m, double width_m) {
     Stages<small_limits> stages(small_settings());
     test::Noise noise;
-    const auto in_drain = [](double x, double y) { return x >= 1.4 && x < 1.5 && y >= 1.0 && y < 1.3; };
+    const auto in_drain = [=](double x, double y) { return x >= 1.4 && x < 1.5 && y >= 1.0 && y < 1.0 + width_m; };
     for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.05, 0.0, noise,
                                        [&](double x, double y) { return in_drain(x, y) ? -0.1 : 0.0; })) {
       const double x = static_cast<double>(p.x_m), y = static_cast<double>(p.y_m);
@@ -231,13 +231,14 @@ TEST_CASE("border finder: a veil of too few cells for a plane hides a step too, 
     stages.trace(0.0f, 1.2f);
     return std::vector<Curb>(stages.tracer.curbs().begin(), stages.tracer.curbs().end());
   };
-  const std::vector<Curb> brinks = curbs(9.0);
+  const std::vector<Curb> brinks = curbs(9.0, 0.3);
   REQUIRE(brinks.size() == 1);
   CHECK(brinks[0].kind == CurbKind::step_down);
   CHECK(brinks[0].far_label == no_label);
   CHECK(brinks[0].x0_m == Approx(1.4).margin(0.03));
   CHECK(brinks[0].height_m == Approx(-0.2).margin(0.03));  // to the far side of a cell whose middle is seen
-  CHECK(curbs(1.4).empty());
+  CHECK(curbs(1.4, 0.3).empty());
+  CHECK(curbs(9.0, 0.1).empty());  // one row of cells makes no line
 }
 
 //  o             |
