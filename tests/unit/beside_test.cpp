@@ -54,15 +54,25 @@ TEST_CASE("beside: what the cells beside one border say is no doubt about all th
 TEST_CASE("beside: cells along a border tell how far the ground lies off its plane, less two deviations of chance") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
-  const GroundAlong ground = GroundAlong::of(4.0f, 4 * 0.002f, plane);
+  const GroundAlong ground = GroundAlong::of(4.0f, 4.0f, 4 * 0.002f, plane);
   // Their own, and that of a mixture of 0 and 2 mm in the ratio 1 : 3, 0.75 mm^2, over the share.
   CHECK(static_cast<double>(ground.variance_m2) == Approx(0.25e-6 + 0.75e-6 / 0.75).margin(0.0));
   CHECK(ground.share == Approx(0.75));  // 1 - 4 * 0.25 / 2^2
   CHECK(ground.above_m == Approx(0.0015));
-  CHECK(GroundAlong::of(4.0f, -4 * 0.002f, plane).above_m == Approx(-0.0015));
-  CHECK(GroundAlong::of(4.0f, 4 * 0.00099f, plane).above_m == 0.0f);
-  CHECK(GroundAlong::of(4.0f, 4 * 0.00099f, plane).share == 0.0f);
-  CHECK(GroundAlong::of(0.0f, 0.0f, plane).share == 0.0f);
+  CHECK(GroundAlong::of(4.0f, 4.0f, -4 * 0.002f, plane).above_m == Approx(-0.0015));
+  CHECK(GroundAlong::of(4.0f, 4.0f, 4 * 0.00099f, plane).above_m == 0.0f);
+  CHECK(GroundAlong::of(4.0f, 4.0f, 4 * 0.00099f, plane).share == 0.0f);
+  CHECK(GroundAlong::of(0.0f, 0.0f, 0.0f, plane).share == 0.0f);
+}
+
+TEST_CASE("beside: four cells behind each border tell the ground's height there no better than one would") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;
+  const GroundAlong one = GroundAlong::of(12.0f, 12.0f, 12 * 0.002f, plane);
+  const GroundAlong four = GroundAlong::of(12.0f, 3.0f, 12 * 0.002f, plane);
+  CHECK(four.above_m == one.above_m);
+  CHECK(four.share == one.share);
+  CHECK(four.variance_m2 == Approx(4.0f * one.variance_m2));
 }
 
 }  // namespace

@@ -39,16 +39,17 @@ struct GroundAlong {
 
   float above_m = 0.0f;      ///< shrunk by chance, two standard deviations
   float share = 0.0f;        ///< share left by that; the same share of the plane's variance is replaced by variance_m2
-  float variance_m2 = 0.0f;  ///< of the cells' mean, each one observation, and of whether they or the plane are right
+  float variance_m2 = 0.0f;  ///< of the cells' mean, and of whether they or the plane are right
 
-  /// From the number of cells, and the sum of their heights above the plane. With probability `share` they are right,
-  /// else the plane: the mixture has share (1 - share) mean^2 beyond both, which is share times 4 variances of their
-  /// mean.
-  static GroundAlong of(float cells, float above_m, const Plane& plane) {
+  /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane. With
+  /// probability `share` they are right, else the plane: the mixture has share (1 - share) mean^2 beyond both, which is
+  /// share times 4 variances of their mean. By chance cells err independently; but those behind one border are off what
+  /// the ground is at the border alike, so that each border is one observation of it.
+  static GroundAlong of(float cells, float borders, float above_m, const Plane& plane) {
     if (!(cells > 0.0f)) return {};
     const float mean_m = above_m / cells, variance_m2 = plane.fit_variance_m2 / cells;
     const float share = square(mean_m) > 4.0f * variance_m2 ? 1.0f - 4.0f * variance_m2 / square(mean_m) : 0.0f;
-    return {share * mean_m, share, 5.0f * variance_m2};
+    return {share * mean_m, share, 5.0f * plane.fit_variance_m2 / borders};
   }
 };
 

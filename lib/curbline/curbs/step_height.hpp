@@ -134,9 +134,10 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
   const Plane& plane = stages_.mixture.plane(label);
   const float slope_m2 = dem.slope_m2(plane);
   const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
-  float cells = 0.0f, above_m = 0.0f;
+  float cells = 0.0f, borders = 0.0f, above_m = 0.0f;
   for (const Border& border : part) {
     if (border.axis != across) continue;
+    const float before = cells;
     const std::size_t d = border.toward(label);
     int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
     for (int k = 1; k <= GroundAlong::farthest; ++k) {
@@ -148,8 +149,9 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
       cells += 1.0f;
       above_m += dem.above_m(i, j, dem.cell(s), plane);
     }
+    borders += cells > before ? 1.0f : 0.0f;
   }
-  return GroundAlong::of(cells, above_m, plane);
+  return GroundAlong::of(cells, borders, above_m, plane);
 }
 
 /// Where the ground along the step deviates from the planes, the step's height is that of the ground; the cells next to
