@@ -772,6 +772,20 @@ TEST_CASE("curb tracer: the side of a box, higher than any curb, is none, but a 
   CHECK(traced(platform)->tracer.curbs().empty());
 }
 
+//         ___                             ______
+//     ___|   |                                  |         ___
+//  __|       |                                  |        |   |
+//            |_____  a landing                  |________|   |__  a wall
+TEST_CASE("curb tracer: a drop behind steps up is told, one behind a wall is not, whatever lies next to the robot") {
+  const auto flight = traced([](double x, double) { return x < 0.6 ? 0.0 : x < 1.0 ? 0.17 : x < 1.6 ? 0.34 : -0.1; });
+  const auto steps = flight->tracer.curbs();
+  const auto deep = [](const Curb& curb) { return curb.height_m < -0.3f; };
+  CHECK(std::count_if(steps.begin(), steps.end(), deep) == 1);
+  const auto wall = traced([](double x, double) { return x < 0.8 ? 0.0 : x < 1.4 ? -0.35 : x < 2.0 ? 0.05 : -0.35; });
+  REQUIRE(wall->tracer.curbs().size() == 1);
+  CHECK(wall->tracer.curbs()[0].x0_m < 1.0f);
+}
+
 TEST_CASE("curb tracer: borders across a gap lie in its middle, and none across a wider one") {
   const int gap = GENERATE(4, 5);  // cells without points; the reach is 5 cells
   const auto stages = std::make_unique<Stages<>>(small_settings());

@@ -1,6 +1,5 @@
 // Makes a curb of a straight part of a chain of borders: its kind, height (step_height.hpp), position and their
-// deviations. Cost: 60 operations a border, eight cells beside each border of a step, and a pass over the window where
-// there is a deep drop.
+// deviations. Cost: 60 operations a border, and eight cells beside each border of a step.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/step_height.hpp"
+#include "curbline/index_set.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -37,18 +37,21 @@ class CurbMaker {
   /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
   std::optional<Curb> make(const Part& part, const Ends& at);
 
+  /// Is it the drop behind an obstacle, where no robot gets to? Call when all are made.
+  bool behind_obstacle(const Curb& curb) const {
+    return curb.height_m < -settings_.max_step_m && raised_.contains(curb.near_label);
+  }
+
  private:
   using Piece = CurbPiece<limits>;
 
   static Curb without_height(const Piece& piece);
   static float place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2);
-  bool obstacle(const Curb& curb, const Piece& piece);
-  const Plane& nearest_ground();
   void set_ends(const Piece& piece, Curb& curb) const;
 
   const CurbSettings& settings_;
   const CurbStages<limits>& stages_;
-  const Plane* nearest_ground_ = nullptr;  ///< found when a deep drop needs it
+  IndexSet<limits.planes> raised_{};  ///< planes behind steps up that are higher than any curb
 };
 
 template <Limits limits>
@@ -64,7 +67,10 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   step.refine(part, is_step(curb), settings_.link_reach);
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
-  if (obstacle(curb, piece)) return std::nullopt;
+  if (curb.height_m > settings_.max_step_m) {  // the side of an obstacle
+    raised_.insert(curb.far_label);
+    return std::nullopt;
+  }
   const float place_m2 = place_variance_m2(piece, curb, step.variance_m2());
   curb.position_sd_m = square_root(place_m2);
   step.doubt_place(place_m2);
@@ -90,32 +96,6 @@ float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb,
   if (!is_step(curb) || piece.one_sided()) return piece.borders_variance_m2;
   const float cell_variance_m2 = 0.5f * (piece.planes.low.fit_variance_m2 + piece.planes.high.fit_variance_m2);
   return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
-}
-
-/// Is a step the side of an obstacle: higher than any curb, or the drop behind an obstacle, where no robot gets to?
-template <Limits limits>
-bool CurbMaker<limits>::obstacle(const Curb& curb, const Piece& piece) {
-  if (curb.height_m >= -settings_.max_step_m) return curb.height_m > settings_.max_step_m;
-  const Plane& near = stages_.mixture.plane(curb.near_label);
-  return near.height_m(piece.x_m, piece.y_m) - nearest_ground().height_m(piece.x_m, piece.y_m) > settings_.max_step_m;
-}
-
-/// The plane of ground nearest to the laser: the robot's own ground, as far as visible.
-template <Limits limits>
-const Plane& CurbMaker<limits>::nearest_ground() {
-  if (nearest_ground_ != nullptr) return *nearest_ground_;
-  int nearest = 0;
-  float least_m2 = -1.0f;
-  stages_.dem.for_each_valid([&](int i, int j, int s) {
-    if (stages_.field.label(s) == no_label || !stages_.mixture.on_ground(s)) return;
-    const float away_m2 = square((static_cast<float>(i) + 0.5f) * stages_.dem.cell_x_m() - stages_.view.x_m) +
-                          square((static_cast<float>(j) + 0.5f) * stages_.dem.cell_y_m() - stages_.view.y_m);
-    if (least_m2 >= 0.0f && away_m2 >= least_m2) return;
-    least_m2 = away_m2;
-    nearest = stages_.field.label(s);
-  });
-  nearest_ground_ = &stages_.mixture.plane(nearest);
-  return *nearest_ground_;
 }
 
 /// Sets the ends, in the map frame, with the near side to the right looking from the first to the second.

@@ -1,9 +1,9 @@
 // Curbs: where two planes meet. Border points are found along every row and column of the window (border_finder.hpp),
 // chained into polylines by their pair of planes (borders.hpp), and cut into straight pieces of even height, of which
 // curb_maker.hpp makes curbs, without creases where the ground is bent (surfaces.hpp). A curb keeps its number from
-// call to call. Cost: a pass over the window, another where there is a deep drop, 50 look-ups a border point, as many
-// again for one with an empty cell in its gap, 60 operations for each border of a chain's rest and each of its pieces,
-// and 20 for each pair of curbs, of this call and of this and the last.
+// call to call. Cost: a pass over the window, 50 look-ups a border point, as many again for one with an empty cell in
+// its gap, 60 operations for each border of a chain's rest and each of its pieces, and 20 for each pair of curbs, of
+// this call and of this and the last.
 #pragma once
 
 #include <algorithm>
@@ -68,6 +68,7 @@ class CurbTracer {
   static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
   static int bend(const Part& part);
   static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
+  static void leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work);
   static void tell_once(Work& work, float cell_m);
   void keep_ids(Work& work, float near_m);
 
@@ -89,11 +90,19 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
+  leave_out_behind_obstacles(maker, work);
   const std::span<Curb> found(work.curb.data(), static_cast<std::size_t>(work.curbs));
   work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, found));
   const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
   tell_once(work, cell_m);
   keep_ids(work, 2.0f * cell_m);
+}
+
+template <Limits limits>
+void CurbTracer<limits>::leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work) {
+  const auto made = work.curb.begin();
+  const auto kept = std::remove_if(made, made + work.curbs, [&](const Curb& c) { return maker.behind_obstacle(c); });
+  work.curbs = static_cast<int>(kept - made);
 }
 
 template <Limits limits>
