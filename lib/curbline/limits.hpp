@@ -1,6 +1,6 @@
 // Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is all of its
-// memory: nothing is allocated later. The stack of a call grows by 2 bytes for each pair of planes and 128
-// for each plane: 4 KiB suffice for 16 (tools/budget), 255 need 160 KiB more.
+// memory: nothing is allocated later. The stack of a call grows by 2 bytes for each pair of planes and 128 for each
+// plane: 4 KiB suffice for 16 (tools/budget), 255 need 160 KiB more.
 #pragma once
 
 namespace curbline {

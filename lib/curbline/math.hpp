@@ -10,7 +10,7 @@
 #elif defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)  // gcc's; clang does not say that it reorders
 #error "curbline keeps its bits: build without -funsafe-math-optimizations and its parts"
 #elif __FLT_EVAL_METHOD__ == 1 || __FLT_EVAL_METHOD__ == 2
-#error "curbline keeps its bits: build for registers of float, on x86 with -msse2 -mfpmath=sse"
+#error "curbline keeps its bits: build for arithmetic in float, on x86 with -msse2 -mfpmath=sse"
 #endif
 
 namespace curbline {

@@ -114,7 +114,7 @@ struct CurbSettings {
   int link_reach = 5;       ///< cells, 1 to max_link_reach: the widest gap of a curb, unless a step down hides more
   float max_step_m = 0.3f;  ///< > 0; a higher step up is an obstacle, not a curb: curbs and steps of stairs stay below
                             ///< 0.2 m, and half as much again allows for the unusual. A step down may have any depth,
-                            ///< unless its upper side lies behind such a step up
+                            ///< unless its upper side lies behind such a step up, nearer to the laser
 };
 
 /// Everything, as Pipeline::init() takes it.

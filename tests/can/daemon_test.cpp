@@ -410,7 +410,7 @@ TEST_CASE("daemon: without the recording's CAN log beside the scan log the user 
   CHECK(service.end().status == 0);
 }
 
-TEST_CASE("daemon: scan lines that are dropped while servo and localisation report are told", "[daemon]") {
+TEST_CASE("daemon: dropped scan lines are reported while servo and localisation are well", "[daemon]") {
   const TemporaryDirectory dir;
   std::string robot = read_file(recording().path("robot.toml"));
   const std::string allowed = "max_gap_s = 0.05\n";

@@ -39,6 +39,18 @@ TEST_CASE("truth: the face of a splayed or battered curb is one step, along its 
   CHECK(truth.terrain_height(middle_m, 0) > 0.05);
 }
 
+TEST_CASE("truth: the face of a curb that climbs with its street is one step, too") {
+  const Truth truth =
+      make_truth(scene_of("[ground]\nz = 0\nslope = [0, 0.05]\n"
+                          "[[region]]\nrectangle = [2, -12, 6, 12]\ncorner_z = [-0.48, -0.48, 0.72]\n"
+                          "[[region]]\nrectangle = [1.92, -12, 2, 12]\ncorner_z = [-0.6, -0.48, 0.72]\n"),
+                 0);
+  CHECK(truth.plane_at(1.96, 0) == -1);
+  CHECK(std::any_of(truth.curbs.begin(), truth.curbs.end(), [](const TruthCurb& c) {
+    return c.kind == "step" && length_m(c) > 23 && std::abs(c.height_m - 0.12) < 1e-3;
+  }));
+}
+
 TEST_CASE("truth: a face may be drawn wider than it is seen, and the road over it") {
   const Truth truth = make_truth(scene_of("[[region]]\nrectangle = [0, 0, 4, 4]\nz = 0.12\nslope = [0, 0.02]\n"
                                           "[[region]]\nrectangle = [0, 0, 2, 4]\ncorner_z = [-2.88, 0.12, 0.12]\n"

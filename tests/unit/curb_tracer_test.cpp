@@ -776,7 +776,15 @@ TEST_CASE("curb tracer: the side of a box, higher than any curb, is none, but a 
 //     ___|   |                                  |         ___
 //  __|       |                                  |        |   |
 //            |_____  a landing                  |________|   |__  a wall
-TEST_CASE("curb tracer: a drop behind steps up is told, one behind a wall is not, whatever lies next to the robot") {
+TEST_CASE("curb tracer: the edge of a pit is told, though the ground goes on behind it") {
+  const auto pit = [](double x, double y) { return x > 0.8 && x < 1.6 && y > 0.6 && y < 1.8 ? -0.4 : 0.0; };
+  const auto stages = traced(pit);
+  const auto curbs = stages->tracer.curbs();
+  CHECK(std::count_if(curbs.begin(), curbs.end(),
+                      [](const Curb& c) { return c.height_m < -0.3f && c.x0_m < 1.0f && c.x1_m < 1.0f; }) == 1);
+}
+
+TEST_CASE("curb tracer: a drop behind steps up is told, one behind a wall is not") {
   const auto flight = traced([](double x, double) { return x < 0.6 ? 0.0 : x < 1.0 ? 0.17 : x < 1.6 ? 0.34 : -0.1; });
   const auto steps = flight->tracer.curbs();
   const auto deep = [](const Curb& curb) { return curb.height_m < -0.3f; };

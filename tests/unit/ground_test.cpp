@@ -399,7 +399,7 @@ TEST_CASE("ground: the veil of an edge that bends about the laser is left to bot
 //  _____
 //       `-._           a tread of a flight down, of which little is seen: its cells hold something of those beside it
 //           `-___
-TEST_CASE("ground: a tread that falls less than half as steeply as the rays is no veil, near the laser neither") {
+TEST_CASE("ground: a tread that falls less than half as steeply as the rays is no veil, not even near the laser") {
   const auto tread = [](double from_x_m, double slope) {
     return [=](double x, double) {
       const double beyond_m = x - from_x_m;

@@ -19,9 +19,14 @@ double read_position(Fields& fields, std::string_view name) {
   return metres;
 }
 
-/// Refuses a robot that lies on its back: so a quaternion that has qw first turns it.
+/// The base's z axis along the map's. Below 0 a robot lies on its back, as a quaternion with qw first makes it while
+/// its heading is within 90 degrees of 0.
+double upward(double qx, double qy) {
+  return 1 - 2 * (qx * qx + qy * qy);
+}
+
 void check_upright(const Fields& fields, const TrajectoryPose& pose) {
-  const double up = 1 - 2 * (pose.qx * pose.qx + pose.qy * pose.qy);  // of the base's z axis along the map's
+  const double up = upward(pose.qx, pose.qy);
   if (up < 0)
     fields.fail("the robot's tilt", readable(std::acos(std::max(up, -1.0)) * 180 / std::numbers::pi, 0) + " deg",
                 "at most 90 deg, by qx qy qz qw in this order, z up");
@@ -85,6 +90,7 @@ std::optional<Pose> parse_pose(std::string_view line) {
   }
   if (!time_ns || words != 1 + numbers.size()) return std::nullopt;
   const auto& [x, y, z, qx, qy, qz, qw] = numbers;
+  if (upward(static_cast<double>(qx), static_cast<double>(qy)) < 0) return std::nullopt;
   return Pose{*time_ns, x, y, z, qx, qy, qz, qw};
 }
 

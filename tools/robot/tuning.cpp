@@ -14,7 +14,8 @@ void read_segmentation(TomlTable table, SegmentationSettings& segmentation) {
 }
 
 void read_planes(TomlTable table, PlaneSettings& planes) {
-  table.read("noise_m2", planes.prior.noise_m2, {1e-10, 100.0});
+  const double least_noise_m2 = table.has("texture_m2") ? 1e-10 : planes.prior.texture_m2;  // of which it is a part
+  table.read("noise_m2", planes.prior.noise_m2, {least_noise_m2, 100.0});
   table.read("texture_m2", planes.prior.texture_m2, {0.0, planes.prior.noise_m2});
   table.read("common_share", planes.prior.common_share, {0.01, 1.0});
   table.read("curvature_1_m", planes.prior.curvature_1_m, {0.0, 10.0});

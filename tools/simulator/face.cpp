@@ -8,7 +8,8 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double steep = 1, widest_m = 0.3;  // as CurbSettings::max_step_m: at 45 degrees as high as wide
+constexpr double least_rise = 1 - 1e-6;  // 45 degrees
+constexpr double widest_m = 0.3;         // as CurbSettings::max_step_m: at 45 degrees as high as wide
 constexpr double touch_m = 1e-6;
 
 struct Extent {
@@ -37,7 +38,24 @@ Point2 up(const GroundRegion& region) {
   if (region.outline.empty()) return {};
   const Point2 slope = region.plane.slope(region.outline.front());
   const double rise = std::hypot(slope.x, slope.y);
-  return rise < steep - touch_m ? Point2{} : Point2{slope.x / rise, slope.y / rise};
+  return rise < least_rise ? Point2{} : Point2{slope.x / rise, slope.y / rise};
+}
+
+/// Width of what is visible of a region, across its longest side; infinite if nothing is. (Not the way uphill: the face
+/// of a curb that climbs with its street leans along it, too.)
+double width_m(int region, const std::vector<Boundary>& pieces) {
+  Point2 along{};
+  for (const Boundary& piece : pieces) {
+    if (piece.left != region && piece.right != region) continue;
+    const Point2 side = from_to(piece.from, piece.to);
+    if (dot(side, side) > dot(along, along)) along = side;
+  }
+  Extent across;
+  for (const Boundary& piece : pieces) {
+    if (piece.left != region && piece.right != region) continue;
+    for (const Point2 end : {piece.from, piece.to}) across.add(cross(along, end) / std::hypot(along.x, along.y));
+  }
+  return across.from_m > across.to_m ? across.from_m : across.to_m - across.from_m;
 }
 
 /// The steps across faces.
@@ -131,20 +149,10 @@ class Across {
 }  // namespace
 
 std::vector<bool> faces_of(const std::vector<GroundRegion>& regions, const std::vector<Boundary>& pieces) {
-  std::vector<Extent> across(regions.size());
-  const auto add = [&](int region, const Boundary& piece) {
-    if (region < 0) return;
-    const auto r = static_cast<std::size_t>(region);
-    for (const Point2 end : {piece.from, piece.to}) across[r].add(dot(end, up(regions[r])));
-  };
-  for (const Boundary& piece : pieces) {
-    add(piece.left, piece);
-    add(piece.right, piece);
-  }
   std::vector<bool> faces(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const Point2 uphill = up(regions[r]);
-    faces[r] = dot(uphill, uphill) > 0 && across[r].to_m - across[r].from_m <= widest_m + touch_m;
+    faces[r] = dot(uphill, uphill) > 0 && width_m(static_cast<int>(r), pieces) <= widest_m + touch_m;
   }
   return faces;
 }

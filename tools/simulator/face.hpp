@@ -11,8 +11,8 @@ namespace curbline::tools {
 /// stone. (A wider one is higher than any step: a bank.)
 std::vector<bool> faces_of(const std::vector<GroundRegion>& regions, const std::vector<Boundary>& pieces);
 
-/// The pieces between regions that are no faces: those that meet, and, along the middle of the face, those that one
-/// parts. Its short ends are left out.
+/// The pieces between regions that are no faces: where two such regions meet, and the middle line of each face that
+/// parts two. A face's short ends are left out.
 std::vector<Boundary> across_faces(const std::vector<GroundRegion>& regions, const std::vector<Boundary>& pieces,
                                    const std::vector<bool>& faces);
 

@@ -39,12 +39,14 @@ struct GroundAlong {
 
   float above_m = 0.0f;      ///< shrunk by chance, two standard deviations
   float share = 0.0f;        ///< share left by that; the same share of the plane's variance is replaced by variance_m2
-  float variance_m2 = 0.0f;  ///< of the cells' mean, and of whether they or the plane are right
+  float variance_m2 = 0.0f;  ///< of the cells' mean, each border one observation, and of whether they or the plane
+                             ///< are right
 
   /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane. With
   /// probability `share` they are right, else the plane: the mixture has share (1 - share) mean^2 beyond both, which is
-  /// share times 4 variances of their mean. By chance cells err independently; but those behind one border are off what
-  /// the ground is at the border alike, so that each border is one observation of it.
+  /// share times 4 variances of their mean. Chance alone decides the share, and by chance cells err independently. In
+  /// variance_m2 each border is one observation, also for the mixture: what the cells behind one are off from the
+  /// ground there, they are off alike.
   static GroundAlong of(float cells, float borders, float above_m, const Plane& plane) {
     if (!(cells > 0.0f)) return {};
     const float mean_m = above_m / cells, variance_m2 = plane.fit_variance_m2 / cells;

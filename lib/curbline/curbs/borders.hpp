@@ -101,8 +101,8 @@ class Borders {
 
   /// Chains the polyline from one of its ends, found from a border: each is followed by the nearest border of the same
   /// planes, within two cells, else within `reach`. Returns its length; the borders are at(0), at(1) and so on. Where
-  /// borders lie side by side it may pass over some, now and then that border too. About 50 look-ups a border; (2 reach
-  /// + 1)^2 where no other is within two cells.
+  /// borders lie side by side it may pass over some, at times even the one it was found from, which then is in no
+  /// chain. About 50 look-ups a border; (2 reach + 1)^2 where no other is within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
   /// The borders at(first) to at(last).

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -11,7 +13,6 @@
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/step_height.hpp"
-#include "curbline/index_set.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -26,7 +27,9 @@ class CurbMaker {
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
 
-  CurbMaker(const CurbSettings& settings, const CurbStages<limits>& stages) : settings_(settings), stages_(stages) {}
+  CurbMaker(const CurbSettings& settings, const CurbStages<limits>& stages) : settings_(settings), stages_(stages) {
+    raised_m2_.fill(std::numeric_limits<float>::infinity());
+  }
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
@@ -37,9 +40,12 @@ class CurbMaker {
   /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
   std::optional<Curb> make(const Part& part, const Ends& at);
 
-  /// Is it the drop behind an obstacle, where no robot gets to? Call when all are made.
+  /// Is it the drop behind an obstacle, where no robot gets to: does a step up that is higher than any curb lead onto
+  /// its near side, nearer to the laser? Behind a pit such a step leads up to the same ground. Call when all are made.
   bool behind_obstacle(const Curb& curb) const {
-    return curb.height_m < -settings_.max_step_m && raised_.contains(curb.near_label);
+    const float x_m = 0.5f * (curb.x0_m + curb.x1_m) - stages_.dem.origin_x_m();
+    const float y_m = 0.5f * (curb.y0_m + curb.y1_m) - stages_.dem.origin_y_m();
+    return curb.height_m < -settings_.max_step_m && raised_m2_[curb.near_label] < away_m2(x_m, y_m);
   }
 
  private:
@@ -48,10 +54,11 @@ class CurbMaker {
   static Curb without_height(const Piece& piece);
   static float place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2);
   void set_ends(const Piece& piece, Curb& curb) const;
+  float away_m2(float x_m, float y_m) const { return square(x_m - stages_.view.x_m) + square(y_m - stages_.view.y_m); }
 
   const CurbSettings& settings_;
   const CurbStages<limits>& stages_;
-  IndexSet<limits.planes> raised_{};  ///< planes behind steps up that are higher than any curb
+  std::array<float, limits.planes> raised_m2_;  ///< to the nearest step up onto each plane that is higher than any curb
 };
 
 template <Limits limits>
@@ -67,8 +74,10 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   step.refine(part, is_step(curb), settings_.link_reach);
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
-  if (curb.height_m > settings_.max_step_m) {  // the side of an obstacle
-    raised_.insert(curb.far_label);
+  // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.
+  if (curb.height_m > settings_.max_step_m) {
+    float& nearest_m2 = raised_m2_[curb.far_label];
+    nearest_m2 = std::min(nearest_m2, away_m2(piece.x_m, piece.y_m));
     return std::nullopt;
   }
   const float place_m2 = place_variance_m2(piece, curb, step.variance_m2());

@@ -209,6 +209,7 @@ int CurbTracer<limits>::bend(const Part& part) {
   return gain > 0.0f ? found : -1;
 }
 
+/// A full store loses obstacles, too: what is behind them may then be given out.
 template <Limits limits>
 void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work,
                                   Counters& counters) {

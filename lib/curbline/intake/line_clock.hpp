@@ -34,7 +34,8 @@ class LineClock {
   void init(const LaserSettings& laser);
 
   /// The time at which the line with this stamp was measured: the stamp or, if it came late, an earlier time. Nothing
-  /// if its turn is not clear. Call for each line, in order of arrival.
+  /// if its turn is not clear, or if a newer line has been given an earlier time. Call for each line, in order of
+  /// arrival.
   std::optional<std::int64_t> time_of(std::int64_t stamp_ns);
 
   std::uint32_t set_back() const { return set_back_; }  ///< lines that were given an earlier time

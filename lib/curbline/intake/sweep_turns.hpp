@@ -9,7 +9,7 @@ namespace curbline {
 
 class SweepTurns {
  public:
-  /// A rate below slow_rad_s says nothing about the direction.
+  /// A rate below slow_rad_s says nothing about the direction. With 0 the rate always decides.
   void init(float slow_rad_s) {
     *this = SweepTurns{};
     slow_rad_s_ = slow_rad_s;

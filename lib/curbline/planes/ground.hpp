@@ -4,10 +4,10 @@
 //     is a mixture of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
-//     itself, as no visible surface does; or it is no wider than the shadow of a step down, and falls there at
-//     least half as far as the rays, or is so narrow that its slope is unknown. What is visible beyond an edge is
-//     flatter than the ray that grazes it, and so wider. The tread of a stair, with half of the next one in the
-//     cells at both ends, falls by half a step where the rays fall by two.
+//     itself, as no visible surface does; or it is no wider than the shadow of a step down between two planes that are
+//     no obstacles, and falls there at least half as far as the rays, or is so narrow that its slope is unknown. What
+//     is visible beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair, with half
+//     of the next one in the cells at both ends, falls by half a step where the rays fall by two.
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
@@ -16,8 +16,8 @@
 // say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
 // that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
 // steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a cell, at
-// whatever angle the rays cross it: it blurs that edge, unless it falls by too little of it, as the tread of a stair.
-// Cost: three passes over the window.
+// whatever angle the rays cross it: it blurs that edge, unless it falls by too little of the step, as the tread of a
+// stair does. Cost: three passes over the window.
 #pragma once
 
 #include <array>

@@ -79,9 +79,9 @@ struct StripTally {
  private:
   bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
-  /// The blur of an edge goes from the one plane to the other: of n cells, from the first to the last, by 1 - 1/n of
-  /// the step. A quarter of that is less than any; the tread of a stair is level, but for what its end cells hold of
-  /// the next.
+  /// The blur of an edge goes from one plane to the other: over n cells it falls by 1 - 1/n of the step. What falls by
+  /// less than a quarter of that is no blur but the tread of a stair, level but for what its end cells hold of the
+  /// next.
   bool follows_step() const { return 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
   bool veil(const Shadowed& in_shadow) const {
     return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
