@@ -96,6 +96,8 @@ void put_pipeline(JsonLine& json, const Report& s) {
   json.key("pipeline").open('{');
   put(json, "lines", s.pipeline.lines);
   put(json, "lines_dropped", s.pipeline.lines_dropped);
+  put(json, "lines_without_tilt", s.lines_without_tilt);
+  put(json, "lines_without_pose", s.lines_without_pose);
   put(json, "beams_without_tilt", s.pipeline.beams_without_tilt);
   put(json, "beams_extrapolated", s.pipeline.beams_extrapolated);
   put(json, "curbs", s.curbs);

@@ -97,7 +97,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   s.lines = {.pushed = 1, .covered = 2, .overdue = 3, .crowded = 4, .dropped = 5, .too_long = 6, .bad_time = 7};
   s.pipeline.lines = 11, s.pipeline.lines_dropped = 12;
   s.pipeline.beams_without_tilt = 13, s.pipeline.beams_extrapolated = 14, s.pipeline.tilt_dropped = 15;
-  s.curbs = 16, s.curbs_left_out = 17;
+  s.curbs = 16, s.curbs_left_out = 17, s.lines_without_tilt = 18, s.lines_without_pose = 19;
   s.clients = 21, s.server.accepted = 22, s.server.too_slow = 23, s.server.refused = 24;
   s.heap_calls_before = 31, s.heap_calls_since = 32;
   const SourceWatch watch;
@@ -132,6 +132,8 @@ TEST_CASE("reports: a status has each counter under its name") {
                   {"other_beams", 53}});
   check("pipeline", {{"lines", 11},
                      {"lines_dropped", 12},
+                     {"lines_without_tilt", 18},
+                     {"lines_without_pose", 19},
                      {"beams_without_tilt", 13},
                      {"beams_extrapolated", 14},
                      {"curbs", 16},
