@@ -34,6 +34,20 @@ std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
   return borne_from({0.0f, 0.0f, laser_z_m}, height_m);
 }
 
+/// For a map of this ground: REQUIREs that there is a plane at a position. Returns whether it is ground that may be a
+/// veil.
+template <typename Height>
+bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_m) {
+  Stages<small_limits> stages(small_settings());
+  stages.view = view;
+  fill(stages.dem, height_m);
+  stages.settle();
+  const Label label =
+      stages.mixture.region_label(stages.dem.slot_within(static_cast<float>(x_m), static_cast<float>(y_m)));
+  REQUIRE(label != no_label);
+  return stages.mixture.ground(label) && stages.mixture.may_be_veil(label);
+}
+
 //           ______
 //          |           the cells at 1.1 m contain points of both sides
 //  ________|
@@ -439,11 +453,8 @@ TEST_CASE("ground: a plane through the laser is ground if it is no higher above 
 //            ------____     a pavement on a hill, of which a robot sees little: 30 cm, from afar
 TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is steeper than a ramp") {
   const auto may_blur = [](double hill, double strip) {
-    Stages<small_limits> stages(small_settings());
-    stages.view = {-8.0f, 1.2f, 6.0f, 8.0f, 8.0f};
-    fill(stages.dem, [=](double x, double) { return x < 2.1 ? -hill * x : -hill * 2.1 + 0.06 - strip * (x - 2.1); });
-    stages.settle();
-    return stages.mixture.may_be_veil(stages.label_at(22, 12));
+    return may_be_veil({-8.0f, 1.2f, 6.0f, 8.0f, 8.0f}, 2.25, 1.25,
+                       [=](double x, double) { return x < 2.1 ? -hill * x : -hill * 2.1 + 0.06 - strip * (x - 2.1); });
   };
   CHECK(may_blur(0.0, 0.15));
   CHECK_FALSE(may_blur(0.12, 0.15));
@@ -456,11 +467,9 @@ TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is 
 //                  |____      a tread of a flight down, seen from afar, tilted by cells that hold something of the next
 TEST_CASE("ground: what falls by little of the step between the planes beside it is a tread, no blurred edge") {
   const auto may_blur = [](double slope) {
-    Stages<small_limits> stages(small_settings());
-    stages.view = {-8.0f, 1.2f, 6.0f, 8.0f, 8.0f};
-    fill(stages.dem, [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.09 - slope * (x - 1.55) : -0.18; });
-    stages.settle();
-    return stages.mixture.may_be_veil(stages.label_at(15, 12));
+    return may_be_veil({-8.0f, 1.2f, 6.0f, 8.0f, 8.0f}, 1.55, 1.25, [=](double x, double) {
+      return x < 1.4 ? 0.0 : x < 1.7 ? -0.09 - slope * (x - 1.55) : -0.18;
+    });
   };
   CHECK_FALSE(may_blur(0.13));
   CHECK(may_blur(0.17));
@@ -625,19 +634,6 @@ TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left t
               return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
             },
             0.0f) == 1);
-}
-
-/// For a map of this ground: REQUIREs that the plane at a position is ground. Returns whether it may be a veil.
-template <typename Height>
-bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_m) {
-  Stages<small_limits> stages(small_settings());
-  stages.view = view;
-  fill(stages.dem, height_m);
-  stages.settle();
-  const Label label =
-      stages.mixture.region_label(stages.dem.slot_within(static_cast<float>(x_m), static_cast<float>(y_m)));
-  REQUIRE(label != no_label);
-  return stages.mixture.ground(label) && stages.mixture.may_be_veil(label);
 }
 
 TEST_CASE("ground: what falls half as steeply as the rays from any height may be a veil, a flatter slope is none") {

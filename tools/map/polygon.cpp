@@ -11,25 +11,6 @@ namespace {
 constexpr int circle_corners = 48;
 constexpr double arc_step_rad = std::numbers::pi / 16;
 
-Point2 operator+(Point2 a, Point2 b) {
-  return {a.x + b.x, a.y + b.y};
-}
-Point2 operator-(Point2 a, Point2 b) {
-  return {a.x - b.x, a.y - b.y};
-}
-Point2 operator*(double s, Point2 a) {
-  return {s * a.x, s * a.y};
-}
-double dot(Point2 a, Point2 b) {
-  return a.x * b.x + a.y * b.y;
-}
-double cross(Point2 a, Point2 b) {
-  return a.x * b.y - a.y * b.x;
-}
-double length(Point2 a) {
-  return std::hypot(a.x, a.y);
-}
-
 bool on_segment(Point2 p, Point2 a, Point2 b) {
   const double along = dot(p - a, b - a);
   return std::abs(cross(b - a, p - a)) <= 1e-9 * length(b - a) && along >= 0 && along <= dot(b - a, b - a);

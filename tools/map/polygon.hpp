@@ -1,13 +1,34 @@
 // Polygons in the ground plan, metres: drawn regions, the surfaces of a scene, the footprints of its obstacles.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 namespace curbline::tools {
 
+/// A place, or a vector.
 struct Point2 {
   double x = 0, y = 0;
 };
+
+inline Point2 operator+(Point2 a, Point2 b) {
+  return {a.x + b.x, a.y + b.y};
+}
+inline Point2 operator-(Point2 a, Point2 b) {
+  return {a.x - b.x, a.y - b.y};
+}
+inline Point2 operator*(double s, Point2 a) {
+  return {s * a.x, s * a.y};
+}
+inline double dot(Point2 a, Point2 b) {
+  return a.x * b.x + a.y * b.y;
+}
+inline double cross(Point2 a, Point2 b) {
+  return a.x * b.y - a.y * b.x;
+}
+inline double length(Point2 a) {
+  return std::hypot(a.x, a.y);
+}
 
 /// Corners in order, clockwise or counterclockwise, the last joined to the first.
 using Polygon = std::vector<Point2>;

@@ -7,7 +7,6 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double touch_m = 1e-6;  // closer corners are the same
 constexpr double aside_m = 1e-5;  // how far to either side of an edge its regions are looked up
 
 struct Edge {
@@ -52,9 +51,7 @@ std::vector<double> cuts_of(const Edge& edge, const std::vector<std::vector<Edge
       for (const Edge& other : all[k]) note_meetings(edge, other, cuts);
     }
   }
-  std::sort(cuts.begin(), cuts.end());
-  const double near = touch_m / edge.length_m();
-  cuts.erase(std::unique(cuts.begin(), cuts.end(), [near](double a, double b) { return b - a < near; }), cuts.end());
+  sort_cuts(cuts, edge.length_m());
   cuts.back() = 1;
   return cuts;
 }
@@ -81,6 +78,12 @@ void append_visible(const std::vector<GroundRegion>& regions, const Edge& edge, 
 }
 
 }  // namespace
+
+void sort_cuts(std::vector<double>& cuts, double length_m) {
+  std::sort(cuts.begin(), cuts.end());
+  const double near = touch_m / length_m;
+  cuts.erase(std::unique(cuts.begin(), cuts.end(), [near](double a, double b) { return b - a < near; }), cuts.end());
+}
 
 // A visible piece between two regions lies on an edge of the later one: if it were only on an edge of the earlier one,
 // the later one would cover both sides. So each piece is found once, at the edge of the upper of its two regions.

@@ -3,7 +3,14 @@
 
 #include "simulator/scene.hpp"
 
+#include <vector>
+
 namespace curbline::tools {
+
+inline constexpr double touch_m = 1e-6;  ///< closer corners are the same
+
+/// Sorts the places at which a piece of this length is cut, shares of it; of places that touch the first stays.
+void sort_cuts(std::vector<double>& cuts, double length_m);
 
 /// A straight piece between two regions. Left and right are as seen when going from `from` to `to`; -1 is the void.
 struct Boundary {

@@ -10,34 +10,16 @@ namespace {
 
 constexpr double least_rise = 1 - 1e-6;  // 45 degrees
 constexpr double widest_m = 0.3;         // as CurbSettings::max_step_m: at 45 degrees as high as wide
-constexpr double touch_m = 1e-6;
-
-struct Extent {
-  double from_m = std::numeric_limits<double>::infinity(), to_m = -from_m;
-  void add(double at_m) { from_m = std::min(from_m, at_m), to_m = std::max(to_m, at_m); }
-};
-
-double dot(Point2 a, Point2 b) {
-  return a.x * b.x + a.y * b.y;
-}
-
-double cross(Point2 a, Point2 b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-Point2 from_to(Point2 a, Point2 b) {
-  return {b.x - a.x, b.y - a.y};
-}
 
 Point2 between(Point2 a, Point2 b, double share) {
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+  return a + share * (b - a);
 }
 
 /// Unit vector up a slope of 45 degrees or more; {} for flatter regions and the ground without bounds.
 Point2 up(const GroundRegion& region) {
   if (region.outline.empty()) return {};
   const Point2 slope = region.plane.slope(region.outline.front());
-  const double rise = std::hypot(slope.x, slope.y);
+  const double rise = length(slope);
   return rise < least_rise ? Point2{} : Point2{slope.x / rise, slope.y / rise};
 }
 
@@ -47,15 +29,18 @@ double width_m(int region, const std::vector<Boundary>& pieces) {
   Point2 along{};
   for (const Boundary& piece : pieces) {
     if (piece.left != region && piece.right != region) continue;
-    const Point2 side = from_to(piece.from, piece.to);
-    if (dot(side, side) > dot(along, along)) along = side;
+    const Point2 side = piece.to - piece.from;
+    if (length(side) > length(along)) along = side;
   }
-  Extent across;
+  double from = std::numeric_limits<double>::infinity(), to = -from;
   for (const Boundary& piece : pieces) {
     if (piece.left != region && piece.right != region) continue;
-    for (const Point2 end : {piece.from, piece.to}) across.add(cross(along, end) / std::hypot(along.x, along.y));
+    for (const Point2 end : {piece.from, piece.to}) {
+      from = std::min(from, cross(along, end));
+      to = std::max(to, cross(along, end));
+    }
   }
-  return across.from_m > across.to_m ? across.from_m : across.to_m - across.from_m;
+  return from > to ? from : (to - from) / length(along);
 }
 
 /// The steps across faces.
@@ -86,7 +71,7 @@ class Across {
  private:
   /// Does a direction lead over a piece to its left, or else to its right?
   static bool leads(Point2 way, const Boundary& piece, bool to_left) {
-    const double left_m = cross(from_to(piece.from, piece.to), way);
+    const double left_m = cross(piece.to - piece.from, way);
     return (to_left ? left_m : -left_m) > touch_m;
   }
 
@@ -98,30 +83,29 @@ class Across {
 
   /// The way uphill from a place to a piece's line; infinite if they are parallel.
   static double way_m(Point2 p, Point2 uphill, const Boundary& piece) {
-    const Point2 along = from_to(piece.from, piece.to);
-    return cross(from_to(p, piece.from), along) / cross(uphill, along);
+    const Point2 along = piece.to - piece.from;
+    return cross(piece.from - p, along) / cross(uphill, along);
   }
 
   static Point2 half_way(Point2 p, Point2 uphill, const Boundary& top) {
     const double half_m = way_m(p, uphill, top) / 2;
-    return {p.x + half_m * uphill.x, p.y + half_m * uphill.y};
+    return p + half_m * uphill;
   }
 
   /// Where the foot must be cut so that each part has one piece at the top, as shares of its length.
   std::vector<double> cuts_of(const Boundary& foot, Point2 uphill) const {
     std::vector<double> cuts{0, 1};
-    const Point2 along = from_to(foot.from, foot.to);
-    const double near = touch_m / std::hypot(along.x, along.y);
+    const Point2 along = foot.to - foot.from;
+    const double near = touch_m / length(along);
     for (const Boundary& piece : pieces_) {
       if (!is_top(piece, uphill)) continue;
       for (const Point2 end : {piece.from, piece.to}) {
-        const double share = cross(from_to(foot.from, end), uphill) / cross(along, uphill);
-        const double up_m = dot(from_to(between(foot.from, foot.to, share), end), uphill);
+        const double share = cross(end - foot.from, uphill) / cross(along, uphill);
+        const double up_m = dot(end - between(foot.from, foot.to, share), uphill);
         if (share > near && share < 1 - near && up_m > 0 && up_m < 2 * widest_m) cuts.push_back(share);
       }
     }
-    std::sort(cuts.begin(), cuts.end());
-    cuts.erase(std::unique(cuts.begin(), cuts.end(), [near](double a, double b) { return b - a < near; }), cuts.end());
+    sort_cuts(cuts, length(along));
     return cuts;
   }
 
@@ -133,8 +117,8 @@ class Across {
       if (!is_top(piece, uphill)) continue;
       const double up_m = way_m(p, uphill, piece);
       if (!(up_m > touch_m) || up_m >= least_m) continue;
-      const Point2 at{p.x + up_m * uphill.x, p.y + up_m * uphill.y};
-      if (dot(from_to(piece.from, at), from_to(piece.to, at)) > 0) continue;  // beyond its ends
+      const Point2 at = p + up_m * uphill;
+      if (dot(at - piece.from, at - piece.to) > 0) continue;  // beyond its ends
       least_m = up_m;
       nearest = &piece;
     }
