@@ -73,9 +73,10 @@
 #include "curbline/curbs/border_finder.hpp"     // all such points of the window
 #include "curbline/curbs/ground_end.hpp"        // edges with only one side in view
 #include "curbline/curbs/line_fit.hpp"          // a line through borders
+#include "curbline/curbs/curb.hpp"              // out: a curb
+#include "curbline/curbs/plane_pair.hpp"        // the planes on both sides of a border: step or crease
 #include "curbline/curbs/curb_piece.hpp"        // borders on one line
 #include "curbline/curbs/shadow.hpp"            // of a step down
-#include "curbline/curbs/curb.hpp"              // out: a curb
 #include "curbline/curbs/step_height.hpp"       // the height of a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next

@@ -40,23 +40,6 @@ const char* to_string(CurbKind kind) {
   return "unknown";
 }
 
-CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn) {
-  const float across =
-      border.normal_x * (second.slope_x - first.slope_x) + border.normal_y * (second.slope_y - first.slope_y);
-  const float steep = magnitude(across);
-  const float step_m = magnitude(drawn.height_m);
-  const float mean_m2 = 0.5f * (first.fit_variance_m2 + second.fit_variance_m2);
-  const float cell_m2 = std::max(drawn.texture_m2, mean_m2);
-  const float unknown_m2 = square(drawn.height_sd_m) + cell_m2 + square(steep) * drawn.place_variance_m2;
-  const float open_m = first.steeper_than_ground() || second.steeper_than_ground() ? steep * drawn.half_gap_m : 0.0f;
-  if (step_m > open_m + 2.0f * square_root(unknown_m2)) return CurbKind::step_up;
-  const auto is_ramp = [&](const Plane& plane) {
-    const float slope = border.normal_x * plane.slope_x + border.normal_y * plane.slope_y;
-    return slope > least_ramp || slope < -least_ramp;
-  };
-  return is_ramp(first) != is_ramp(second) ? CurbKind::ramp_edge : CurbKind::crease;
-}
-
 void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told) {
   for (std::size_t k = 0; k < curbs.size(); ++k) {
     const float length_m = length_of(curbs[k]);

@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "curbline/curbs/line_fit.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/math.hpp"
-#include "curbline/plane.hpp"
 
 namespace curbline {
 
@@ -65,19 +63,5 @@ float overlap_m(const Curb& now, const Curb& before, float near_m);
 /// the first. Of two steps along each other (all but a cell of the shorter one) the longer stands for the edge, of
 /// equals the first. Sets for each curb whether another one stands for it. O(curbs^2).
 void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told);
-
-/// A border as found between two planes.
-struct DrawnBorder {
-  float height_m, height_sd_m;  ///< second plane less first there
-  float half_gap_m;             ///< between the cells of the one and the other
-  float place_variance_m2;      ///< of where the border lies, across it
-  float texture_m2;             ///< of the ground, PlanePrior::texture_m2
-};
-
-/// A border is a crease, not a step, if the planes' difference in height there is within its uncertainty (95 %): that
-/// of the planes, of the cells that define the border, at least the ground's texture, and of the border's position
-/// times the difference of slopes. A face, too steep for ground, begins at its foot, anywhere in the gap: as much more
-/// as the slopes make up across half of it. CurbKind::step_up stands for either step.
-CurbKind kind_of(const Plane& first, const Plane& second, const LineFit::Segment& border, const DrawnBorder& drawn);
 
 }  // namespace curbline

@@ -12,6 +12,7 @@
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/step_height.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
@@ -68,7 +69,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   if (at.last) piece.go_on(stages_, settings_.link_reach, Piece::End::second);
   StepHeight<limits> step(stages_, piece);
   Curb curb = without_height(piece);
-  curb.kind = kind_of(piece.planes.low, piece.planes.high, piece.line, step.drawn());
+  curb.kind = piece.planes.kind(piece.line, step.drawn());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
   step.refine(part, is_step(curb), settings_.link_reach);

@@ -11,33 +11,13 @@
 #include "curbline/curbs/borders.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/line_fit.hpp"
+#include "curbline/curbs/plane_pair.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {
-
-/// The planes on both sides of a border. With no ground in view beyond, the near one stands for both: no step but the
-/// drop, no slope of its own.
-struct PlanePair {
-  const Plane &low, &high;  ///< by number
-
-  /// Does the step between them keep its height over (dx, dy)? From one end of a piece to the other it may change by
-  /// no more than the repeatability of a range-finder.
-  bool even(float dx_m, float dy_m) const {
-    constexpr float most_change_m = 0.02f;
-    return magnitude(change_m(dx_m, dy_m)) <= most_change_m;
-  }
-  /// By how much that height changes.
-  float change_m(float dx_m, float dy_m) const {
-    return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
-  }
-  /// Difference of their slopes across a line: change of the step's height with the line's position.
-  float slope_across(const LineFit::Segment& line) const {
-    return (high.slope_x - low.slope_x) * line.normal_x + (high.slope_y - low.slope_y) * line.normal_y;
-  }
-};
 
 /// Borders on one line, and means over them.
 template <Limits limits>

@@ -21,6 +21,7 @@
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/line_fit.hpp"
+#include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/surfaces.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"

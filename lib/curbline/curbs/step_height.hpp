@@ -7,9 +7,9 @@
 
 #include "curbline/curbs/beside.hpp"
 #include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/shadow.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
@@ -34,7 +34,7 @@ class StepHeight {
     height_m_ = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
   }
 
-  /// The border as kind_of() takes it, to decide whether it is a step.
+  /// The border as PlanePair::kind() takes it, to decide whether it is a step.
   DrawnBorder drawn() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
   /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
