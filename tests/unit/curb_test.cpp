@@ -1,7 +1,6 @@
-// Curbs beside each other: which of them are one edge. Names of the kinds.
+// How places and other curbs lie to a curb. Names of the kinds.
 #include "curbline/curbs/curb.hpp"
 
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,23 +17,6 @@ TEST_CASE("curb: the overlap of two pieces is what of the one lies along the oth
   CHECK(overlap_m(piece(1.0f, 1.5f, 3.5f), before, 0.2f) == Approx(0.5));
   CHECK(overlap_m(piece(1.0f, 2.5f, 3.5f), before, 0.2f) <= 0.0f);
   CHECK(overlap_m(piece(1.3f, 0.5f, 1.5f), before, 0.2f) == 0.0f);
-}
-
-TEST_CASE("curb: of parallel steps the longest is reported, in any order, and of equal ones one") {
-  const auto step = [](float x_m, float length_m) {
-    return Curb{.x0_m = x_m, .y0_m = 0.0f, .x1_m = x_m, .y1_m = length_m, .kind = CurbKind::step_up};
-  };
-  std::array<Curb, 3> curbs{step(1.0f, 3.0f), step(1.08f, 2.0f), step(1.16f, 1.0f)};
-  const auto by_x = [](const Curb& a, const Curb& b) { return a.x0_m < b.x0_m; };
-  do {
-    std::array<bool, 3> told{};
-    told_by_longer(curbs, 0.1f, told);
-    for (std::size_t k = 0; k < curbs.size(); ++k) CHECK(told[k] == (curbs[k].x0_m > 1.0f));
-  } while (std::next_permutation(curbs.begin(), curbs.end(), by_x));
-  std::array<bool, 2> told{};
-  told_by_longer(std::array{step(1.0f, 2.0f), step(1.05f, 2.0f)}, 0.1f, told);
-  CHECK_FALSE(told[0]);
-  CHECK(told[1]);
 }
 
 /// A line from (x, y) in a direction. Pieces are given along it and to its left.
@@ -67,26 +49,6 @@ TEST_CASE("curb: distance to the far side and overlap do not depend on a curb's 
   CHECK(overlap_m(way.piece(0.5, 1.5, 0.25), curb, 0.2f) == 0.0f);
   CHECK(overlap_m(way.piece(0.5, 1.5, -0.25), curb, 0.2f) == 0.0f);
   CHECK(overlap_m(curb, way.piece(1.0, 1.0, 0.0), 0.2f) == 0.0f);  // a point
-}
-
-TEST_CASE("curb: a step is told beside a longer crease, and of two far apart each") {
-  const Way way{0.0, 0.0, 0.0};
-  std::array<Curb, 2> curbs{way.piece(0.0, 1.0, 0.0), way.piece(0.0, 2.0, 0.05)};
-  curbs[0].kind = CurbKind::step_down;
-  const auto shorter_is_told = [&](CurbKind kind, double left) {
-    curbs[1] = way.piece(0.0, 2.0, left);
-    curbs[1].kind = kind;
-    std::array<bool, 2> by_longer{};
-    told_by_longer(curbs, 0.1f, by_longer);
-    CHECK_FALSE(by_longer[1]);
-    return !by_longer[0];
-  };
-  CHECK_FALSE(shorter_is_told(CurbKind::step_up, 0.05));
-  CHECK(shorter_is_told(CurbKind::step_up, 0.15));
-  CHECK(shorter_is_told(CurbKind::crease, 0.05));
-  CHECK(shorter_is_told(CurbKind::ramp_edge, 0.05));
-  curbs[0].kind = CurbKind::crease;
-  CHECK(shorter_is_told(CurbKind::step_up, 0.05));  // two creases are both told
 }
 
 TEST_CASE("curb: each kind has a word of its own") {

@@ -1,7 +1,6 @@
 #include "curbline/curbs/curb.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <limits>
 
 #include "curbline/math.hpp"
@@ -38,18 +37,6 @@ const char* to_string(CurbKind kind) {
       return "ramp_edge";
   }
   return "unknown";
-}
-
-void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told) {
-  for (std::size_t k = 0; k < curbs.size(); ++k) {
-    const float length_m = length_of(curbs[k]);
-    told[k] = false;
-    for (std::size_t o = 0; is_step(curbs[k]) && o < curbs.size() && !told[k]; ++o) {
-      const float other_m = length_of(curbs[o]);
-      const bool longer = other_m > length_m || (other_m == length_m && o < k);
-      told[k] = longer && is_step(curbs[o]) && overlap_m(curbs[k], curbs[o], cell_m) > length_m - cell_m;
-    }
-  }
 }
 
 float to_far_side_m(const Curb& curb, float x_m, float y_m) {

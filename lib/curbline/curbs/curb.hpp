@@ -1,8 +1,7 @@
-// What the pipeline gives out: a straight piece of curb, its kind, and when two pieces are one curb.
+// What the pipeline gives out: a straight piece of curb, its kind, and how a place or another piece lies to it.
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "curbline/grid.hpp"
 #include "curbline/math.hpp"
@@ -58,10 +57,5 @@ float to_far_side_m(const Curb& curb, float x_m, float y_m);
 /// Length of `now` that lies along `before`, in projection, if its middle is within `near_m` of that line; else 0 or
 /// less.
 float overlap_m(const Curb& now, const Curb& before, float near_m);
-
-/// Cells crossed by an edge may belong to a third plane, which makes a second step, of another height, within a cell of
-/// the first. Of two steps along each other (all but a cell of the shorter one) the longer stands for the edge, of
-/// equals the first. Sets for each curb whether another one stands for it. O(curbs^2).
-void told_by_longer(std::span<const Curb> curbs, float cell_m, std::span<bool> told);
 
 }  // namespace curbline
