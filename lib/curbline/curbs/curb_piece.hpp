@@ -1,10 +1,8 @@
 // A straight piece of a chain of borders (borders.hpp), before it is a curb: the line through them, means of what they
-// show, how far the line goes on beyond them, and from where its sides were seen. Cost: 40 operations a border, and on
-// a robot that drives a look at the cells beside it.
+// show, and how far the line goes on beyond them. Cost: 40 operations a border.
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 
 #include "curbline/curbs/beside.hpp"
@@ -80,8 +78,6 @@ struct CurbPiece {
   bool has_right(const Viewpoint& view) const {
     return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
   }
-  /// From where the lower side of a piece was last seen: mean over its cells next to the borders.
-  static Viewpoint seen_from(const Stages& stages, const Part& part, int link_reach, Label lower);
 
  private:
   void take_means(const Part& part);
@@ -89,7 +85,6 @@ struct CurbPiece {
   void take_widths(const Dem<limits>& dem, const Part& part);
   enum class Side : std::uint8_t { unseen, own, other };
   static Side side(const Stages& stages, float x_m, float y_m, Label own);
-  static int cell_beside(const Stages& stages, const Border& border, int link_reach, Label own);
 };
 
 template <Limits limits>
@@ -200,42 +195,6 @@ void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
     end_x += step_x;
     end_y += step_y;
   }
-}
-
-/// The cell of the plane `own` nearest to a border, on its side; -1 if there is none.
-template <Limits limits>
-int CurbPiece<limits>::cell_beside(const Stages& stages, const Border& border, int link_reach, Label own) {
-  const Dem<limits>& dem = stages.dem;
-  const std::size_t d = border.toward(own);
-  const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
-  int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
-  for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
-    const int slot = dem.slot(i, j);
-    if (dem.cell(slot).valid() && stages.field.label(slot) == own) return slot;
-    i += step_i[d];
-    j += step_j[d];
-  }
-  return -1;
-}
-
-template <Limits limits>
-Viewpoint CurbPiece<limits>::seen_from(const Stages& stages, const Part& part, int link_reach, Label lower) {
-  Viewpoint mean = stages.view;
-  if (!stages.dem.seen_from_several()) return mean;
-  float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
-  for (const Border& border : part) {
-    const int slot = cell_beside(stages, border, link_reach, lower);
-    if (slot < 0) continue;
-    const Viewpoint view = stages.dem.seen_from(slot, stages.view);
-    sum_x += view.x_m;
-    sum_y += view.y_m;
-    cells += 1.0f;
-  }
-  if (cells > 0.0f) {
-    mean.x_m = sum_x / cells;
-    mean.y_m = sum_y / cells;
-  }
-  return mean;
 }
 
 }  // namespace curbline

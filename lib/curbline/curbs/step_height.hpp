@@ -1,5 +1,6 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
-// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border.
+// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border, and on a
+// robot that drives those up to the first one of the lower side.
 #pragma once
 
 #include <algorithm>
@@ -50,6 +51,8 @@ class StepHeight {
 
  private:
   void leave_shadow(const Part& part, int link_reach);
+  Viewpoint seen_from(const Part& part, int link_reach, Label lower) const;
+  int cell_beside(const Border& border, int link_reach, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const Part& part, Label label) const;
   void follow_ground(const Part& part);
@@ -103,8 +106,7 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
 template <Limits limits>
 void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
   const bool high_is_upper = height_m_ > 0.0f;
-  const Viewpoint view =
-      Piece::seen_from(stages_, part, link_reach, high_is_upper ? piece_.first.low : piece_.first.high);
+  const Viewpoint view = seen_from(part, link_reach, high_is_upper ? piece_.first.low : piece_.first.high);
   const bool upper_is_right = high_is_upper != piece_.low_is_right;
   if (piece_.has_right(view) != upper_is_right) return;
   const auto [low, high] = piece_.planes;
@@ -115,6 +117,43 @@ void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
   const float dx_m = piece_.line.x0_m - x_m, dy_m = piece_.line.y0_m - y_m;
   const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
   height_m_ += high_is_upper ? rise_m : -rise_m;
+}
+
+/// From where the lower side was last seen: mean over its cells next to the borders.
+template <Limits limits>
+Viewpoint StepHeight<limits>::seen_from(const Part& part, int link_reach, Label lower) const {
+  Viewpoint mean = stages_.view;
+  if (!stages_.dem.seen_from_several()) return mean;
+  float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
+  for (const Border& border : part) {
+    const int slot = cell_beside(border, link_reach, lower);
+    if (slot < 0) continue;
+    const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
+    sum_x += view.x_m;
+    sum_y += view.y_m;
+    cells += 1.0f;
+  }
+  if (cells > 0.0f) {
+    mean.x_m = sum_x / cells;
+    mean.y_m = sum_y / cells;
+  }
+  return mean;
+}
+
+/// The cell of the plane `own` nearest to a border, on its side; -1 if there is none.
+template <Limits limits>
+int StepHeight<limits>::cell_beside(const Border& border, int link_reach, Label own) const {
+  const Dem<limits>& dem = stages_.dem;
+  const std::size_t d = border.toward(own);
+  const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
+  int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
+  for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
+    const int slot = dem.slot(i, j);
+    if (dem.cell(slot).valid() && stages_.field.label(slot) == own) return slot;
+    i += step_i[d];
+    j += step_j[d];
+  }
+  return -1;
 }
 
 /// Rise of a plane extrapolated to an unseen place: less than its slope says, by the square of the distance relative to
