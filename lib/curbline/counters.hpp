@@ -14,7 +14,7 @@ struct Counters {
   std::uint32_t points = 0;     ///< points that fell in a cell
   std::uint32_t outside = 0;    ///< points outside the window, above its height, or not finite
   std::uint32_t evidences = 0;  ///< plane evidences computed while merging
-  std::uint32_t messages = 0;   ///< belief messages, four for each visit of a label
+  std::uint32_t messages = 0;   ///< belief messages, four for each cell that sends
   // Bad data.
   std::uint32_t no_returns = 0;          ///< beams without a usable range, those into the open included
   std::uint32_t echoes_alone = 0;        ///< left out: lone returns in the window (rain, dust, sun, noise, grass)
