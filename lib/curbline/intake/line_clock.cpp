@@ -1,6 +1,7 @@
 #include "curbline/intake/line_clock.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "curbline/intake/rising_times.hpp"
 #include "curbline/math.hpp"
@@ -26,6 +27,31 @@ constexpr float usual = 2.0f;
 constexpr float seldom = 5.0f;
 /// Share of a turn: the largest mean delay with which turns are counted. Stamps anywhere between turns have a half.
 constexpr float most_mean = 0.45f;
+
+/// An arrival: by how much it is later than its turn would be by the settings.
+struct Place {
+  float turn, late_ns;
+};
+
+/// Slope of the straight line below all arrivals that is nearest to them on average: that of the edge of their lower
+/// convex hull under the mean turn. At least two arrivals, in ascending order.
+float slope_below(std::span<const Place> arrivals) {
+  std::array<Place, LineClock::capacity> hull{};
+  std::size_t corners = 0;
+  float mean_turn = 0.0f;
+  for (const Place& p : arrivals) {
+    mean_turn += p.turn / to_float(static_cast<std::int64_t>(arrivals.size()));
+    for (; corners >= 2; --corners) {
+      const Place &a = hull[corners - 2], &b = hull[corners - 1];
+      if ((b.late_ns - a.late_ns) * (p.turn - a.turn) < (p.late_ns - a.late_ns) * (b.turn - a.turn)) break;
+    }
+    hull[corners++] = p;
+  }
+  std::size_t edge = 0;
+  while (edge + 2 < corners && hull[edge + 1].turn < mean_turn) ++edge;
+  const Place &a = hull[edge], &b = hull[edge + 1];
+  return (b.late_ns - a.late_ns) / (b.turn - a.turn);
+}
 
 }  // namespace
 
@@ -139,37 +165,19 @@ float LineClock::late_ns(std::int64_t stamp_ns, std::int64_t turns) const {
   return to_float(stamp_ns - newest().stamp_ns - turns * turn_ns_) + newest_late_ns_ - to_float(turns) * slower_ns_;
 }
 
-/// Fits the straight line below all arrivals that is nearest to them on average: the edge of their lower convex hull
-/// under the mean turn.
+/// Turns take as long as the line below all arrivals says; the newest is as late as it lies above that line.
 void LineClock::fit() {
-  struct Place {
-    float turn, late_ns;
-  };
-  const auto place = [this](int k) -> Place {
-    const std::int64_t turn = arrival(k).turn - newest().turn;
-    return {to_float(turn), to_float(arrival(k).stamp_ns - newest().stamp_ns - turn * turn_ns_)};
-  };
-  std::array<Place, capacity> hull;
-  int corners = 0;
-  float mean_turn = 0.0f;
+  std::array<Place, capacity> places;
   for (int k = 0; k < size_; ++k) {
-    const Place p = place(k);
-    mean_turn += p.turn / to_float(size_);
-    for (; corners >= 2; --corners) {
-      const Place &a = hull[static_cast<std::size_t>(corners - 2)], &b = hull[static_cast<std::size_t>(corners - 1)];
-      if ((b.late_ns - a.late_ns) * (p.turn - a.turn) < (p.late_ns - a.late_ns) * (b.turn - a.turn)) break;
-    }
-    hull[static_cast<std::size_t>(corners++)] = p;
+    const std::int64_t turn = arrival(k).turn - newest().turn;
+    const std::int64_t late_ns = arrival(k).stamp_ns - newest().stamp_ns - turn * turn_ns_;
+    places[static_cast<std::size_t>(k)] = {to_float(turn), to_float(late_ns)};
   }
-  std::size_t edge = 0;
-  while (edge + 2 < static_cast<std::size_t>(corners) && hull[edge + 1].turn < mean_turn) ++edge;
-  const Place &a = hull[edge], &b = hull[edge + 1];
-  const float most_ns = most_slower * to_float(turn_ns_);
-  const float slower_ns = (b.late_ns - a.late_ns) / (b.turn - a.turn);
+  const std::span<const Place> all(places.data(), static_cast<std::size_t>(size_));
+  const float slower_ns = slope_below(all), most_ns = most_slower * to_float(turn_ns_);
   slower_ns_ = std::clamp(slower_ns, -most_ns, most_ns);
   float least_ns = 0.0f, sum_ns = 0.0f;  // height above the line through the newest
-  for (int k = 0; k < size_; ++k) {
-    const Place p = place(k);
+  for (const Place& p : all) {
     const float above_ns = p.late_ns - slower_ns_ * p.turn;
     least_ns = std::min(least_ns, above_ns);
     sum_ns += above_ns;

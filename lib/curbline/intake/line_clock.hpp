@@ -29,6 +29,8 @@ namespace curbline {
 
 class LineClock {
  public:
+  static constexpr int capacity = 64;  ///< arrivals that it keeps, the newest
+
   /// Starts afresh. A turn takes as many beam intervals as beams fill a circle (LaserSettings). With a beam interval of
   /// 0, as of a sensor that does not turn, all stamps are kept.
   void init(const LaserSettings& laser);
@@ -45,8 +47,6 @@ class LineClock {
   struct Arrival {
     std::int64_t turn = 0, stamp_ns = 0;
   };
-  static constexpr int capacity = 64;
-
   struct Turns {
     std::int64_t count = 0;
     bool doubtful = false;  ///< or lines may have been lost, or a line have waited
