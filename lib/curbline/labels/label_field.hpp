@@ -2,8 +2,8 @@
 // (paper, section III-D). Messages are kept from line to line; a call sends them once in each of four directions, from
 // the cells that changed, and a new message makes its receiver one of those. A Potts message has two values, so it
 // costs O(candidates), not O(K^2): each cell keeps its three most likely labels (label_site.hpp) of the planes near by
-// (planes_near_by.hpp). Cost of a call: three passes over the window beside that of planes_near_by, and for each
-// cell that sends four messages and a visit of each plane near by.
+// (planes_near_by.hpp). Cost of a call: three passes over the window beside that of planes_near_by, and four messages
+// for each cell that sends.
 #pragma once
 
 #include <array>
@@ -15,7 +15,6 @@
 #include "curbline/labels/label_site.hpp"
 #include "curbline/labels/planes_near_by.hpp"
 #include "curbline/map/dem.hpp"
-#include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/settings.hpp"
@@ -32,8 +31,6 @@ enum class FieldScope : std::uint8_t {
 template <Limits limits>
 class LabelField {
  public:
-  static constexpr int capacity = Dem<limits>::capacity;
-
   /// A cell that sends, its nearest valid neighbours, and the sum of their messages about its candidates.
   struct Visit {
     Slot<limits> slot;
@@ -43,7 +40,7 @@ class LabelField {
   };
   /// Working memory of one update(): the cells that send, row by row, and the place of each in that list.
   struct Visits {
-    std::array<Visit, capacity> visit;
+    std::array<Visit, Dem<limits>::capacity> visit;
     PerCell<Slot<limits>, limits> index;
     int size;
   };
@@ -78,7 +75,6 @@ class LabelField {
                                        Visits& visits, Counters& counters);
   void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
   bool wants_to_send(const PlaneMixture<limits>& mixture, int slot) const;
-  void choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot);
   Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
   [[gnu::noinline]] Visit heard_by(const Dem<limits>& dem, int i, int j, int slot) const;
@@ -135,7 +131,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   visits.size = 0;
   dem.for_each_valid([&](int i, int j, int s) {
     if ((flag_[s] & visited) == 0) return;
-    choose_candidates(dem, mixture, i, j, s);
+    sites_[s].set_candidates(near_by_.candidates(dem, mixture, i, j, dem.cell(s)), mixture.covered(s));
     visits.index[s] = static_cast<Slot<limits>>(visits.size);
     visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
   });
@@ -149,7 +145,7 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   const int first = first_row_ < rows ? first_row_ : 0;
   first_row_ = first + 1;
   const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
-  int left = scope == FieldScope::line ? messages / directions : capacity;
+  int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
       if (scope != FieldScope::window && !wants_to_send(mixture, s)) {
@@ -177,32 +173,6 @@ bool LabelField<limits>::wants_to_send(const PlaneMixture<limits>& mixture, int 
     }
   }
   return site.label[0] == no_label;
-}
-
-/// Node potentials: Student t with 6 degrees of freedom about the plane; the three most likely are kept. Where the
-/// ground is covered they are equal, and the surrounding cells decide.
-template <Limits limits>
-void LabelField<limits>::choose_candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
-                                           int slot) {
-  const Cell& cell = dem.cell(slot);
-  const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
-  const float cell_variance = dem.height_variance_m2(cell);
-  LabelSite::Candidates candidates;
-  const auto consider = [&](int k) {
-    const Plane& plane = mixture.plane(k);
-    if (!plane.alive() || !mixture.ground(k)) return;
-    const float variance = plane.variance_m2 + cell_variance;
-    const float residual = cell.height_m - plane.height_m(x, y);
-    float u = 1.0f + residual * residual / (6.0f * variance);
-    if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
-    const float u3 = u * u * u;
-    candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
-  };
-  near_by_.of_cell(i, j).for_each(consider);
-  if (candidates.label[0] == no_label) {
-    for (int k = 0; k < limits.planes; ++k) consider(k);
-  }
-  sites_[slot].set_candidates(candidates, mixture.covered(slot));
 }
 
 template <Limits limits>

@@ -1,6 +1,7 @@
 // The planes near each cell: those of regions in its block or the eight around it. Only these are candidates for its
 // label (all planes, if none of these is ground), so that two pavements of equal height on both sides of a road keep
-// different labels. Cost: a pass over the window when regions have changed their planes or the window has moved.
+// different labels. Cost: a pass over the window when regions have changed their planes or the window has moved, and
+// for a cell's candidates a visit of each plane near by.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 
 #include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/labels/label_site.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/planes/plane_mixture.hpp"
@@ -17,16 +19,17 @@ namespace curbline {
 template <Limits limits>
 class PlanesNearBy {
  public:
-  using Planes = IndexSet<limits.planes>;
-
   void clear() { near_.fill({}); }
 
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
-  /// As of the last follow().
-  const Planes& of_cell(int i, int j) const { return near_[block(i, j)]; }
+  /// The candidates of a valid cell, as of the last follow(). Node potentials: Student t with 6 degrees of freedom
+  /// about each plane.
+  LabelSite::Candidates candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
+                                   const Cell& cell) const;
 
  private:
+  using Planes = IndexSet<limits.planes>;
   static constexpr std::size_t blocks_in_row = limits.cols / block_side;
   using BlockRow = std::array<Planes, blocks_in_row>;
 
@@ -70,6 +73,29 @@ auto PlanesNearBy<limits>::planes_in(const Dem<limits>& dem, const PlaneMixture<
     });
   }
   return planes;
+}
+
+template <Limits limits>
+LabelSite::Candidates PlanesNearBy<limits>::candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
+                                                       int i, int j, const Cell& cell) const {
+  const float x = dem.centroid_x_m(i, cell), y = dem.centroid_y_m(j, cell);
+  const float cell_variance = dem.height_variance_m2(cell);
+  LabelSite::Candidates candidates;
+  const auto consider = [&](int k) {
+    const Plane& plane = mixture.plane(k);
+    if (!plane.alive() || !mixture.ground(k)) return;
+    const float variance = plane.variance_m2 + cell_variance;
+    const float residual = cell.height_m - plane.height_m(x, y);
+    float u = 1.0f + residual * residual / (6.0f * variance);
+    if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
+    const float u3 = u * u * u;
+    candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
+  };
+  near_[block(i, j)].for_each(consider);
+  if (candidates.label[0] == no_label) {
+    for (int k = 0; k < limits.planes; ++k) consider(k);
+  }
+  return candidates;
 }
 
 }  // namespace curbline
