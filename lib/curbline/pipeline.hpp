@@ -133,7 +133,6 @@ class Pipeline {
 
  private:
   void follow_robot(const Transform& T_map_base);
-  void move_window(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
   int follow_labels(FieldScope scope);
@@ -156,7 +155,6 @@ class Pipeline {
   bool ready_ = false;
   bool planes_next_ = true;                               ///< which half of the inference is due
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
-  float ceiling_m_ = 0.0f;                                ///< points above are ignored, z of the map frame
   Counters counters_{};
   LineIntake<limits> line_intake_{};
   Dem<limits> dem_{};
@@ -171,7 +169,6 @@ class Pipeline {
 template <Limits limits>
 Status Pipeline<limits>::init(const Settings& settings) {
   ready_ = false;
-  const WindowSettings& window = settings.window;
   if (const Status status = check(settings, limits); status != Status::ok) return status;
   settings_ = settings;
   PlanePrior& prior = settings_.planes.prior;
@@ -180,9 +177,8 @@ Status Pipeline<limits>::init(const Settings& settings) {
   counters_ = Counters{};
   planes_next_ = true;
   p_map_tilt_ = p_base_tilt();
-  ceiling_m_ = window.max_height_m;
   line_intake_.init(settings);
-  dem_.init(window, prior);
+  dem_.init(settings.window, prior);
   segmentation_.init(settings.segmentation, prior);
   plane_mixture_.init(settings_.planes);
   common_noise_.init();
@@ -233,7 +229,7 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   ++counters_.lines;
   if (!work.motion.still) follow_robot(work.motion.T_map_base_last);
   const MapComparison<limits> map(dem_, plane_mixture_, label_field_, settings_.segmentation.link_reach);
-  const bool taken = line_intake_.project(line, dem_.surroundings(ceiling_m_), map, dem_, work, counters_);
+  const bool taken = line_intake_.project(line, map, dem_, work, counters_);
   counters_.outside += work.projected.outside();
   if (!taken) return Status::ok;
   for (const Point& p : work.projected.points()) take(p);
@@ -248,38 +244,25 @@ void Pipeline<limits>::observe(std::span<const Point> points) {
 
 template <Limits limits>
 void Pipeline<limits>::take_point(const Point& point) {
-  if (point.z_m <= ceiling_m_ && dem_.add(point)) {
+  if (dem_.add(point)) {
     ++counters_.points;
   } else {
     ++counters_.outside;
   }
 }
 
+/// Moves the window with the robot; what leaves it leaves every stage.
 template <Limits limits>
 void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
-  ceiling_m_ = settings_.window.max_height_m + (settings_.window.fixed ? 0.0f : T_map_base.translation.z());
   p_map_tilt_ = T_map_base * p_base_tilt();
-  move_window(T_map_base);
-  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
-}
-
-/// Moves the window with the robot, its centre with the robot's heading; what leaves it leaves every stage.
-template <Limits limits>
-void Pipeline<limits>::move_window(const Transform& T_map_base) {
-  const WindowSettings& window = settings_.window;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
-  const float middle_x = window.origin_x_m + 0.5f * static_cast<float>(window.rows) * window.cell_x_m;
-  const float middle_y = window.origin_y_m + 0.5f * static_cast<float>(window.cols) * window.cell_y_m;
-  const SinCos ahead = heading(T_map_base);
-  // How far the centre is from where it would be if the robot headed along the map's x axis.
-  const float aside_x = (ahead.cos - 1.0f) * middle_x - ahead.sin * middle_y;
-  const float aside_y = ahead.sin * middle_x + (ahead.cos - 1.0f) * middle_y;
-  dem_.follow(T_map_base.translation.x() + aside_x, T_map_base.translation.y() + aside_y, [this](int slot) {
+  dem_.follow(T_map_base, [this](int slot) {
     segmentation_.forget(slot);
     plane_mixture_.forget(slot);
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
+  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
 }
 
 template <Limits limits>

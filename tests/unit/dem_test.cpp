@@ -41,6 +41,13 @@ Point at(double x, double y, double z = 0.0, float variance = 1e-4f) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), variance};
 }
 
+/// The pose of a robot that heads along the map's x axis.
+Transform standing_at(float x_m, float y_m) {
+  Transform T_map_base;
+  T_map_base.translation << x_m, y_m, 0.0f;
+  return T_map_base;
+}
+
 /// A height that encodes a cell's row and column in the endless grid.
 double name(int row, int col) {
   return 0.001 * (100 * row + col);
@@ -83,7 +90,7 @@ TEST_CASE("dem: what the points of a cell were found to share is no less, as evi
 TEST_CASE("dem: every cell of the window has a slot of its own") {
   Map dem = make_map(moving());
   for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {7.3f, -3.1f}, {-55.0f, 20.0f}}) {
-    dem.follow(x, y, [](int) {});
+    dem.follow(standing_at(x, y), [](int) {});
     std::set<int> slots;
     for (int i = 0; i < dem.rows(); ++i) {
       for (int j = 0; j < dem.cols(); ++j) slots.insert(dem.slot(i, j));
@@ -98,7 +105,7 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
   const auto [blocks_x, blocks_y] = GENERATE(table<int, int>(
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {2, -1}, {-2, 3}, {0, 0}, {3, 0}, {0, -4}, {100, -77}}));
   Map dem = make_map(moving());
-  dem.follow(2.0f, -1.2f, [](int) {});
+  dem.follow(standing_at(2.0f, -1.2f), [](int) {});
   fill_names(dem);
   std::map<std::pair<int, int>, int> slot_of;  // slots of the cells of the endless grid
   const int row0 = static_cast<int>(std::lround(dem.origin_x_m() / 0.1f)),
@@ -109,10 +116,11 @@ TEST_CASE("dem: after a move in any direction the cells that left are empty and 
   dem.clear_touched();
 
   std::set<int> left;
-  dem.follow(2.0f + 0.4f * static_cast<float>(blocks_x), -1.2f + 0.4f * static_cast<float>(blocks_y), [&](int slot) {
-    CHECK(dem.cell(slot).valid());  // can still be read
-    left.insert(slot);
-  });
+  dem.follow(standing_at(2.0f + 0.4f * static_cast<float>(blocks_x), -1.2f + 0.4f * static_cast<float>(blocks_y)),
+             [&](int slot) {
+               CHECK(dem.cell(slot).valid());  // can still be read
+               left.insert(slot);
+             });
 
   std::string expected;
   for (int i = 0; i < 12; ++i) {
@@ -144,10 +152,10 @@ TEST_CASE("dem: a window of the smallest cells that leaps across the world has l
   const auto dem = std::make_unique<Dem<Limits{}>>();
   dem->init(window, PlanePrior{});
   const auto nothing = [](int) { FAIL("no cell was valid"); };
-  dem->follow(-1e6f, 0.0f, nothing);
+  dem->follow(standing_at(-1e6f, 0.0f), nothing);
   REQUIRE(dem->add({dem->origin_x_m(), dem->origin_y_m(), 0.0f, 1e-4f}));
   int left = 0;
-  dem->follow(1.2e6f, 0.0f, [&](int) { ++left; });
+  dem->follow(standing_at(1.2e6f, 0.0f), [&](int) { ++left; });
   CHECK(left == 1);
 }
 
@@ -156,7 +164,7 @@ TEST_CASE("dem: the ring survives a walk all around") {
   fill_names(dem);
   for (const auto& [x, y] :
        {std::pair{0.4f, 0.0f}, {0.8f, 0.4f}, {0.8f, 1.2f}, {0.4f, 1.2f}, {0.0f, 0.8f}, {0.0f, 0.0f}}) {
-    dem.follow(x, y, [](int) {});
+    dem.follow(standing_at(x, y), [](int) {});
   }
   // Two blocks of rows and three of columns have been out of the window.
   std::string expected;
@@ -168,22 +176,49 @@ TEST_CASE("dem: the ring survives a walk all around") {
 TEST_CASE("dem: a small motion does not move the window") {
   Map dem = make_map(moving());
   fill_names(dem);
-  dem.follow(0.15f, -0.15f, [](int) { FAIL("no cell may leave"); });
+  dem.follow(standing_at(0.15f, -0.15f), [](int) { FAIL("no cell may leave"); });
   CHECK(dem.origin_x_m() == 0.0f);
   CHECK(dem.origin_y_m() == Approx(-0.8f));
 }
 
 TEST_CASE("dem: a pose that trembles by less than half a cell does not move the window to and fro") {
   Map dem = make_map(moving());
-  dem.follow(0.24f, 0.0f, [](int) {});  // the border of two blocks is at 0.2 m
+  dem.follow(standing_at(0.24f, 0.0f), [](int) {});  // the border of two blocks is at 0.2 m
   CHECK(dem.origin_x_m() == 0.0f);
-  dem.follow(0.26f, 0.0f, [](int) {});
+  dem.follow(standing_at(0.26f, 0.0f), [](int) {});
   CHECK(dem.origin_x_m() == Approx(0.4f));
   fill_names(dem);
   for (const float x_m : {0.17f, 0.23f, 0.16f, 0.4f}) {
-    dem.follow(x_m, 0.0f, [](int) { FAIL("no cell may leave"); });
+    dem.follow(standing_at(x_m, 0.0f), [](int) { FAIL("no cell may leave"); });
     CHECK(dem.origin_x_m() == Approx(0.4f));
   }
+}
+
+TEST_CASE("dem: the middle of the window keeps its place before the robot, whatever the heading") {
+  WindowSettings window = moving();
+  window.origin_x_m = 0.4f;  // the middle is 1 m ahead
+  const double angle = GENERATE(0.0, 0.7, 1.6, 3.1, -2.2);
+  Map dem = make_map(window);
+  Transform T_map_base = standing_at(7.0f, -3.0f);
+  T_map_base.rotation = make_transform(MountSettings{.yaw_rad = static_cast<float>(angle)}).rotation;
+  dem.follow(T_map_base, [](int) {});
+  CHECK(dem.origin_x_m() + 0.6f == Approx(7.0 + std::cos(angle)).margin(0.25));  // half a block and half a cell
+  CHECK(dem.origin_y_m() + 0.8f == Approx(-3.0 + std::sin(angle)).margin(0.25));
+}
+
+TEST_CASE("dem: points above the ceiling are not taken, which rises with the robot unless the window is fixed") {
+  WindowSettings window = moving();
+  window.fixed = GENERATE(false, true);
+  window.max_height_m = 0.5f;
+  Map dem = make_map(window);
+  CHECK(dem.add(at(0.05, 0.05, 0.5)));
+  CHECK_FALSE(dem.add(at(0.05, 0.05, 0.51)));
+  Transform T_map_base;
+  T_map_base.translation.z() = 2.0f;
+  dem.follow(T_map_base, [](int) { FAIL("no cell may leave"); });
+  CHECK(dem.add(at(0.05, 0.05, 2.4)) == !window.fixed);
+  CHECK_FALSE(dem.add(at(0.05, 0.05, 2.6)));
+  CHECK(dem.surroundings().ceiling_m == (window.fixed ? 0.5f : 2.5f));
 }
 
 TEST_CASE("dem: a fixed window stays") {
@@ -191,7 +226,7 @@ TEST_CASE("dem: a fixed window stays") {
   window.fixed = true;
   Map dem = make_map(window);
   fill_names(dem);
-  dem.follow(100.0f, 100.0f, [](int) { FAIL("no cell may leave"); });
+  dem.follow(standing_at(100.0f, 100.0f), [](int) { FAIL("no cell may leave"); });
   CHECK(dem.add(at(0.05, 0.05)));
 }
 
@@ -319,7 +354,7 @@ TEST_CASE("dem: after any drive the distances to neighbours are those that a sea
     for (int k = 0; k < 6; ++k) dem.add(at(x - 0.2 + 1.6 * noise.uniform(), y - 1.0 + 2.0 * noise.uniform()));
     x += static_cast<float>(0.2 * noise.normal());
     y += static_cast<float>(0.2 * noise.normal());
-    dem.follow(x, y, [](int) {});
+    dem.follow(standing_at(x, y), [](int) {});
     dem.for_each_valid([&](int i, int j, int s) {
       for (int d = 0; d < directions; ++d) {
         int g = 0, a = i, b = j;
@@ -353,7 +388,7 @@ TEST_CASE("dem: each pair of neighbours is linked once, with its distance") {
 TEST_CASE("dem: a link goes on to the ground behind what stands on it, within reach and wherever the ring begins") {
   Map dem = make_map(moving());
   for (int moves = 0; moves < 6; ++moves) {
-    dem.follow(0.4f * static_cast<float>(moves), 0.4f * static_cast<float>(moves), [](int) {});
+    dem.follow(standing_at(0.4f * static_cast<float>(moves), 0.4f * static_cast<float>(moves)), [](int) {});
     const auto see = [&](int i, int j, double z) {
       const double x = static_cast<double>(dem.origin_x_m()) + 0.1 * i + 0.05;
       const double y = static_cast<double>(dem.origin_y_m()) + 0.1 * j + 0.05;
@@ -453,7 +488,7 @@ TEST_CASE("dem: a cell knows from where it was seen as long as it stays in a win
   Map dem = make_map({.rows = along_x ? 12 : 4, .cols = along_x ? 4 : 12, .origin_x_m = 0.0f, .origin_y_m = 0.0f});
   const auto drive_to = [&](float m) {
     const float x_m = along_x ? m : 0.0f, y_m = along_x ? 0.0f : m;
-    dem.follow(x_m, y_m, [](int) {});
+    dem.follow(standing_at(x_m, y_m), [](int) {});
     dem.look_from(x_m, y_m);
   };
   drive_to(0.0f);
@@ -505,7 +540,7 @@ TEST_CASE("dem: a cell that comes into the window has no growth left of the one 
   point.growth_m_s = 2.0f;
   REQUIRE(dem.add(point));
   const int slot = slot_at(dem, 0.05f, 0.05f);
-  dem.follow(4.8f, 0.0f, [](int) {});
+  dem.follow(standing_at(4.8f, 0.0f), [](int) {});
   REQUIRE(slot_at(dem, 4.85f, 0.05f) == slot);
   CHECK(dem.growth_m_s(slot) == 0.0f);
 }
@@ -548,10 +583,10 @@ TEST_CASE("dem: a growth that no servo makes is not kept") {
 
 TEST_CASE("dem: a window smaller than its limits uses the rows and columns it was given") {
   Map dem = make_map({.rows = 8, .cols = 4, .origin_x_m = 0.0f, .origin_y_m = 0.0f});
-  dem.follow(1.2f, 0.4f, [](int) {});
+  dem.follow(standing_at(1.2f, 0.4f), [](int) {});
   fill_names(dem);
   CHECK(picture(dem) == "####\n####\n####\n####\n####\n####\n####\n####\n");
-  dem.follow(1.6f, 0.4f, [](int) {});
+  dem.follow(standing_at(1.6f, 0.4f), [](int) {});
   CHECK(picture(dem) == "####\n####\n####\n####\n....\n....\n....\n....\n");
 }
 
@@ -564,7 +599,7 @@ void for_each_ring(Visit&& visit) {
     for (int blocks_x = -3; blocks_x <= 3; ++blocks_x) {
       for (int blocks_y = -4; blocks_y <= 4; ++blocks_y) {
         Map dem = make_map({.rows = rows, .cols = cols, .origin_x_m = 0.0f, .origin_y_m = -0.8f});
-        dem.follow(0.4f * static_cast<float>(blocks_x), 0.4f * static_cast<float>(blocks_y), [](int) {});
+        dem.follow(standing_at(0.4f * static_cast<float>(blocks_x), 0.4f * static_cast<float>(blocks_y)), [](int) {});
         for (int n = 0; n < rows * cols; ++n) {
           const double i = rows * noise.uniform(), j = cols * noise.uniform();
           dem.add(at(static_cast<double>(dem.origin_x_m()) + 0.1 * i, static_cast<double>(dem.origin_y_m()) + 0.1 * j));
@@ -611,8 +646,8 @@ TEST_CASE("dem: every point that is taken lies in the surroundings, of the small
   const float moved = GENERATE(0.0f, 1.0f, -2.0f);
   Map dem = make_map(
       {.rows = rows, .cols = cols, .cell_x_m = cell_m, .cell_y_m = cell_m, .origin_x_m = origin_m, .origin_y_m = 0.0f});
-  dem.follow(moved * block_side * cell_m, -moved * block_side * cell_m, [](int) {});
-  const Bounds around = dem.surroundings(1e9f);
+  dem.follow(standing_at(moved * block_side * cell_m, -moved * block_side * cell_m), [](int) {});
+  const Bounds around = dem.surroundings();
   // Around both ends of the window, and in between.
   const auto places_m = [](float low_m, float high_m) {
     std::vector<float> out;

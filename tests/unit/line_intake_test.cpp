@@ -39,8 +39,7 @@ struct Intake {
   }
   bool project(std::int64_t time_ns) {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 10);
-    const Bounds bounds = stages->dem.surroundings(1e9f);
-    return intake->project({time_ns, ranges_m}, bounds, map, stages->dem, *work, stages->counters);
+    return intake->project({time_ns, ranges_m}, map, stages->dem, *work, stages->counters);
   }
 
   float range_m = 2.0f;

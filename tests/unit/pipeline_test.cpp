@@ -519,7 +519,7 @@ TEST_CASE("pipeline: project gives out the points that lie in the window or besi
     CHECK(p.variance_m2 > 0.0f);
     const float x_m = p.place_x_m(), y_m = p.place_y_m();
     in_window += dem.place_at(x_m, y_m).inside();
-    CHECK(dem.surroundings(infinity).hold(x_m, y_m, p.z_m));
+    CHECK(dem.surroundings().hold(x_m, y_m, p.z_m));
   }) == Status::ok);
   CHECK(projects->counters().points == 0);
   REQUIRE(observes->observe(line) == Status::ok);

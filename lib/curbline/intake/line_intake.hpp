@@ -18,7 +18,6 @@
 #include "curbline/intake/tilt_track.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"
-#include "curbline/point.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
@@ -50,12 +49,12 @@ class LineIntake {
   /// Refuses a bad line before it changes anything; else finds its tilt and motion.
   Status place(const ScanLine& line, Dem<limits>& dem, Work& work);
 
-  /// Projects a line that has been placed, within these bounds, and compares it with ground mapped before, to find
+  /// Projects a line that has been placed, within the map's window, and compares it with ground mapped before, to find
   /// whose a jump of the poses was and how late the tilt is; a correction of the latency moves the map. False if the
   /// line was measured while poses jumped or the robot climbed, and lies off the map: it would form a ridge as high as
   /// the jump. Where there is no map to compare with, doubtful points are left out.
-  bool project(const ScanLine& line, const Bounds& bounds, const MapComparison<limits>& map, Dem<limits>& dem,
-               Work& work, Counters& counters);
+  bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
+               Counters& counters);
 
   const TiltLatency& tilt_latency() const { return tilt_latency_; }
   const PoseOffset& pose_offset() const { return pose_offset_; }
@@ -151,10 +150,10 @@ void LineIntake<limits>::follow_poses(std::int64_t line_ns, const Pose& pose, bo
 }
 
 template <Limits limits>
-bool LineIntake<limits>::project(const ScanLine& line, const Bounds& bounds, const MapComparison<limits>& map,
-                                 Dem<limits>& dem, Work& work, Counters& counters) {
+bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
+                                 Counters& counters) {
   const LineMotion& motion = work.motion;
-  line_projection_.project(line, work.tilt, motion, bounds, counters, work.projected);
+  line_projection_.project(line, work.tilt, motion, dem.surroundings(), counters, work.projected);
   if (!motion.jumps.any() && !climbs()) {
     if (pose_offset_.undecided()) map.follow_jump(work.projected, tilt_latency_, pose_offset_);
   } else if (line.time_ns - jumps_since_ns_ <= longest_climb_ns) {

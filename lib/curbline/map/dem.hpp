@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "curbline/frames.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
@@ -37,15 +38,15 @@ class Dem : public Window<limits> {
   /// Empties the map and places the window. Settings are valid.
   [[gnu::cold]] void init(const WindowSettings& settings, const PlanePrior& prior);
 
-  /// Makes the window follow (x, y), unless it is fixed. Clears cells that leave, after calling left(slot) for each
+  /// Makes the window follow the robot, unless it is fixed. Clears cells that leave, after calling left(slot) for each
   /// valid one. O(1), or a pass over the window if it moves.
   template <typename Left>
-  void follow(float x_m, float y_m, Left&& left);
+  void follow(const Transform& T_map_base, Left&& left);
 
-  /// Takes a point into its cell. False if it is outside the window, beyond Pose::furthest_m above or below, has a
-  /// value that is not finite, or a weight outside [1e-9, 1e9]; the weight is the expected noise over the point's
-  /// variance plus the ground's texture. In a cell of more than one surface, the first point of a sweep makes earlier
-  /// sweeps fade. O(1).
+  /// Takes a point into its cell. False if it is outside the window, above its ceiling, beyond Pose::furthest_m above
+  /// or below, has a value that is not finite, or a weight outside [1e-9, 1e9]; the weight is the expected noise over
+  /// the point's variance plus the ground's texture. In a cell of more than one surface, the first point of a sweep
+  /// makes earlier sweeps fade. O(1).
   bool add(const Point& point);
 
   /// Corrects heights for a latency that is greater than assumed, by this_sweep_s for cells seen in this sweep, by
@@ -253,8 +254,9 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
 
 template <Limits limits>
 template <typename Left>
-void Dem<limits>::follow(float x_m, float y_m, Left&& left) {
-  const auto to = this->corner_of(x_m, y_m);
+void Dem<limits>::follow(const Transform& T_map_base, Left&& left) {
+  this->lift(T_map_base.translation.z());
+  const auto to = this->corner_of(T_map_base);
   if (to == this->corner()) return;
   for (int i = 0; i < rows(); ++i) {
     const bool row_stays = this->row_stays(i, to);
@@ -321,7 +323,7 @@ auto Dem<limits>::nearest_unmarked(const Place& place, int reach) const -> Place
 template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
   const bool near = square(point.z_m) <= square(Pose::furthest_m);  // false for NaN
-  if (!near || !(point.variance_m2 >= 0.0f)) return false;
+  if (!near || point.z_m > this->ceiling_m() || !(point.variance_m2 >= 0.0f)) return false;
   const float weight = prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2);
   if (!(weight >= least_weight && weight <= most_weight)) return false;  // false for an infinite variance too
   const Place place = place_at(point.place_x_m(), point.place_y_m());

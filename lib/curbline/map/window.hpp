@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "curbline/frames.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
@@ -19,6 +20,7 @@ class Window {
   /// Places it. Settings are valid.
   void init(const WindowSettings& settings) {
     settings_ = settings;
+    ceiling_m_ = settings.max_height_m;
     corner_ = {};
     row_shift_ = col_shift_ = 0;
   }
@@ -34,11 +36,13 @@ class Window {
   float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }
   float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + settings_.origin_y_m; }
 
+  /// Points above are ignored; z of the map frame.
+  float ceiling_m() const { return ceiling_m_; }
   /// The window and one cell around it: what lies outside is outside the window, however places are rounded.
-  Bounds surroundings(float ceiling_m) const {
+  Bounds surroundings() const {
     const float x_m = origin_x_m(), y_m = origin_y_m();
     return {x_m - cell_x_m(), y_m - cell_y_m(), x_m + static_cast<float>(rows() + 1) * cell_x_m(),
-            y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m};
+            y_m + static_cast<float>(cols() + 1) * cell_y_m(), ceiling_m_};
   }
 
   bool contains(int i, int j) const { return i >= 0 && j >= 0 && i < settings_.rows && j < settings_.cols; }
@@ -96,12 +100,24 @@ class Window {
     bool operator==(const Corner&) const = default;
   };
   const Corner& corner() const { return corner_; }
-  /// The corner with the robot at (x, y): in steps of a block, with a hysteresis of half a cell, so that a noisy pose
-  /// does not move it to and fro; a fixed window stays.
-  Corner corner_of(float x_m, float y_m) const {
+  /// The corner with the robot there, so that the window's middle keeps its place in the base frame, whatever the
+  /// heading: in steps of a block, with a hysteresis of half a cell, so that a noisy pose does not move it to and fro.
+  /// A fixed window stays.
+  Corner corner_of(const Transform& T_map_base) const {
     if (settings_.fixed) return corner_;
+    const float middle_x = settings_.origin_x_m + 0.5f * static_cast<float>(settings_.rows) * settings_.cell_x_m;
+    const float middle_y = settings_.origin_y_m + 0.5f * static_cast<float>(settings_.cols) * settings_.cell_y_m;
+    const SinCos ahead = heading(T_map_base);
+    // How far the middle is from where it would be if the robot headed along the map's x axis.
+    const float aside_x = (ahead.cos - 1.0f) * middle_x - ahead.sin * middle_y;
+    const float aside_y = ahead.sin * middle_x + (ahead.cos - 1.0f) * middle_y;
+    const float x_m = T_map_base.translation.x() + aside_x, y_m = T_map_base.translation.y() + aside_y;
     return {nearest_block(x_m / (settings_.cell_x_m * block_side), corner_.row),
             nearest_block(y_m / (settings_.cell_y_m * block_side), corner_.col)};
+  }
+  /// The ceiling keeps its height above the robot, unless the window is fixed.
+  void lift(float base_z_m) {
+    if (!settings_.fixed) ceiling_m_ = settings_.max_height_m + base_z_m;
   }
   /// Does a row, or a column, stay in the window when the corner is there?
   bool row_stays(int i, const Corner& to) const { return stays(i, corner_.row, to.row, settings_.rows); }
@@ -131,6 +147,7 @@ class Window {
   }
 
   WindowSettings settings_{};
+  float ceiling_m_ = 0.0f;
   Corner corner_{};
   int row_shift_ = 0, col_shift_ = 0;  ///< of the ring
 };
