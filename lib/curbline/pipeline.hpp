@@ -146,8 +146,8 @@ class Pipeline {
     Viewpoint view{p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
     view.localisation_steps = line_intake_.pose_offset().localisation_steps();
     if (settings_.pose.still || settings_.window.fixed) return view;
-    view.end_x_m = static_cast<float>(dem_.rows()) * dem_.cell_x_m();
-    view.end_y_m = static_cast<float>(dem_.cols()) * dem_.cell_y_m();
+    view.end_x_m = dem_.length_m(0);
+    view.end_y_m = dem_.length_m(1);
     return view;
   }
 

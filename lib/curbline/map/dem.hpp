@@ -245,8 +245,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   cells_.fill(Cell{});
   seen_.fill(0);
   flags_ = seen_bits;
-  const float along_x_m = static_cast<float>(rows()) * cell_x_m(), along_y_m = static_cast<float>(cols()) * cell_y_m();
-  viewpoints_.init(std::max(along_y_m, along_x_m));
+  viewpoints_.init(std::max(this->length_m(0), this->length_m(1)));
   growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;

@@ -32,6 +32,7 @@ class Window {
   /// Along x (axis 0) or y (1).
   int cells_along(int axis) const { return axis == 0 ? settings_.rows : settings_.cols; }
   float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
+  float length_m(int axis) const { return static_cast<float>(cells_along(axis)) * cell_m(axis); }
   /// Lowest corner in the map frame.
   float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }
   float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + settings_.origin_y_m; }
@@ -105,8 +106,8 @@ class Window {
   /// A fixed window stays.
   Corner corner_of(const Transform& T_map_base) const {
     if (settings_.fixed) return corner_;
-    const float middle_x = settings_.origin_x_m + 0.5f * static_cast<float>(settings_.rows) * settings_.cell_x_m;
-    const float middle_y = settings_.origin_y_m + 0.5f * static_cast<float>(settings_.cols) * settings_.cell_y_m;
+    const float middle_x = settings_.origin_x_m + 0.5f * length_m(0);
+    const float middle_y = settings_.origin_y_m + 0.5f * length_m(1);
     const SinCos ahead = heading(T_map_base);
     // How far the middle is from where it would be if the robot headed along the map's x axis.
     const float aside_x = (ahead.cos - 1.0f) * middle_x - ahead.sin * middle_y;

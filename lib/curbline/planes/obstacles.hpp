@@ -97,8 +97,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
 template <Limits limits>
 void Obstacles<limits>::add_tops() {
   PlaneFlags level{}, asked{};  // level and raised; and no larger than a wall may be
-  const float longest_m =
-      static_cast<float>(dem_.rows()) * dem_.cell_x_m() + static_cast<float>(dem_.cols()) * dem_.cell_y_m();
+  const float longest_m = dem_.length_m(0) + dem_.length_m(1);
   const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
   bool any = false;
   for (std::size_t l = 0; l < planes_.size(); ++l) {
