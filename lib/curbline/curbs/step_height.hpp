@@ -239,7 +239,7 @@ auto StepHeight<limits>::deviations() const -> Deviations {
 /// cells or fewer the fit does not show the error of lines, and there is no bound.
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
-  float times = stages_.dem.common_m2(plane.points_a_cell) / plane.fit_variance_m2;
+  float times = stages_.dem.common_m2(plane) / plane.fit_variance_m2;
   if (plane.cells > 4.0f) times = std::min(times, square_root(plane.cells));
   return std::max(1.0f, times) * piece_.variance_m2(plane);
 }

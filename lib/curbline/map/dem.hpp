@@ -110,9 +110,9 @@ class Dem : public Window<limits> {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }
-  /// The same for a plane whose cells have so many points on average: scan lines err too, and fewer points average less
-  /// of it. At least common_m2().
-  float common_m2(float points_a_cell) const { return std::max(common_m2_, line_m2_ / points_a_cell); }
+  /// The same for the cells of a plane: scan lines err too, and the fewer points these cells have, the less of that
+  /// averages out. At least common_m2().
+  float common_m2(const Plane& plane) const { return std::max(common_m2_, line_m2_ / plane.points_a_cell); }
   /// Sets both as estimated; in evidences the shared part counts as at least the ground's texture.
   void set_common(float found_m2, float found_line_m2) {
     common_m2_ = found_m2;
