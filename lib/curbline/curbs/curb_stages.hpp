@@ -27,7 +27,7 @@ struct CurbStages {
   }
   /// May a cell without ground, or off its plane, be a mixture of two sides: of a veil, of a region too small for a
   /// plane, or of a plane that may be a veil?
-  bool is_veil(int slot) const {
+  bool may_be_veil(int slot) const {
     if (mixture.region_label(slot) == no_label) return true;
     const Label label = field.label(slot);
     return mixture.on_ground(slot) ? label != no_label && mixture.may_be_veil(label) : !mixture.covered(slot);

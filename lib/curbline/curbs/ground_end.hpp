@@ -86,8 +86,8 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   const auto below = [&](int along) { return line.above_m(along, plane) < 0.0f && !on_plane(along, label); };
   const auto may_fall = [&](int along) {
     const int s = line.slot(along);
-    return stages_.is_veil(s) || (stages_.mixture.covered(s) && below(along) &&
-                                  line.away(line.dem.seen_from(s, stages_.view), along) == toward);
+    return stages_.may_be_veil(s) || (stages_.mixture.covered(s) && below(along) &&
+                                      line.away(line.dem.seen_from(s, stages_.view), along) == toward);
   };
   if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
   int last = first_of_veil;
