@@ -29,6 +29,11 @@ struct LineMotion {
   bool still = true;  ///< both are the identity
   PoseJumps jumps{};  ///< of the poses around the line
 
+  /// A place in the base frame, in the map frame when a share of the line has been measured.
+  Eigen::Vector3f in_map(const Eigen::Vector3f& p_base, float share) const {
+    const Eigen::Vector3f first = T_map_base_first * p_base, last = T_map_base_last * p_base;
+    return first + share * (last - first);
+  }
   /// Variance of a point's height by jumps, which may have happened at any time in between. At a share s of the way,
   /// the interpolated pose is off by s of the jump or by 1 - s: the mean square is s (1 - s), a sixth over all s.
   float blur_m2(float x_m, float y_m) const {
@@ -169,11 +174,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;
     const Eigen::Vector3f p_axis = along * range + tilted(s, T_tilt_laser_.translation);
     const Eigen::Vector3f p_base = T_base_tilt_ * p_axis;
-    Eigen::Vector3f p_map = p_base;
-    if (!motion.still) {
-      const Eigen::Vector3f first = motion.T_map_base_first * p_base, last = motion.T_map_base_last * p_base;
-      p_map = first + (static_cast<float>(i) * step) * (last - first);
-    }
+    const Eigen::Vector3f p_map = motion.still ? p_base : motion.in_map(p_base, static_cast<float>(i) * step);
     const bool within = i > 0 && i + 1 < beams;
     const Neighbours beside = within ? neighbours(ranges_m[i - 1], range, ranges_m[i + 1], three_sd_m2) : Neighbours{};
     const float shift_x_m = beside.farther_m * dot(x_axis, along), shift_y_m = beside.farther_m * dot(y_axis, along);
