@@ -10,7 +10,7 @@ namespace curbline {
 /// (LaserSettings). NaN, infinite and out-of-range readings mean no return. Owned by the caller.
 struct ScanLine {
   std::int64_t time_ns;             ///< of beam 0, nanoseconds of any epoch, the same for tilt readings and poses
-  std::span<const float> ranges_m;  ///< metres, at most Limits::beams
+  std::span<const float> ranges_m;  ///< metres, at most LaserSettings::beams
 };
 
 }  // namespace curbline

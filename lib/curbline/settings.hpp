@@ -33,10 +33,11 @@ struct WindowSettings {
 struct LaserSettings {
   int beams = 1081;                         ///< 1 to Limits::beams
   float first_bearing_rad = -2.3561945f;    ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
-  float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0
+  float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0.
+                                            ///< first_bearing_rad + beams * this: [-4 pi, 4 pi]
   float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
   float min_range_m = 0.1f;                 ///< readings below, and 0, mean no return; [0, 1e6]
-  float max_range_m = 60.0f;                ///< readings at or above mean no return; at most 1e6
+  float max_range_m = 60.0f;                ///< readings at or above mean no return; (min_range_m, 1e6]
   float range_sd_m = 0.01f;                 ///< standard deviation of a range, [0, 10]
   float bearing_sd_rad = 0.0005f;           ///< of a bearing, [0, 1]
 

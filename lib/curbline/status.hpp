@@ -9,9 +9,9 @@ namespace curbline {
 enum class Status : std::uint8_t {
   ok,
   not_initialised,    ///< init() has not succeeded
-  bad_window,         ///< rows or cols not a multiple of 4 within the limits, or a cell size out of range
+  bad_window,         ///< a size, corner or height out of range, or rows or cols no multiple of 4
   bad_laser,          ///< beams, bearings, intervals, ranges or noise out of range
-  bad_tilt,           ///< mount, latency or noise not finite, or a bound not positive
+  bad_tilt,           ///< mount, angle, latency, noise or bound out of range
   bad_pose,           ///< noise or bound out of range
   bad_inference,      ///< a prior, coupling or bound out of range
   line_out_of_order,  ///< the line is not later than the one before it (rising_times.hpp): dropped
