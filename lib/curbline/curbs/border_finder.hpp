@@ -26,8 +26,7 @@ namespace curbline {
 template <Limits limits>
 class BorderFinder {
  public:
-  BorderFinder(const CurbStages<limits>& stages, int link_reach)
-      : stages_(stages), ends_(stages, link_reach), link_reach_(link_reach) {}
+  explicit BorderFinder(const CurbStages<limits>& stages) : stages_(stages), ends_(stages) {}
 
   /// Fills `borders`, which must be empty.
   void find(Borders<limits>& borders, Counters& counters) const;
@@ -45,7 +44,6 @@ class BorderFinder {
 
   const CurbStages<limits>& stages_;
   const GroundEnds<limits> ends_;
-  const int link_reach_;
 };
 
 /// A border wherever the plane changes along a row or column, where a face beyond it ends, and at brinks.
@@ -80,7 +78,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
 template <Limits limits>
 template <typename Add>
 void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
-  if (gap.length() > link_reach_ && !gap.hidden()) return;
+  if (gap.length() > stages_.settings.link_reach && !gap.hidden()) return;
   add(border_of(gap));
   if (const auto end = ends_.of_face(gap.line(), gap.first(), -1)) add(*end);
   if (const auto end = ends_.of_face(gap.line(), gap.second(), 1)) add(*end);

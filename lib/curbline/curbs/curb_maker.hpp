@@ -17,7 +17,6 @@
 #include "curbline/limits.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
-#include "curbline/settings.hpp"
 
 namespace curbline {
 
@@ -28,7 +27,7 @@ class CurbMaker {
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
 
-  CurbMaker(const CurbSettings& settings, const CurbStages<limits>& stages) : settings_(settings), stages_(stages) {
+  explicit CurbMaker(const CurbStages<limits>& stages) : stages_(stages) {
     raised_m2_.fill(std::numeric_limits<float>::infinity());
   }
 
@@ -46,7 +45,7 @@ class CurbMaker {
   bool behind_obstacle(const Curb& curb) const {
     const float x_m = 0.5f * (curb.x0_m + curb.x1_m) - stages_.dem.origin_x_m();
     const float y_m = 0.5f * (curb.y0_m + curb.y1_m) - stages_.dem.origin_y_m();
-    return curb.height_m < -settings_.max_step_m && raised_m2_[curb.near_label] < away_m2(x_m, y_m);
+    return curb.height_m < -stages_.settings.max_step_m && raised_m2_[curb.near_label] < away_m2(x_m, y_m);
   }
 
  private:
@@ -57,7 +56,6 @@ class CurbMaker {
   void set_ends(const Piece& piece, Curb& curb) const;
   float away_m2(float x_m, float y_m) const { return square(x_m - stages_.view.x_m) + square(y_m - stages_.view.y_m); }
 
-  const CurbSettings& settings_;
   const CurbStages<limits>& stages_;
   std::array<float, limits.planes> raised_m2_;  ///< to the nearest step up onto each plane that is higher than any curb
 };
@@ -65,18 +63,18 @@ class CurbMaker {
 template <Limits limits>
 std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   Piece piece(stages_, part);
-  if (at.first) piece.go_on(stages_, settings_.link_reach, Piece::End::first);
-  if (at.last) piece.go_on(stages_, settings_.link_reach, Piece::End::second);
+  if (at.first) piece.go_on(stages_, Piece::End::first);
+  if (at.last) piece.go_on(stages_, Piece::End::second);
   StepHeight<limits> step(stages_, piece);
   Curb curb = without_height(piece);
   curb.kind = piece.planes.kind(piece.line, step.drawn());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
-  step.refine(part, is_step(curb), settings_.link_reach);
+  step.refine(part, is_step(curb));
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.
-  if (curb.height_m > settings_.max_step_m) {
+  if (curb.height_m > stages_.settings.max_step_m) {
     float& nearest_m2 = raised_m2_[curb.far_label];
     nearest_m2 = std::min(nearest_m2, away_m2(piece.x_m, piece.y_m));
     return std::nullopt;

@@ -65,7 +65,7 @@ struct CurbPiece {
   /// cell, as long as one side is of its plane, the other of no other plane, and the height stays even; at most to the
   /// middle of the widest gap that a chain bridges, and by at most a quarter of the length, where the variance of its
   /// position has doubled.
-  void go_on(const Stages& stages, int link_reach, End end);
+  void go_on(const Stages& stages, End end);
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
   /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
@@ -171,7 +171,7 @@ auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label o
 }
 
 template <Limits limits>
-void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
+void CurbPiece<limits>::go_on(const Stages& stages, End end) {
   const bool from_second = end == End::first;
   const float from_x = from_second ? line.x1_m : line.x0_m, from_y = from_second ? line.y1_m : line.y0_m;
   float& end_x = from_second ? line.x0_m : line.x1_m;
@@ -186,7 +186,7 @@ void CurbPiece<limits>::go_on(const Stages& stages, int link_reach, End end) {
   const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
   const float high_x = line.normal_x * to_high_m, high_y = line.normal_y * to_high_m;
   const float most = 0.25f * length_m / pitch_m;
-  for (int k = 1; 2 * k <= link_reach && static_cast<float>(k) <= most; ++k) {
+  for (int k = 1; 2 * k <= stages.settings.link_reach && static_cast<float>(k) <= most; ++k) {
     const float middle_x = end_x + 0.5f * step_x, middle_y = end_y + 0.5f * step_y;
     const Side high = side(stages, middle_x + high_x, middle_y + high_y, first.high);
     const Side low = side(stages, middle_x - high_x, middle_y - high_y, first.low);

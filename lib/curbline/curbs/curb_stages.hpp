@@ -1,4 +1,5 @@
-// The stages that curbs are found in, and questions about a cell that need several of them.
+// What curbs are found in, the stages before and how the laser sees them, and by which settings; questions about a cell
+// that need several of them.
 #pragma once
 
 #include "curbline/grid.hpp"
@@ -10,6 +11,7 @@
 #include "curbline/plane.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/point.hpp"
+#include "curbline/settings.hpp"
 
 namespace curbline {
 
@@ -19,6 +21,7 @@ struct CurbStages {
   const PlaneMixture<limits>& mixture;
   const LabelField<limits>& field;
   const Viewpoint& view;
+  const CurbSettings& settings;
 
   /// Does a cell belong to a plane that may be a side of a curb? (A label may outlive its plane by a line.)
   bool bears_ground(int slot) const {

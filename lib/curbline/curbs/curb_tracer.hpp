@@ -86,9 +86,9 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
                                const LabelField<limits>& field, const Viewpoint& view, Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();
-  const CurbStages<limits> stages{dem, mixture, field, view};
-  BorderFinder<limits>(stages, settings_.link_reach).find(work.borders, counters);
-  CurbMaker<limits> maker(settings_, stages);
+  const CurbStages<limits> stages{dem, mixture, field, view, settings_};
+  BorderFinder<limits>(stages).find(work.borders, counters);
+  CurbMaker<limits> maker(stages);
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }

@@ -25,7 +25,7 @@ class GroundEnds {
   using Border = typename Borders<limits>::Border;
   using Line = CellLine<limits>;
 
-  GroundEnds(const CurbStages<limits>& stages, int link_reach) : stages_(stages), link_reach_(link_reach) {}
+  explicit GroundEnds(const CurbStages<limits>& stages) : stages_(stages) {}
 
   /// The end of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it
   /// is no face, or does not end in the window.
@@ -40,7 +40,6 @@ class GroundEnds {
   Border border_behind(const Line& line, int last, int toward, float along_m) const;
 
   const CurbStages<limits>& stages_;
-  const int link_reach_;
 };
 
 /// The points of the last cell are taken to reach as far beyond their centroid as before it; the uncertainty is that of
@@ -56,7 +55,7 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
   // Cells that the widest face touches, wherever it begins in one.
   const int widest = static_cast<int>(widest_face_m / line.pitch_m() + 1.5f);
   int last = first.along;
-  while (const int g = line.next_valid(last, toward, link_reach_)) {
+  while (const int g = line.next_valid(last, toward, stages_.settings.link_reach)) {
     last += toward * g;
     if (stages_.field.label(line.slot(last)) != first.label || toward * (last - first.along) >= widest)
       return std::nullopt;
@@ -75,7 +74,7 @@ auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, in
 template <Limits limits>
 auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std::optional<Border> {
   const int toward = line.away(stages_.view, first_of_veil);
-  const int before = line.next_valid(first_of_veil, -toward, link_reach_);
+  const int before = line.next_valid(first_of_veil, -toward, stages_.settings.link_reach);
   const int edge = first_of_veil - toward * before;
   if (before == 0 || !stages_.bears_ground(line.slot(edge))) return std::nullopt;
   const auto on_plane = [&](int along, Label label) {
@@ -91,7 +90,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   };
   if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
   int last = first_of_veil;
-  while (const int g = line.next_valid(last, toward, link_reach_)) {
+  while (const int g = line.next_valid(last, toward, stages_.settings.link_reach)) {
     const int next = last + toward * g;
     const int s = line.slot(next);
     if (stages_.bears_ground(s) &&

@@ -39,7 +39,7 @@ class StepHeight {
   DrawnBorder drawn() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
   /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
-  void refine(const Part& part, bool is_step, int link_reach);
+  void refine(const Part& part, bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
@@ -50,9 +50,9 @@ class StepHeight {
   float shadow_m() const { return shadow_m_; }
 
  private:
-  void leave_shadow(const Part& part, int link_reach);
-  Viewpoint seen_from(const Part& part, int link_reach, Label lower) const;
-  int cell_beside(const Border& border, int link_reach, Label own) const;
+  void leave_shadow(const Part& part);
+  Viewpoint seen_from(const Part& part, Label lower) const;
+  int cell_beside(const Border& border, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const Part& part, Label label) const;
   void follow_ground(const Part& part);
@@ -79,10 +79,10 @@ DrawnBorder StepHeight<limits>::drawn() const {
 }
 
 template <Limits limits>
-void StepHeight<limits>::refine(const Part& part, bool is_step, int link_reach) {
+void StepHeight<limits>::refine(const Part& part, bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
-  if (is_step && !one_sided) leave_shadow(part, link_reach);
+  if (is_step && !one_sided) leave_shadow(part);
   const auto [low, high] = piece_.planes;
   // A plane's error is common to the whole piece: it does not average out. Behind a brink up to as much again as is
   // visible may be hidden, uniformly.
@@ -104,9 +104,9 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
 /// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
 /// distance of its planes at the edge, to which the line moves.
 template <Limits limits>
-void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
+void StepHeight<limits>::leave_shadow(const Part& part) {
   const bool high_is_upper = height_m_ > 0.0f;
-  const Viewpoint view = seen_from(part, link_reach, high_is_upper ? piece_.first.low : piece_.first.high);
+  const Viewpoint view = seen_from(part, high_is_upper ? piece_.first.low : piece_.first.high);
   const bool upper_is_right = high_is_upper != piece_.low_is_right;
   if (piece_.has_right(view) != upper_is_right) return;
   const auto [low, high] = piece_.planes;
@@ -121,12 +121,12 @@ void StepHeight<limits>::leave_shadow(const Part& part, int link_reach) {
 
 /// From where the lower side was last seen: mean over its cells next to the borders.
 template <Limits limits>
-Viewpoint StepHeight<limits>::seen_from(const Part& part, int link_reach, Label lower) const {
+Viewpoint StepHeight<limits>::seen_from(const Part& part, Label lower) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
-    const int slot = cell_beside(border, link_reach, lower);
+    const int slot = cell_beside(border, lower);
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
     sum_x += view.x_m;
@@ -142,10 +142,10 @@ Viewpoint StepHeight<limits>::seen_from(const Part& part, int link_reach, Label 
 
 /// The cell of the plane `own` nearest to a border, on its side; -1 if there is none.
 template <Limits limits>
-int StepHeight<limits>::cell_beside(const Border& border, int link_reach, Label own) const {
+int StepHeight<limits>::cell_beside(const Border& border, Label own) const {
   const Dem<limits>& dem = stages_.dem;
   const std::size_t d = border.toward(own);
-  const int reach = link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
+  const int reach = stages_.settings.link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
   int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
   for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
     const int slot = dem.slot(i, j);
