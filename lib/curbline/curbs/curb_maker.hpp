@@ -67,7 +67,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   if (at.last) piece.go_on(stages_, Piece::End::second);
   StepHeight<limits> step(stages_, piece);
   Curb curb = without_height(piece);
-  curb.kind = piece.planes.kind(piece.line, step.drawn());
+  curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
   step.refine(part, is_step(curb));

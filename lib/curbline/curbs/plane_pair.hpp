@@ -9,9 +9,9 @@
 
 namespace curbline {
 
-/// A border as found between two planes.
-struct DrawnBorder {
-  float height_m, height_sd_m;  ///< PlanePair::high above low there
+/// The step at a border of two planes, by what was measured of it.
+struct MeasuredStep {
+  float height_m, height_sd_m;  ///< PlanePair::high above low at the border
   float half_gap_m;             ///< between the cells of the one and the other
   float place_variance_m2;      ///< of where the border lies, across it
   float texture_m2;             ///< of the ground, PlanePrior::texture_m2
@@ -39,7 +39,7 @@ struct PlanePair {
   /// of the planes, of the cells that define the border, at least the ground's texture, and of the border's position
   /// times the difference of slopes. A face, too steep for ground, begins at its foot, anywhere in the gap: as much
   /// more as the slopes make up across half of it. CurbKind::step_up stands for either step.
-  CurbKind kind(const LineFit::Segment& line, const DrawnBorder& border) const;
+  CurbKind kind(const LineFit::Segment& border, const MeasuredStep& step) const;
 };
 
 }  // namespace curbline

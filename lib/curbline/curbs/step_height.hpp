@@ -35,8 +35,8 @@ class StepHeight {
     height_m_ = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
   }
 
-  /// The border as PlanePair::kind() takes it, to decide whether it is a step.
-  DrawnBorder drawn() const;
+  /// For PlanePair::kind(), to decide whether it is a step.
+  MeasuredStep measured() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
   /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
   void refine(const Part& part, bool is_step);
@@ -70,7 +70,7 @@ class StepHeight {
 };
 
 template <Limits limits>
-DrawnBorder StepHeight<limits>::drawn() const {
+MeasuredStep StepHeight<limits>::measured() const {
   const Deviations sides = deviations();
   const float too_far_m2 = sides.low.too_far_m2(piece_.borders) + sides.high.too_far_m2(piece_.borders);
   const auto [low, high] = piece_.planes;
