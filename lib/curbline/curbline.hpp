@@ -37,7 +37,7 @@
 
 // Points to cells.
 #include "curbline/map/cell.hpp"                // normal-inverse-gamma posterior of a cell
-#include "curbline/map/viewpoints.hpp"          // from where a driving laser has seen the cells
+#include "curbline/map/laser_way.hpp"           // from where a driving laser has seen the cells
 #include "curbline/map/window.hpp"              // where cells lie, in the map and in memory
 #include "curbline/map/dem.hpp"                 // what is in them
 

@@ -23,7 +23,7 @@ def stage_of_frame(function, path):
     """Stage of one frame of an inline stack, None for code that any stage uses."""
     path = Path(path)
     if path.parent.name == "map":  # all stages read cells; adding to them is a stage of its own
-        return "cells" if path.name == "viewpoints.hpp" or re.search(r"\b(add|follow|clear_touched)\b", function) else None
+        return "cells" if path.name == "laser_way.hpp" or re.search(r"\b(add|follow|clear_touched)\b", function) else None
     if path.name == "pipeline.hpp":
         return "pipeline"
     if path.name == "tilt_track.hpp" and re.search(r"\bpush\b", function):

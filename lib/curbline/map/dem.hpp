@@ -11,7 +11,7 @@
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
-#include "curbline/map/viewpoints.hpp"
+#include "curbline/map/laser_way.hpp"
 #include "curbline/map/window.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
@@ -171,21 +171,21 @@ class Dem : public Window<limits> {
   bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
   /// Where the laser is from now on, in the map frame.
   void look_from(float x_m, float y_m) {
-    viewpoints_.look_from({x_m, y_m});
-    flags_ = static_cast<std::uint8_t>(viewpoints_.newest() * a_viewpoint + seen_bits);
+    laser_way_.look_from({x_m, y_m});
+    flags_ = static_cast<std::uint8_t>(laser_way_.newest() * a_place + seen_bits);
   }
   /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved.
   // Not inlined: it is called for edges only.
   [[gnu::noinline]] Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
-    const Viewpoints::Position& from = viewpoints_.at(seen_[slot] / a_viewpoint);
+    const LaserWay::Position& from = laser_way_.at(seen_[slot] / a_place);
     Viewpoint view = now;
     view.x_m = from.x_m - origin_x_m();
     view.y_m = from.y_m - origin_y_m();
     return view;
   }
   /// Has the laser moved? If not, all cells were seen from one place.
-  bool seen_from_several() const { return viewpoints_.moved(); }
+  bool seen_from_several() const { return laser_way_.moved(); }
 
   /// Mean growth of its points' heights with the tilt's latency.
   float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
@@ -202,9 +202,9 @@ class Dem : public Window<limits> {
   static constexpr int growth_scale = 1024;
   /// Of a point: beyond these, float would lose it beside the others, or the others beside it.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
-  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_viewpoint = 8;
+  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_place = 8;
   static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
-  static_assert(Viewpoints::numbers * a_viewpoint == 256, "one byte holds the bits and a number");
+  static_assert(LaserWay::numbers * a_place == 256, "one byte holds the bits and a number");
   /// By two standard deviations beyond slope and noise?
   static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
     const float freedom = cell.points - 1.0f;  // of the noise's scatter, chi^2
@@ -225,8 +225,8 @@ class Dem : public Window<limits> {
   PlanePrior prior_{};
   float common_m2_ = 0.0f;
   PerCell<Cell, limits> cells_{};
-  Viewpoints viewpoints_{};
-  /// Three bits, and above them the number of the viewpoint from which the cell was last seen.
+  LaserWay laser_way_{};
+  /// Three bits, and above them the number of the place on the laser's way from which the cell was last seen.
   PerCell<std::uint8_t, limits> seen_{};
   std::uint8_t flags_ = seen_bits;              ///< of a cell seen now
   PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
@@ -245,7 +245,7 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   cells_.fill(Cell{});
   seen_.fill(0);
   flags_ = seen_bits;
-  viewpoints_.init(std::max(this->length_m(0), this->length_m(1)));
+  laser_way_.init(std::max(this->length_m(0), this->length_m(1)));
   growth_.fill(0);
   distances_.fill(0);
   any_touched_ = false;

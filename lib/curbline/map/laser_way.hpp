@@ -9,7 +9,7 @@
 
 namespace curbline {
 
-class Viewpoints {
+class LaserWay {
  public:
   static constexpr int numbers = 32;
 
@@ -18,7 +18,7 @@ class Viewpoints {
   };
 
   void init(float window_side_m) {
-    *this = Viewpoints{};
+    *this = LaserWay{};
     apart_m_ = window_side_m * (1.0f / 24);
   }
 
