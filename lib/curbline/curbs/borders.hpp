@@ -13,7 +13,6 @@
 #include "curbline/grid.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/per_cell.hpp"
-#include "curbline/planes/plane_mixture.hpp"
 
 namespace curbline {
 

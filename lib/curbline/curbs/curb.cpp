@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "curbline/math.hpp"
-
 namespace curbline {
 namespace {
 
