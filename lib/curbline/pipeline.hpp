@@ -190,8 +190,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
 
 template <Limits limits>
 bool Pipeline<limits>::add_pose(const Pose& pose) {
-  if (!ready_) return false;
-  if (line_intake_.add_pose(pose)) return true;
+  if (ready_ && line_intake_.add_pose(pose)) return true;
   ++counters_.poses_dropped;
   return false;
 }

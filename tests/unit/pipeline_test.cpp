@@ -266,6 +266,22 @@ TEST_CASE("pipeline: before init, and after a refused one, it takes nothing and 
   takes_nothing();
 }
 
+TEST_CASE("pipeline: before init, and after a refused one, lines and poses are counted as dropped") {
+  const auto pipeline = std::make_unique<FullPipeline>();
+  const std::vector<float> ranges(10, 2.0f);
+  const auto drops = [&](std::uint32_t lines, std::uint32_t poses) {
+    CHECK(pipeline->take({NoddingLaser::epoch_ns, ranges}) == Status::not_initialised);
+    CHECK_FALSE(pipeline->add_pose({NoddingLaser::epoch_ns}));
+    CHECK(pipeline->counters().lines_dropped == lines);
+    CHECK(pipeline->counters().poses_dropped == poses);
+  };
+  drops(1, 1);
+  Settings bad = NoddingLaser::settings();
+  bad.laser.beams = 0;
+  REQUIRE(pipeline->init(bad) == Status::bad_laser);
+  drops(2, 2);
+}
+
 TEST_CASE("pipeline: after a refused init nothing is left of what it told before") {
   Settings settings = NoddingLaser::settings();
   const auto pipeline = started(settings);
