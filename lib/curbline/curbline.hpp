@@ -51,11 +51,11 @@
 
 // Regions to planes that keep their labels.
 #include "curbline/planes/region_ranking.hpp"   // which regions become planes, under which labels
-#include "curbline/planes/clean_fit.hpp"        // fit to cells that hold one surface only
 #include "curbline/planes/obstacles.hpp"        // which planes belong to obstacles
 #include "curbline/planes/run.hpp"              // cells of one plane in line, as the laser sees them
 #include "curbline/planes/strip_tally.hpp"      // what they say about a plane
 #include "curbline/planes/ground.hpp"           // which planes are ground
+#include "curbline/planes/clean_fit.hpp"        // fit to cells that hold one surface only
 #include "curbline/planes/plane_mixture.hpp"    // all of these together
 #include "curbline/planes/common_noise.hpp"     // noise that neighbouring cells share
 

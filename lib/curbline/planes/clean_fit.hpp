@@ -1,13 +1,25 @@
-// Fits a plane of ground again, to the clean cells of its region, which hold nothing else: cells that mix both sides of
-// a step would tilt the plane of a small region toward the other. PlaneMixture decides which cells are clean. Grass and
-// gravel spread in every cell: roughness is estimated from all cells of a region together.
+// Fits planes of ground again, to the mean heights of the clean cells of their regions, which hold nothing else: cells
+// that mix both sides of a step would tilt the plane of a small region toward the other. Grass and gravel spread in
+// every cell: roughness is estimated from all cells of a region together. Cost: two passes over the window.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "curbline/grid.hpp"
 #include "curbline/map/cell.hpp"
+#include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
+#include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/planes/ground.hpp"
+#include "curbline/point.hpp"
 
 namespace curbline {
 
+/// The fit of one plane.
 struct CleanFit {
   /// Of so many cells one in fourteen lies along a side: the fit can do without those that a step crosses.
   static constexpr float wide_cells = 200.0f;
@@ -67,5 +79,99 @@ struct CleanFit {
     plane = anew;
   }
 };
+
+/// The fits of all planes, and which cells are clean for them. Lives for one PlaneMixture::update().
+template <Limits limits>
+class CleanFits {
+ public:
+  using Wanted = std::array<bool, limits.planes>;  ///< by label
+
+  /// `region_label`: for each valid cell, the plane of its region. `crossed`: the cells that steps cross.
+  CleanFits(const Dem<limits>& dem, const Ground<limits>& ground, const CellLabels<limits>& region_label,
+            const Viewpoint& view, const CellSet<limits>& crossed)
+      : dem_(dem), ground_(ground), region_label_(region_label), view_(view), crossed_(crossed) {}
+
+  /// Fits those of the wanted planes that are ground, with at least min_cells; sets the roughness of all.
+  /// label_of(slot) is a cell's own label, or no_label.
+  template <typename LabelOf>
+  void fit(std::span<Plane, limits.planes> planes, const Wanted& wanted, LabelOf&& label_of, float min_cells) const;
+
+ private:
+  bool lies_nearer(int i, int j, const Cell& cell, const Plane& one, const Plane& other) const;
+  float step_beside_m(int i, int j, int s, bool crossed) const;
+
+  const Dem<limits>& dem_;
+  const Ground<limits>& ground_;
+  const CellLabels<limits>& region_label_;
+  const Viewpoint& view_;
+  const CellSet<limits>& crossed_;
+};
+
+/// Clean cells hold nothing else than their region's plane, and have no other label on whose plane they lie better. If
+/// a step is low, the heights within a cell do not show it: a wide plane does without the cells that a step crosses; a
+/// small one needs them. Those hold something of the other side, and a cell behind a step down lies too high, all along
+/// the step alike: together they are one observation, off by anything up to half of the step.
+template <Limits limits>
+template <typename LabelOf>
+void CleanFits<limits>::fit(std::span<Plane, limits.planes> planes, const Wanted& wanted, LabelOf&& label_of,
+                            float min_cells) const {
+  std::array<CleanFit, limits.planes> fits{};
+  dem_.for_each_valid([&](int, int, int s) {
+    if (region_label_[s] != no_label) fits[region_label_[s]].look_at(dem_.cell(s));
+  });
+  for (std::size_t l = 0; l < fits.size(); ++l) {
+    fits[l].wanted = wanted[l] && ground_.is(static_cast<int>(l));
+    fits[l].wide = planes[l].cells >= CleanFit::wide_cells;
+    fits[l].steep = planes[l].steeper_than_ramp();
+    fits[l].slope_m2 = dem_.slope_m2(planes[l]);
+    const bool all_rim = planes[l].narrower_than(CleanFit::rim_cells * std::max(dem_.cell_x_m(), dem_.cell_y_m()));
+    planes[l].rough_m2 = all_rim ? 0.0f : fits[l].rough_m2(dem_.prior().noise_m2);
+  }
+  dem_.for_each_valid([&](int i, int j, int s) {
+    const Label label = region_label_[s];
+    if (label == no_label || !fits[label].wanted) return;
+    CleanFit& fit = fits[label];
+    const Cell& cell = dem_.cell(s);
+    if (dem_.mixed(cell, fit.slope_m2, planes[label].rough_m2)) return;
+    const bool is_crossed = crossed_.contains(s);
+    if (fit.wide && is_crossed) return;
+    const Label borne = label_of(s);
+    if (borne != label && borne != no_label && lies_nearer(i, j, cell, planes[borne], planes[label])) return;
+    fit.add(dem_.moments(i, j, cell), cell.points, fit.wide ? 0.0f : step_beside_m(i, j, s, is_crossed));
+  });
+  for (std::size_t l = 0; l < fits.size(); ++l) {
+    if (fits[l].wanted) fits[l].fit(planes[l], dem_.prior(), dem_.common_m2(), min_cells);
+  }
+}
+
+/// Is a cell nearer to one plane than to the other?
+template <Limits limits>
+bool CleanFits<limits>::lies_nearer(int i, int j, const Cell& cell, const Plane& one, const Plane& other) const {
+  const float above_one_m = dem_.above_m(i, j, cell, one), above_other_m = dem_.above_m(i, j, cell, other);
+  return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
+}
+
+/// Height of the step beside a cell: how far it lies below the next ones toward the laser, of other regions, and, if a
+/// step crosses it, above or below any next one of other regions of ground; 0 if there are none.
+template <Limits limits>
+float CleanFits<limits>::step_beside_m(int i, int j, int s, bool crossed) const {
+  const Cell& cell = dem_.cell(s);
+  const int along_x = dem_.centroid_x_m(i, cell) < view_.x_m ? 1 : -1;
+  const int along_y = dem_.centroid_y_m(j, cell) < view_.y_m ? 1 : -1;
+  const std::array<int, 4> beside{direction(0, along_x), direction(1, along_y),  // toward the laser
+                                  direction(0, -along_x), direction(1, -along_y)};
+  float most_m = 0.0f;
+  for (std::size_t k = 0; k < (crossed ? 4u : 2u); ++k) {
+    if (dem_.next_valid(s, beside[k], 1) == 0) continue;
+    const auto d = static_cast<std::size_t>(beside[k]);
+    const int next = dem_.slot(i + step_i[d], j + step_j[d]);
+    const Label other = region_label_[next];
+    if (other == region_label_[s]) continue;
+    const float step_m = dem_.cell(next).height_m - cell.height_m;
+    if (k < 2) most_m = std::max(most_m, step_m);
+    if (crossed && other != no_label && ground_.is(other)) most_m = std::max(most_m, magnitude(step_m));
+  }
+  return most_m;
+}
 
 }  // namespace curbline

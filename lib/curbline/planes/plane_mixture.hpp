@@ -1,10 +1,9 @@
 // The mixture of planes. Each label is a slot for one plane. At each update the largest regions become planes, each
 // with the label that its cells overlap most, so that a plane keeps its label while it grows, is cut and merged; a
-// label that no region takes dies. Planes of ground are then fitted to the cells that hold nothing else. Cost: four
-// passes over the window, K^3 for the matching, and ground.hpp.
+// label that no region takes dies. Planes of ground are then fitted to the cells that hold nothing else. Cost: two
+// passes over the window, K^3 for the matching, and ground.hpp and clean_fit.hpp.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -12,7 +11,6 @@
 #include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
 #include "curbline/map/dem.hpp"
-#include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/planes/clean_fit.hpp"
@@ -93,14 +91,9 @@ class PlaneMixture {
   PlaneUpdate mode() const { return settings_.update; }
 
  private:
-  using Fitted = std::array<bool, limits.planes>;  ///< by label
+  using Fitted = typename CleanFits<limits>::Wanted;
   void take_labels(const RegionRanking<limits>& ranking);
   Fitted fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking);
-  template <typename LabelOf>
-  void refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted, const CellSet<limits>& crossed,
-              LabelOf&& label_of);
-  static bool lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one, const Plane& other);
-  float step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s, bool crossed) const;
 
   PlaneSettings settings_{};
   std::array<Plane, limits.planes> planes_{};
@@ -135,7 +128,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
   });
   const Fitted fitted = fit(dem, ranking);
   ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_.insert(label); });
-  refine(dem, view, fitted, crossed, label_of);
+  CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
 }
 
 /// Planes whose label no region has taken die.
@@ -160,77 +153,6 @@ auto PlaneMixture<limits>::fit(const Dem<limits>& dem, const RegionRanking<limit
     fitted[label] = true;
   }
   return fitted;
-}
-
-/// Fits planes of ground to the mean heights of the clean cells of their regions: those that hold nothing else, and
-/// have no other label on whose plane they lie better. Cells that mix both sides of a step would tilt the plane of a
-/// small region toward the other; if the step is low, the heights within a cell do not show it. A wide plane does
-/// without the cells that a step crosses; a small one needs them. Those hold something of the other side, and a cell
-/// behind a step down lies too high, all along the step alike: together they are one observation, off by anything up to
-/// half of the step.
-template <Limits limits>
-template <typename LabelOf>
-void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const Fitted& fitted,
-                                  const CellSet<limits>& crossed, LabelOf&& label_of) {
-  std::array<CleanFit, limits.planes> fits{};
-  dem.for_each_valid([&](int, int, int s) {
-    if (region_label(s) != no_label) fits[region_label(s)].look_at(dem.cell(s));
-  });
-  for (std::size_t l = 0; l < fits.size(); ++l) {
-    fits[l].wanted = fitted[l] && ground_.is(static_cast<int>(l));
-    fits[l].wide = planes_[l].cells >= CleanFit::wide_cells;
-    fits[l].steep = planes_[l].steeper_than_ramp();
-    fits[l].slope_m2 = dem.slope_m2(planes_[l]);
-    const bool all_rim = planes_[l].narrower_than(CleanFit::rim_cells * std::max(dem.cell_x_m(), dem.cell_y_m()));
-    planes_[l].rough_m2 = all_rim ? 0.0f : fits[l].rough_m2(dem.prior().noise_m2);
-  }
-  dem.for_each_valid([&](int i, int j, int s) {
-    const Label label = region_label(s);
-    if (label == no_label || !fits[label].wanted) return;
-    CleanFit& fit = fits[label];
-    const Cell& cell = dem.cell(s);
-    if (dem.mixed(cell, fit.slope_m2, planes_[label].rough_m2)) return;
-    const bool is_crossed = crossed.contains(s);
-    if (fit.wide && is_crossed) return;
-    const Label borne = label_of(s);
-    if (borne != label && borne != no_label && lies_nearer(dem, i, j, cell, planes_[borne], planes_[label])) return;
-    fit.add(dem.moments(i, j, cell), cell.points, fit.wide ? 0.0f : step_beside_m(dem, view, i, j, s, is_crossed));
-  });
-  for (std::size_t l = 0; l < fits.size(); ++l) {
-    if (fits[l].wanted) fits[l].fit(planes_[l], dem.prior(), dem.common_m2(), settings_.min_cells);
-  }
-}
-
-/// Is a cell nearer to one plane than to the other?
-template <Limits limits>
-bool PlaneMixture<limits>::lies_nearer(const Dem<limits>& dem, int i, int j, const Cell& cell, const Plane& one,
-                                       const Plane& other) {
-  const float above_one_m = dem.above_m(i, j, cell, one), above_other_m = dem.above_m(i, j, cell, other);
-  return one.alive() && above_one_m * above_one_m < above_other_m * above_other_m;
-}
-
-/// Height of the step beside a cell: how far it lies below the next ones toward the laser, of other regions, and, if a
-/// step crosses it, above or below any next one of other regions of ground; 0 if there are none.
-template <Limits limits>
-float PlaneMixture<limits>::step_beside_m(const Dem<limits>& dem, const Viewpoint& view, int i, int j, int s,
-                                          bool crossed) const {
-  const Cell& cell = dem.cell(s);
-  const int along_x = dem.centroid_x_m(i, cell) < view.x_m ? 1 : -1;
-  const int along_y = dem.centroid_y_m(j, cell) < view.y_m ? 1 : -1;
-  const std::array<int, 4> beside{direction(0, along_x), direction(1, along_y),  // toward the laser
-                                  direction(0, -along_x), direction(1, -along_y)};
-  float most_m = 0.0f;
-  for (std::size_t k = 0; k < (crossed ? 4u : 2u); ++k) {
-    if (dem.next_valid(s, beside[k], 1) == 0) continue;
-    const auto d = static_cast<std::size_t>(beside[k]);
-    const int next = dem.slot(i + step_i[d], j + step_j[d]);
-    const Label other = region_label(next);
-    if (other == region_label(s)) continue;
-    const float step_m = dem.cell(next).height_m - cell.height_m;
-    if (k < 2) most_m = std::max(most_m, step_m);
-    if (crossed && other != no_label && ground_.is(other)) most_m = std::max(most_m, magnitude(step_m));
-  }
-  return most_m;
 }
 
 template <Limits limits>
