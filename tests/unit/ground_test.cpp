@@ -627,6 +627,26 @@ TEST_CASE("ground: a strip that does not touch an obstacle is no fringe of it") 
   CHECK(borne_from({2.4f, 0.0f, 1.0f}, behind(0.1)) == 2);
 }
 
+// Seen from above, from the left:   .  .  .  .  .  .
+//                                   .  #  ~  ~  ~  .    a post, and a ridge one cell wide that begins at it
+//                                   .  .  .  .  .  .
+TEST_CASE("ground: a narrow ridge that the laser sees past a post alone is no ground, one that it sees freely is") {
+  const auto ground_with = [](double post_y_m, bool seen_before_it) {
+    return [=](double x, double y) {
+      const bool in_row = y >= 1.1 && y < 1.2;
+      if (x >= 0.7 && x < 0.9 && y >= post_y_m && y < post_y_m + 0.1)
+        return static_cast<int>(y * 100) % 10 < 5 ? 0.5 : 2.0;
+      if (x >= 0.9 && x < 1.1 && in_row && !seen_before_it) return std::nan("");
+      return x >= 1.1 && x < 1.6 && in_row ? 0.05 : 0.0;
+    };
+  };
+  const Viewpoint in_line{0.0f, 1.15f, 1.0f}, aside{1.35f, 0.0f, 1.0f};
+  CHECK(borne_from(in_line, ground_with(1.1, false)) == 1);
+  CHECK(borne_from(in_line, ground_with(1.1, true)) == 2);
+  CHECK(borne_from(in_line, ground_with(1.5, true)) == 2);
+  CHECK(borne_from(aside, ground_with(1.1, false)) == 2);
+}
+
 TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left to it, too") {
   CHECK(borne(
             [](double x, double y) {

@@ -11,13 +11,16 @@
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
+//   - a wake: a narrow ridge on a plane, with an obstacle between it and the laser: readings that mix the edge of a
+//   post
+//     with the ground beyond.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
-// veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their heights
-// say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a curb: one
-// that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls away more
-// steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a cell, at
-// whatever angle the rays cross it: it blurs that edge, unless it falls by too little of the step, as the tread of a
-// stair does. Cost: three passes over the window.
+// veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their
+// heights say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a
+// curb: one that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls
+// away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a
+// cell, at whatever angle the rays cross it: it blurs that edge, unless it falls by too little of the step, as the
+// tread of a stair does. Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -49,7 +52,7 @@ class Ground {
   bool is(int label) const { return borne(kind(label)); }
   /// May a plane of ground be a veil?
   bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
-  /// Is it an obstacle or a fringe?
+  /// Is it an obstacle, a fringe or a wake?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
@@ -84,6 +87,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   if (obstacles.is(label)) return Kind::cover;
   const Plane* ground = obstacles.ground();
   if (ground == nullptr || !plane.alive()) return Kind::ground;
+  if (tally.wake()) return Kind::cover;
   const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;

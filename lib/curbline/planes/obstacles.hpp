@@ -36,6 +36,9 @@ class Obstacles {
   bool high(std::size_t label) const { return high_[label]; }
   /// Is it small, level and higher than most steps, but part of a way?
   bool way(std::size_t label) const { return way_[label]; }
+  /// Seen back from cell (i, j) of this plane toward the laser, where it last saw the cell: is the first that is seen,
+  /// and not of the plane, an obstacle?
+  bool hides(int i, int j, Label label) const;
   /// Number of cells of a plane's region.
   float cells(std::size_t label) const { return cells_[label]; }
   /// The largest plane that is no obstacle, the reference for the others; null if there is none.
@@ -139,6 +142,23 @@ void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside
       way_[l] = changed = true;
     }
   }
+}
+
+template <Limits limits>
+bool Obstacles<limits>::hides(int i, int j, Label label) const {
+  const Viewpoint from = dem_.seen_from(dem_.slot(i, j), view_);
+  const float x = static_cast<float>(i) + 0.5f, y = static_cast<float>(j) + 0.5f;
+  const float dx = from.x_m / dem_.cell_x_m() - x, dy = from.y_m / dem_.cell_y_m() - y;
+  const float away = std::max(magnitude(dx), magnitude(dy));
+  for (float k = 1.0f; k < away; k += 1.0f) {
+    const float p = x + k / away * dx, q = y + k / away * dy;
+    if (!(p >= 0.0f) || !(q >= 0.0f) || !dem_.contains(static_cast<int>(p), static_cast<int>(q))) return false;
+    const int slot = dem_.slot(static_cast<int>(p), static_cast<int>(q));
+    const Cell& cell = dem_.cell(slot);
+    const Label other = region_label_[slot];
+    if (cell.valid() && other != label) return dem_.steep(cell) || (other != no_label && is_[other]);
+  }
+  return false;
 }
 
 template <Limits limits>

@@ -102,6 +102,11 @@ struct Strip {
     const float from = before.last_height_m, to = next.first_height_m;
     return (from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to);
   }
+  /// Is it between two runs of one plane, and above both?
+  bool stands_on_one() const {
+    return before.any() && before.label == next.label && run.lowest_m > before.last_height_m &&
+           run.lowest_m > next.first_height_m;
+  }
   /// For a strip between two planes (between(widest_gap), rises_between()): if the step leads down as the laser sees
   /// it, and the strip is no wider than its shadow (shadow.hpp) and a cell, as those at its ends hold some of the
   /// planes, how far the strip falls. Inlined: calls would cost the worst line of a Cortex-M7 20,000 instructions

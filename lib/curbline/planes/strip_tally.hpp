@@ -49,6 +49,8 @@ struct StripTally {
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
 
+  std::array<float, 2> wake_cells{};  ///< in strips that stand on one plane, hidden behind an obstacle
+
   /// Adds a strip between two others. Its cells' spread beyond noise is that beyond the spread of the quieter plane
   /// beside it.
   void add(const Strip& strip) {
@@ -74,6 +76,7 @@ struct StripTally {
   }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
+  bool wake() const { return most(wake_cells[0]) || most(wake_cells[1]); }
   bool blurred_edge() const { return (all(blurred_cells[0]) || all(blurred_cells[1])) && follows_step(); }
 
  private:
@@ -132,6 +135,10 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
+      if (strip.between(StripTally::sparse_gap) && strip.stands_on_one() &&
+          obstacles.hides(axis == 0 ? run.first : line, axis == 0 ? line : run.first, run.label)) {
+        tally.wake_cells[axis] += cells;
+      }
       if (strip.alone(StripTally::sparse_gap)) {
         tally.silent_cells[axis] += cells;
       } else if (rises) {
