@@ -19,7 +19,7 @@
 #include "fuzz/claim.hpp"
 #include "pose_feed.hpp"
 #include "robot/robot.hpp"
-#include "simulator/scene.hpp"
+#include "simulator/ground_plan.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -129,7 +129,7 @@ void read_scene(const File& file) {
   const tools::Scene scene = tools::read_scene(file.path());
   claim(!scene.path.waypoints.empty(), "the robot is somewhere");
   tools::legs(scene.path);
-  tools::region_at(scene.regions, scene.path.waypoints.front());
+  tools::GroundPlan(scene.regions).region_at(scene.path.waypoints.front());
 }
 
 struct Format {

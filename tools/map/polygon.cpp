@@ -134,6 +134,18 @@ Bounds bounds(const Polygon& polygon) {
   return box;
 }
 
+Bounds united(const Bounds& a, const Bounds& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+Bounds widened(const Bounds& box, double by_m) {
+  return {box.x0 - by_m, box.y0 - by_m, box.x1 + by_m, box.y1 + by_m};
+}
+
+bool overlap(const Bounds& a, const Bounds& b) {
+  return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
 void Share::clip(double start, double step, double low, double high) {
   if (std::isnan(step) || (step == 0 && (start < low || start > high))) to = -1;
   if (step == 0) return;

@@ -50,6 +50,9 @@ double signed_area_m2(const Polygon& polygon);  ///< positive: counterclockwise
 bool is_simple(const Polygon& polygon);  ///< at least three corners, nonzero area, no edge crosses or touches another
 bool contains(const Polygon& polygon, Point2 point);
 Bounds bounds(const Polygon& polygon);
+Bounds united(const Bounds& a, const Bounds& b);
+Bounds widened(const Bounds& box, double by_m);  ///< on each side
+bool overlap(const Bounds& a, const Bounds& b);  ///< or touch
 
 /// A part of a segment, as fractions of its length; or of a ray, in steps from its origin.
 struct Share {

@@ -11,17 +11,11 @@ constexpr double aside_m = 1e-5;  // how far to either side of an edge its regio
 
 struct Edge {
   Point2 a, b;
+  std::size_t region;
   double length_m() const { return std::hypot(b.x - a.x, b.y - a.y); }
-  Point2 at(double t) const { return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}; }
+  Point2 at(double t) const { return a + t * (b - a); }
+  Bounds box() const { return bounds({a, b}); }
 };
-
-std::vector<Edge> edges_of(const Polygon& outline) {
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    edges.push_back({outline[i], outline[(i + 1) % outline.size()]});
-  }
-  return edges;
-}
 
 /// Records where the other edge crosses `edge`, as a share of its length from 0 to 1, and where the ends of the other
 /// touch it.
@@ -43,31 +37,46 @@ void note_meetings(const Edge& edge, const Edge& other, std::vector<double>& cut
   }
 }
 
+/// The edges of all regions.
+struct Edges {
+  std::vector<Edge> all;
+  BoundsTree tree;
+};
+
+Edges edges_of(const std::vector<GroundRegion>& regions) {
+  std::vector<Edge> all;
+  for (std::size_t own = 0; own < regions.size(); ++own) {
+    const Polygon& outline = regions[own].outline;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      all.push_back({outline[i], outline[(i + 1) % outline.size()], own});
+  }
+  std::vector<Bounds> boxes;
+  for (const Edge& edge : all) boxes.push_back(edge.box());
+  return {all, BoundsTree(boxes)};
+}
+
 /// Where the edge must be cut so that each piece has one region on either side.
-std::vector<double> cuts_of(const Edge& edge, const std::vector<std::vector<Edge>>& all, std::size_t own) {
+std::vector<double> cuts_of(const Edge& edge, const Edges& edges) {
   std::vector<double> cuts{0, 1};
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (k != own) {
-      for (const Edge& other : all[k]) note_meetings(edge, other, cuts);
-    }
+  for (const std::size_t k : edges.tree.overlapping(widened(edge.box(), 2 * touch_m))) {
+    if (edges.all[k].region != edge.region) note_meetings(edge, edges.all[k], cuts);
   }
   sort_cuts(cuts, edge.length_m());
   cuts.back() = 1;
   return cuts;
 }
 
-/// Appends the visible pieces of an edge of region `own`, cut at these places; consecutive pieces with the same regions
-/// are joined.
-void append_visible(const std::vector<GroundRegion>& regions, const Edge& edge, const std::vector<double>& cuts,
-                    std::size_t own, std::vector<Boundary>& out) {
+/// Appends the visible pieces of an edge, cut at these places; consecutive pieces with the same regions are joined.
+void append_visible(const GroundPlan& plan, const Edge& edge, const std::vector<double>& cuts,
+                    std::vector<Boundary>& out) {
   const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
   const double ny = (edge.b.x - edge.a.x) / edge.length_m() * aside_m;
   bool goes_on = false;
   for (std::size_t i = 1; i < cuts.size(); ++i) {
     const Point2 middle = edge.at((cuts[i - 1] + cuts[i]) / 2);
-    const int left = region_at(regions, {middle.x + nx, middle.y + ny});
-    const int right = region_at(regions, {middle.x - nx, middle.y - ny});
-    const bool visible = left != right && std::max(left, right) == static_cast<int>(own);
+    const int left = plan.region_at({middle.x + nx, middle.y + ny});
+    const int right = plan.region_at({middle.x - nx, middle.y - ny});
+    const bool visible = left != right && std::max(left, right) == static_cast<int>(edge.region);
     if (visible && goes_on && out.back().left == left && out.back().right == right) {
       out.back().to = edge.at(cuts[i]);
     } else if (visible) {
@@ -88,14 +97,10 @@ void sort_cuts(std::vector<double>& cuts, double length_m) {
 // A visible piece between two regions lies on an edge of the later one: if it were only on an edge of the earlier one,
 // the later one would cover both sides. So each piece is found once, at the edge of the upper of its two regions.
 std::vector<Boundary> visible_boundaries(const std::vector<GroundRegion>& regions) {
-  std::vector<std::vector<Edge>> all;
-  for (const GroundRegion& region : regions) {
-    all.push_back(edges_of(region.outline));
-  }
+  const GroundPlan plan(regions);
+  const Edges edges = edges_of(regions);
   std::vector<Boundary> out;
-  for (std::size_t own = 0; own < regions.size(); ++own) {
-    for (const Edge& edge : all[own]) append_visible(regions, edge, cuts_of(edge, all, own), own, out);
-  }
+  for (const Edge& edge : edges.all) append_visible(plan, edge, cuts_of(edge, edges), out);
   return out;
 }
 

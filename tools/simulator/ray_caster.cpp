@@ -92,15 +92,15 @@ double RayCaster::cast_inside(const Ray& ray, const Share& grid, double best) co
 double RayCaster::cast_in_cell(const Ray& ray, const Cell& cell, double from, double to) const {
   double best = nothing;
   const std::uint32_t* item = items_.data() + cell.first;
-  for (int k = 0; k < cell.regions; ++k, ++item) {
+  for (std::uint32_t k = 0; k < cell.regions; ++k, ++item) {
     const double t = hit_plane(ray, regions_[*item].plane);
     if (t >= from - slack && t <= to + slack && t < best &&
         (cell.plain || region_in(cell, ray.at(t)) == static_cast<int>(*item))) {
       best = t;
     }
   }
-  for (int k = 0; k < cell.faces; ++k, ++item) best = std::min(best, hit_face(ray, faces_[*item]));
-  for (int k = 0; k < cell.obstacles; ++k, ++item) best = std::min(best, hit_prism(ray, fixed_[*item]));
+  for (std::uint32_t k = 0; k < cell.faces; ++k, ++item) best = std::min(best, hit_face(ray, faces_[*item]));
+  for (std::uint32_t k = 0; k < cell.obstacles; ++k, ++item) best = std::min(best, hit_prism(ray, fixed_[*item]));
   return best;
 }
 

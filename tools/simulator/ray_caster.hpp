@@ -30,7 +30,7 @@ class RayCaster {
  private:
   struct Cell {
     std::uint32_t first = 0;  // start of its run in items_: regions from the top down, then faces, then obstacles
-    std::uint16_t regions = 0, faces = 0, obstacles = 0;
+    std::uint32_t regions = 0, faces = 0, obstacles = 0;
     bool plain = false;  // one region covers the whole cell
   };
   struct Face {
@@ -48,9 +48,11 @@ class RayCaster {
     double z(double t) const { return origin.z() + t * direction.z(); }
   };
 
-  void lay_grid();
-  void fill_cell(Cell& cell, const Bounds& box);
-  Prism prism_of(const Obstacle& obstacle) const;
+  struct Contents;
+
+  void lay_grid(const GroundPlan& plan);
+  void fill_cell(Cell& cell, const Bounds& box, const Contents& contents);
+  Prism prism_of(const Obstacle& obstacle, const GroundPlan& plan) const;
   const Cell* cell_at(Point2 p) const;
   int region_in(const Cell& cell, Point2 p) const;
   Share over_grid(const Ray& ray) const;
@@ -62,7 +64,6 @@ class RayCaster {
   static double hit_prism(const Ray& ray, const Prism& prism);
 
   std::vector<GroundRegion> regions_;
-  std::vector<Bounds> region_bounds_;
   std::vector<Face> faces_;
   std::vector<Prism> fixed_;
   std::vector<Obstacle> moving_;

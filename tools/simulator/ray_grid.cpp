@@ -11,14 +11,6 @@ namespace {
 constexpr double most_cells_a_side = 400;
 constexpr double buried_m = 1;  // depth of obstacles in the ground, so that no gap opens on a slope or beside a curb
 
-Bounds united(const Bounds& a, const Bounds& b) {
-  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-}
-
-bool overlap(const Bounds& a, const Bounds& b) {
-  return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
-}
-
 bool any_edge_crosses(const Polygon& outline, const Bounds& box) {
   for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
     if (crosses(box, outline[j], outline[i])) {
@@ -28,12 +20,23 @@ bool any_edge_crosses(const Polygon& outline, const Bounds& box) {
   return false;
 }
 
+template <typename Thing, typename Box>
+BoundsTree tree_of(const std::vector<Thing>& things, Box box_of) {
+  std::vector<Bounds> boxes;
+  for (const Thing& thing : things) boxes.push_back(box_of(thing));
+  return BoundsTree(std::move(boxes));
+}
+
 }  // namespace
 
+/// What lies on the plan, for the cells.
+struct RayCaster::Contents {
+  const GroundPlan& plan;
+  BoundsTree faces, obstacles;
+};
+
 RayCaster::RayCaster(const Scene& scene) : regions_(scene.regions) {
-  for (const GroundRegion& region : regions_) {
-    region_bounds_.push_back(region.outline.empty() ? Bounds{} : bounds(region.outline));
-  }
+  const GroundPlan plan(regions_);
   for (const Boundary& piece : visible_boundaries(regions_)) {
     if (piece.left >= 0 && piece.right >= 0) {
       faces_.push_back({piece.from, piece.to, regions_[static_cast<std::size_t>(piece.left)].plane,
@@ -43,16 +46,16 @@ RayCaster::RayCaster(const Scene& scene) : regions_(scene.regions) {
   for (const Obstacle& obstacle : scene.obstacles) {
     if (obstacle.moves()) {
       moving_.push_back(obstacle);
-      moved_.push_back(prism_of(obstacle));
+      moved_.push_back(prism_of(obstacle, plan));
     } else {
-      fixed_.push_back(prism_of(obstacle));
+      fixed_.push_back(prism_of(obstacle, plan));
     }
   }
-  lay_grid();
+  lay_grid(plan);
   move_to(0);
 }
 
-RayCaster::Prism RayCaster::prism_of(const Obstacle& obstacle) const {
+RayCaster::Prism RayCaster::prism_of(const Obstacle& obstacle, const GroundPlan& plan) const {
   Prism prism;
   prism.outline = obstacle.outline;
   for (const Point2 p : obstacle.outline) {
@@ -62,7 +65,7 @@ RayCaster::Prism RayCaster::prism_of(const Obstacle& obstacle) const {
   for (const Point2 p : obstacle.outline) {
     prism.radius_m = std::max(prism.radius_m, std::hypot(p.x - prism.centre.x, p.y - prism.centre.y));
   }
-  const int region = obstacle.base_m ? -1 : region_at(regions_, prism.centre);
+  const int region = obstacle.base_m ? -1 : plan.region_at(prism.centre);
   const double base = region < 0 ? 0 : regions_[static_cast<std::size_t>(region)].plane.height_m(prism.centre);
   prism.bottom_m = obstacle.base_m ? *obstacle.base_m : base - buried_m;
   prism.top_m = obstacle.base_m.value_or(base) + obstacle.height_m;
@@ -81,7 +84,7 @@ void RayCaster::move_to(double time_s) {
   }
 }
 
-void RayCaster::lay_grid() {
+void RayCaster::lay_grid(const GroundPlan& plan) {
   bool first = true;
   const auto take_in = [&](const Bounds& box) {
     bounds_ = first ? box : united(bounds_, box);
@@ -108,21 +111,24 @@ void RayCaster::lay_grid() {
   }
   for (const Prism& prism : fixed_) top_m_ = std::max(top_m_, prism.top_m);
 
+  const auto about_face = [](const Face& face) { return bounds({face.from, face.to}); };
+  const auto about_prism = [](const Prism& prism) { return bounds(prism.outline); };
+  const Contents contents{plan, tree_of(faces_, about_face), tree_of(fixed_, about_prism)};
   cells_.resize(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
   for (int i = 0; i < rows_; ++i) {
     for (int j = 0; j < cols_; ++j) {
       const double x = bounds_.x0 + i * cell_m_, y = bounds_.y0 + j * cell_m_;
-      fill_cell(cells_[static_cast<std::size_t>(i * cols_ + j)], {x, y, x + cell_m_, y + cell_m_});
+      fill_cell(cells_[static_cast<std::size_t>(i * cols_ + j)], {x, y, x + cell_m_, y + cell_m_}, contents);
     }
   }
 }
 
-void RayCaster::fill_cell(Cell& cell, const Bounds& box) {
+void RayCaster::fill_cell(Cell& cell, const Bounds& box, const Contents& contents) {
   cell.first = static_cast<std::uint32_t>(items_.size());
   const Point2 middle{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
-  for (std::size_t k = regions_.size(); k-- > 0;) {
+  for (const std::size_t k : contents.plan.near(box)) {
     const Polygon& outline = regions_[k].outline;
-    const bool cut = !outline.empty() && overlap(region_bounds_[k], box) && any_edge_crosses(outline, box);
+    const bool cut = !outline.empty() && any_edge_crosses(outline, box);
     const bool covered = !cut && regions_[k].holds(middle);
     if (cut || covered) {
       items_.push_back(static_cast<std::uint32_t>(k));
@@ -133,17 +139,15 @@ void RayCaster::fill_cell(Cell& cell, const Bounds& box) {
       break;
     }
   }
-  for (std::size_t k = 0; k < faces_.size(); ++k) {
+  for (const std::size_t k : contents.faces.overlapping(widened(box, touch_m))) {
     if (crosses(box, faces_[k].from, faces_[k].to)) {
       items_.push_back(static_cast<std::uint32_t>(k));
       ++cell.faces;
     }
   }
-  for (std::size_t k = 0; k < fixed_.size(); ++k) {
-    if (overlap(bounds(fixed_[k].outline), box)) {
-      items_.push_back(static_cast<std::uint32_t>(k));
-      ++cell.obstacles;
-    }
+  for (const std::size_t k : contents.obstacles.overlapping(box)) {
+    items_.push_back(static_cast<std::uint32_t>(k));
+    ++cell.obstacles;
   }
 }
 

@@ -17,20 +17,20 @@ constexpr double tread_step_m = 0.01;  // spacing of the ground samples under a 
 
 constexpr double abyss_m = -std::numeric_limits<double>::infinity();  // height of the void
 
-double height_m(const Scene& scene, Point2 at) {
-  const int region = region_at(scene.regions, at);
-  return region < 0 ? abyss_m : scene.regions[static_cast<std::size_t>(region)].plane.height_m(at);
+double height_m(const GroundPlan& plan, Point2 at) {
+  const int region = plan.region_at(at);
+  return region < 0 ? abyss_m : plan.regions()[static_cast<std::size_t>(region)].plane.height_m(at);
 }
 
 /// The ground under the wheels of one side of a robot that drives straight on for length_m.
 class Tread {
  public:
-  Tread(const Scene& scene, Point2 from, double yaw_rad, double left_m, double length_m) {
+  Tread(const GroundPlan& plan, Point2 from, double yaw_rad, double left_m, double length_m) {
     const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
     const auto places = static_cast<int>(std::ceil((length_m + 2 * reach_m) / tread_step_m)) + 1;
     for (int i = 0; i < places; ++i) {
       const double ahead = tread_step_m * i - reach_m;
-      ground_m_.push_back(height_m(scene, {from.x + c * ahead - s * left_m, from.y + s * ahead + c * left_m}));
+      ground_m_.push_back(height_m(plan, {from.x + c * ahead - s * left_m, from.y + s * ahead + c * left_m}));
     }
   }
 
@@ -56,12 +56,11 @@ class Tread {
 /// A straight path from a place.
 class Way {
  public:
-  Way(const Scene& scene, Point2 from, double yaw_rad, double length_m)
+  Way(const Scene& scene, const GroundPlan& plan, Point2 from, double yaw_rad, double length_m)
       : scene_(scene),
         from_(from),
         yaw_rad_(yaw_rad),
-        sides_{Tread(scene, from, yaw_rad, track_m / 2, length_m),
-               Tread(scene, from, yaw_rad, -track_m / 2, length_m)} {}
+        sides_{Tread(plan, from, yaw_rad, track_m / 2, length_m), Tread(plan, from, yaw_rad, -track_m / 2, length_m)} {}
 
   /// How the four wheels stand; a wheel over the void takes the height of the other on its side.
   Footing footing(double ahead_m) const {
@@ -92,8 +91,8 @@ class Way {
   std::array<Tread, 2> sides_;  ///< left, right
 };
 
-Footing standing(const Scene& scene, Point2 at, double yaw_rad) {
-  return Way(scene, at, yaw_rad, 0).footing(0);
+Footing standing(const Scene& scene, const GroundPlan& plan, Point2 at, double yaw_rad) {
+  return Way(scene, plan, at, yaw_rad, 0).footing(0);
 }
 
 }  // namespace
@@ -104,7 +103,7 @@ Scene in_map_frame(const Scene& scene) {
   }
   const Point2 at = scene.path.waypoints.front();
   const double c = std::cos(scene.path.yaw_rad), s = std::sin(scene.path.yaw_rad);
-  const double z = standing(scene, at, scene.path.yaw_rad).z_m;
+  const double z = standing(scene, GroundPlan(scene.regions), at, scene.path.yaw_rad).z_m;
   const auto turn_back = [&](Point2 p) { return Point2{c * p.x + s * p.y, -s * p.x + c * p.y}; };
   Scene out = scene;
   for (GroundRegion& region : out.regions) {
@@ -127,13 +126,14 @@ Scene in_map_frame(const Scene& scene) {
 }
 
 RobotMotion::RobotMotion(const Scene& scene, double until_s) : until_s_(until_s) {
+  const GroundPlan plan(scene.regions);
   const std::vector<Leg> way = legs(scene.path);
   const Point2 begin = scene.path.waypoints.front();
   const double yaw_rad = way.empty() ? scene.path.yaw_rad : way.front().from_rad;
-  samples_.push_back(sample(scene, begin, yaw_rad, standing(scene, begin, yaw_rad)));
+  samples_.push_back(sample(scene, begin, yaw_rad, standing(scene, plan, begin, yaw_rad)));
   for (const Leg& leg : way) {
-    turn(scene, leg);
-    drive(scene, leg);
+    turn(scene, plan, leg);
+    drive(scene, plan, leg);
   }
 }
 
@@ -144,20 +144,21 @@ RobotMotion::Sample RobotMotion::sample(const Scene& scene, Point2 at, double ya
   return {at.x, at.y, ground.z_m, std::atan(ground.across), -std::atan(ground.along), yaw_rad};
 }
 
-void RobotMotion::turn(const Scene& scene, const Leg& leg) {
+void RobotMotion::turn(const Scene& scene, const GroundPlan& plan, const Leg& leg) {
   const double whole_rad = leg.to_rad - leg.from_rad;
   const double steps = std::ceil(std::abs(whole_rad) / (scene.path.turn_rate_rad_s * step_s));
   for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double yaw_rad = leg.from_rad + whole_rad * i / steps;
-    samples_.push_back(sample(scene, leg.from, yaw_rad, standing(scene, leg.from, yaw_rad)));
+    samples_.push_back(sample(scene, leg.from, yaw_rad, standing(scene, plan, leg.from, yaw_rad)));
   }
 }
 
-void RobotMotion::drive(const Scene& scene, const Leg& leg) {
+void RobotMotion::drive(const Scene& scene, const GroundPlan& plan, const Leg& leg) {
   const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y, length_m = std::hypot(dx, dy);
   const double steps = std::ceil(length_m / (scene.path.speed_m_s * step_s));
   const double time_left_s = until_s_ - duration_s() + step_s;
-  const Way way(scene, leg.from, leg.to_rad, std::min(length_m, scene.path.speed_m_s * std::max(0.0, time_left_s)));
+  const Way way(scene, plan, leg.from, leg.to_rad,
+                std::min(length_m, scene.path.speed_m_s * std::max(0.0, time_left_s)));
   for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double t = i / steps;
     samples_.push_back(

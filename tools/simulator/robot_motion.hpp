@@ -1,6 +1,7 @@
 // The true pose of the simulated robot as a function of time.
 #pragma once
 
+#include "simulator/ground_plan.hpp"
 #include "simulator/scene.hpp"
 
 #include <Eigen/Geometry>
@@ -37,8 +38,8 @@ class RobotMotion {
     double x, y, z, roll, pitch, yaw;
   };
   static Sample sample(const Scene& scene, Point2 at, double yaw_rad, const Footing& ground);
-  void turn(const Scene& scene, const Leg& leg);
-  void drive(const Scene& scene, const Leg& leg);
+  void turn(const Scene& scene, const GroundPlan& plan, const Leg& leg);
+  void drive(const Scene& scene, const GroundPlan& plan, const Leg& leg);
 
   double until_s_;
   std::vector<Sample> samples_;

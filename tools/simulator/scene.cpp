@@ -5,7 +5,6 @@
 #include "formats/shipped.hpp"
 #include "simulator/random_street.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -71,12 +70,6 @@ std::vector<Leg> legs(const RobotPath& path) {
     out.push_back({from, to, yaw_rad, yaw_rad + std::remainder(heading - yaw_rad, 2 * std::numbers::pi)});
   }
   return out;
-}
-
-int region_at(const std::vector<GroundRegion>& regions, Point2 p) {
-  const auto top =
-      std::find_if(regions.rbegin(), regions.rend(), [p](const GroundRegion& region) { return region.holds(p); });
-  return static_cast<int>(regions.rend() - top) - 1;
 }
 
 }  // namespace curbline::tools

@@ -96,7 +96,4 @@ Scene find_scene(const std::string& name_or_path);
 /// Names of the scenes that ship, sorted.
 std::vector<std::string> shipped_scenes();
 
-/// Index of the topmost region there, or -1 in the void. O(corners).
-int region_at(const std::vector<GroundRegion>& regions, Point2 p);
-
 }  // namespace curbline::tools
