@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Runs the checks of tools/boards on small programs that they must refuse, and on some that they must not refuse."""
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "boards"))
+BOARDS = Path(__file__).resolve().parents[2] / "tools" / "boards"
+sys.path.insert(0, str(BOARDS))
 import budget  # noqa: E402
 import stack  # noqa: E402
 import undefined_symbols  # noqa: E402
@@ -62,6 +64,30 @@ class Stack(Built):
 
     def test_a_function_of_unknown_code_is_refused(self):
         self.refuses('extern "C" int elsewhere();\nextern "C" int root() { return elsewhere() + 1; }', "not in the program")
+
+
+    def test_a_program_that_is_none_is_told_in_one_line(self):
+        self.build(self.leaf)
+        none = self.folder / "none.elf"
+        none.write_text("no program")
+        done = subprocess.run([sys.executable, BOARDS / "stack.py", none, "root"], capture_output=True, text=True)
+        self.assertRegex(done.stderr, f"^{ARM}objdump .*none.elf: .*\n$")
+
+    def test_who_reads_no_more_gets_no_traceback(self):
+        program = self.build(self.leaf + 'extern "C" int root(char* p) { return leaf(p) + 1; }')
+        script = subprocess.Popen([sys.executable, BOARDS / "stack.py", program, "root"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        script.stdout.close()
+        self.assertEqual(script.communicate()[1], b"")
+        self.assertEqual(script.returncode, -signal.SIGPIPE)
+
+
+class Drives(unittest.TestCase):
+    def test_a_build_that_is_not_there_is_told_and_not_begun(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for script, *words in [["make_drives.py"], ["run_drives.py", "cortex-m7"]]:
+                done = subprocess.run([sys.executable, BOARDS / script, folder, *words], capture_output=True, text=True)
+                self.assertRegex(done.stderr, f"^{folder}/.*; expected .*\n$")
+                self.assertEqual(list(Path(folder).iterdir()), [])
 
 
 class UndefinedSymbols(Built):

@@ -1,9 +1,12 @@
 """The boards and how each is run: on this machine, under qemu-user, or in an emulated board."""
 import os
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `tools/boards/stack.py ... | head` ends without a traceback
 
 ROOT = Path(__file__).resolve().parents[2]
 QUIET = ["-display", "none", "-monitor", "none", "-serial", "null"]

@@ -12,6 +12,7 @@ import tomllib
 from pathlib import Path
 
 import boards
+import drives
 import members
 import run_drives
 import stack
@@ -161,7 +162,7 @@ def main(build, name, keep):
         kept = {key: used for key, used in kept.items() if key[0] != "instructions"}
     exceeded = print_table(board, rows, budget, kept)
     if keep:
-        with kept_file.open("w", newline="") as file:
+        with drives.scoring.whole_file(str(kept_file)) as file:
             csv.writer(file, lineterminator="\n").writerows([("group", "name", "used"), *keyed(rows)])
     return 1 if exceeded else 0
 

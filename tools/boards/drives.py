@@ -10,6 +10,7 @@ import scoring
 
 RECORDED = boards.ROOT.parent / "shared" / "data" / "clausius"
 # The streets with the most planes, curbs and work, a drive whose window moves, and one whose poses step.
+PROGRAMS = ["curbline", "curbline-drive-log"]
 LASER = "utm30lx"
 SCENES = ["street", "steps", "roundabout", "inclined_planes", "city", "random-drive:9001"]
 ERRORS = {"random-drive:9001": scoring.JUMPS}
@@ -41,6 +42,9 @@ def write(build, robot, scans, can, poses, name):
 
 def make(build):
     """Makes the missing drives. Prints a note if the recordings do not exist."""
+    for program in PROGRAMS:
+        if not (Path(build) / "bin" / program).exists():
+            sys.exit(f"{build}/bin/{program}: not there; expected a build of the host programs")
     folder(build).mkdir(parents=True, exist_ok=True)
     robots = boards.ROOT / "tools" / "robots"
     if not RECORDED.is_dir():

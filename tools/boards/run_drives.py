@@ -44,10 +44,10 @@ def main(build, name):
     board = boards.BOARDS[name]
     program = boards.program_of(build, name).resolve()
     folder = results_folder(build, name).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
     all_drives = drives.all_drives(build)
     if not all_drives:
         sys.exit(f"{drives.folder(build)}: no drive; expected those of tools/boards/make_drives.py")
+    folder.mkdir(parents=True, exist_ok=True)
     for drive in all_drives:
         results = folder / f"{drive.stem}.results"
         if board.core:

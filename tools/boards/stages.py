@@ -15,8 +15,12 @@ FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "p
 
 
 def run(line, text=None):
-    """Standard output of a command that must succeed."""
-    return subprocess.run([str(word) for word in line], input=text, capture_output=True, text=True, check=True).stdout
+    """Standard output of a command. Ends with one line if it fails."""
+    words = [str(word) for word in line]
+    done = subprocess.run(words, input=text, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join(words)}: {' '.join(done.stderr.split())}")
+    return done.stdout
 
 
 def stage_of_frame(function, path):
