@@ -41,6 +41,18 @@ TEST_CASE("drive log: the same logs make the same bytes") {
   CHECK(read_file(logs.path("once")) == read_file(logs.path("again")));
 }
 
+TEST_CASE("drive log: a laser that nods wants its tilt log, a robot that drives its poses") {
+  const Recording logs("city", "utm30lx", {"--duration", "0.5"});
+  const auto refused = [&](const std::string& robot, const std::string& expected) {
+    const Outcome outcome =
+        drive_log({"write", "--robot", robot, "--scans", logs.path("scans.carmen"), "--out", logs.path("drive")});
+    check_refused(outcome, robot + ": ", expected);
+  };
+  refused(logs.path("robot.toml"), "expected --can LOG");
+  const std::string fixed = logs.directory().write("r.toml", "[tilt]\nfixed = true\n[pose]\nstill = false\n");
+  refused(fixed, "expected --poses FILE");
+}
+
 TEST_CASE("drive log: an empty file name is wrong usage") {
   check_wrong_usage(drive_log({"write", "--robot", "r", "--scans", "s", "--out", "o", "--can", ""}),
                     "--can: empty; expected a file name\n");

@@ -43,10 +43,7 @@ class DriveWriter {
   explicit DriveWriter(const DriveFiles& files)
       : robot_(read_robot(files.robot)), scans_(files.scans, robot_.laser), out_(files.out) {
     if (!files.poses.empty()) robot_.pose.still = false;
-    if (!robot_.tilt.fixed && files.can.empty())
-      throw BadInput("no tilt log for a laser that nods; expected --can LOG");
-    if (!robot_.pose.still && files.poses.empty())
-      throw BadInput("no poses for a robot that drives; expected --poses FILE");
+    check_logs(robot_, files.can, files.poses);
     if (!robot_.tilt.fixed) can_.emplace(files.can);
     tilt_decoder_.init(robot_.tilt_signal, robot_.tilt_sync_id);
     if (!robot_.pose.still) poses_.emplace(files.poses);

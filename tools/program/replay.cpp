@@ -57,13 +57,7 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs,
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
     : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)) {
-  if (!robot.tilt.fixed && logs.can.empty()) {
-    throw BadInput(robot.file + ": the laser nods and there is no tilt log; expected --can LOG, or tilt.fixed = true");
-  }
-  if (!robot.pose.still && logs.poses.empty()) {
-    throw BadInput(robot.file +
-                   ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
-  }
+  check_logs(robot, logs.can, logs.poses);
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
     can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id,

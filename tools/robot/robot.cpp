@@ -115,4 +115,12 @@ Robot read_robot(const std::string& path) {
   return robot;
 }
 
+void check_logs(const Robot& robot, const std::string& can, const std::string& poses) {
+  if (!robot.tilt.fixed && can.empty())
+    throw BadInput(robot.file + ": the laser nods and there is no tilt log; expected --can LOG, or tilt.fixed = true");
+  if (!robot.pose.still && poses.empty())
+    throw BadInput(robot.file +
+                   ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
+}
+
 }  // namespace curbline::tools

@@ -60,6 +60,9 @@ struct Robot {
 /// the names of the fields, units included; all have a default. tools/robots/README.md lists them.
 Robot read_robot(const std::string& path);
 
+/// Throws BadInput if the robot needs a log whose name is empty: `can` of the tilt, or `poses`.
+void check_logs(const Robot& robot, const std::string& can, const std::string& poses);
+
 /// The settings for Pipeline::init().
 inline Settings pipeline_settings(const Robot& robot) {
   return {robot.window,       robot.laser,  robot.tilt,   robot.pose,
