@@ -105,6 +105,14 @@ TEST_CASE("program: a time that goes back is refused in scan lines and poses") {
   check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
 }
 
+TEST_CASE("program: a CAN log whose times all go back is refused for its times") {
+  const Recording logs = standing();
+  std::string back;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) back = line + "\n" + back;
+  const std::string log = logs.directory().write("back", back);
+  check_refused(replay_with(logs, "can", log), log + ": the times go back: ", "; expected times that rise\n");
+}
+
 TEST_CASE("program: a pose of the future is refused with the line behind it") {
   const Recording logs = driving();
   const std::string poses = read_file(logs.path("poses.tum"));

@@ -217,6 +217,11 @@ void Replay::check_complete() const {
   if (can_ && tilt_readings_ == 0)
     throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
   if (lines_taken_ > 0) return;
+  if (const long back = pipeline_->counters().tilt_dropped; 2 * back > tilt_readings_) {
+    throw BadInput(logs_.can + ": the times go back: " + std::to_string(back) + " of " +
+                   std::to_string(tilt_readings_) +
+                   " tilt readings were dropped, and no scan line could be used; expected times that rise");
+  }
   const std::string gap = status_ == Status::no_tilt
                               ? ", and tilt frames at most max_gap_s, " + shortest(robot_.tilt.max_gap_s) + " s, apart"
                               : "";
