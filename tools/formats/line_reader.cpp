@@ -82,7 +82,7 @@ void LineReader::fill() {
   do {
     got = ::read(::fileno(file_.get()), buffer_.data() + end_, std::min(chunk, buffer_.size() - end_));
   } while (got < 0 && errno == EINTR);
-  if (got < 0) throw BadInput(path_ + ": cannot be read: " + std::strerror(errno) + "; expected a file of text");
+  if (got < 0) throw BadInput(path_ + ": cannot be read: " + std::strerror(errno) + "; expected a file to read");
   if (got == 0) at_end_ = true;
   end_ += static_cast<std::size_t>(got);
 }
