@@ -254,6 +254,17 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
   CHECK(read_file(before) == "as it was\n");
 }
 
+TEST_CASE("program: a file that cannot be written is refused before the work begins") {
+  const Recording logs = standing();
+  const std::string none = logs.path("none"), nowhere = logs.path("nowhere/out.svg"), bitmap = logs.path("map.bmp");
+  for (const std::string option : {"--labels", "--curbs", "--picture"})
+    check_refused(curbline(logs.replay("scans", none) + Words{option, nowhere}), nowhere + ": ", "cannot be written");
+  check_refused(curbline(logs.replay("scans", none) + Words{"--picture", bitmap}), bitmap + ": ", "ends in .png");
+  check_refused(curbline({"map", none + ".xyz", "--picture", bitmap}), bitmap + ": ", "ends in .png");
+  std::filesystem::remove(logs.path("scans.carmen"));
+  check_refused(curbline({"evaluate", logs.folder(), "--picture", bitmap}), bitmap + ": ", "ends in .png");
+}
+
 /// A shell command line that runs the program.
 std::string line_of(const Words& arguments) {
   std::string line = CURBLINE_PROGRAM;

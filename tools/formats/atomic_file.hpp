@@ -33,6 +33,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  const std::string& path() const { return path_; }  ///< as given
 
   /// Throws BadInput unless everything written so far could be stored: called for each of several files before any is
   /// committed.
@@ -42,7 +43,7 @@ class AtomicFile {
   void commit();
 
  private:
-  std::string path_;       ///< as given, for errors
+  std::string path_;
   std::string target_;     ///< with symbolic links resolved
   std::string temporary_;  ///< empty: writes to the target
   FileBuffer buffer_;

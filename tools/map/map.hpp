@@ -80,6 +80,12 @@ struct Map {
   std::vector<MapCurb> curbs;
 };
 
+/// Where the robot is on a map. Heading: counterclockwise from x ahead.
+struct RobotMarker {
+  double x_m = 0, y_m = 0;
+  double heading_rad = 0;
+};
+
 /// nullptr if the map has no plane with this label. O(planes).
 const MapPlane* plane_of(const Map& map, int label);
 

@@ -18,6 +18,10 @@ namespace {
 
 using namespace picture;
 
+bool is_png(const std::string& path) {
+  return lower_case(path).ends_with(".png");
+}
+
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
@@ -86,14 +90,20 @@ std::string svg(const Map& map, const PictureExtras& extras, const std::string& 
 
 }  // namespace
 
-void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras) {
-  const std::string name = lower_case(path);
-  const bool as_png = name.ends_with(".png");
-  if (!as_png && !name.ends_with(".svg")) {
+void check_picture_name(const std::string& path) {
+  if (!is_png(path) && !lower_case(path).ends_with(".svg"))
     throw BadInput(path + ": cannot tell the kind of picture; expected a name that ends in .png or .svg");
-  }
+}
+
+void draw_picture(const Map& map, AtomicFile& file, const PictureExtras& extras) {
+  check_picture_name(file.path());
+  file.stream() << (is_png(file.path()) ? png(map, extras, file.path()) : svg(map, extras, file.path()));
+}
+
+void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras) {
+  check_picture_name(path);
   AtomicFile file(path);
-  file.stream() << (as_png ? png(map, extras, path) : svg(map, extras, path));
+  draw_picture(map, file, extras);
   file.commit();
 }
 

@@ -11,11 +11,7 @@
 
 namespace curbline::tools {
 
-/// A position in the grid's frame. Heading: counterclockwise from x ahead.
-struct RobotMarker {
-  double x_m = 0, y_m = 0;
-  double heading_rad = 0;
-};
+class AtomicFile;
 
 struct PictureExtras {
   std::string title{};           ///< UTF-8
@@ -28,5 +24,11 @@ struct PictureExtras {
 /// same bytes on one machine; other machines may have other fonts. Written completely or not at all. Throws BadInput
 /// for another ending, or if it cannot be written.
 void draw_picture(const Map& map, const std::string& path, const PictureExtras& extras = {});
+
+/// The same into a file that is open, which the caller commits.
+void draw_picture(const Map& map, AtomicFile& file, const PictureExtras& extras);
+
+/// Throws BadInput for another ending.
+void check_picture_name(const std::string& path);
 
 }  // namespace curbline::tools

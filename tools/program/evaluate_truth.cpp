@@ -7,6 +7,7 @@
 #include "evaluation/curbs.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
+#include "picture/picture.hpp"
 #include "program/evaluate.hpp"
 #include "program/recorded_run.hpp"
 #include "program/score_table.hpp"
@@ -183,6 +184,7 @@ void draw(const Evaluation& e, const EvaluateOptions& options) {
 }  // namespace
 
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
+  if (!options.picture.empty()) check_picture_name(options.picture);
   const Evaluation e = evaluate_recording(options);
   if (e.run && !e.run->remarks.empty()) std::cerr << e.run->remarks << '\n';
   if (!options.picture.empty()) draw(e, options);  // before anything is printed, because it may be refused

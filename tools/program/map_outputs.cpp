@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "formats/atomic_file.hpp"
 #include "formats/csv.hpp"
 
 namespace curbline::tools {
@@ -16,26 +14,28 @@ std::vector<NamedFile> outputs_of(const MapOptions& options) {
   return files;
 }
 
-void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary) {
-  // Everything is first written beside its target, which it replaces only after all of it could be written.
-  std::unique_ptr<AtomicFile> labels, curbs;
-  if (!options.labels.empty()) {
-    labels = std::make_unique<AtomicFile>(options.labels);
-    write_labels(labels->stream(), map);
+MapOutputs::MapOutputs(const MapOptions& options) : options_(options) {
+  if (!options.picture.empty()) check_picture_name(options.picture);
+  if (!options.labels.empty()) labels_.emplace(options.labels);
+  if (!options.curbs.empty() && options.curbs != "-") curbs_.emplace(options.curbs);
+  if (!options.picture.empty()) picture_.emplace(options.picture);
+}
+
+void MapOutputs::give_out(const Map& map, const PictureExtras& picture, nlohmann::json summary) {
+  if (labels_) write_labels(labels_->stream(), map);
+  if (curbs_) write_curbs(curbs_->stream(), map.curbs);
+  if (picture_) draw_picture(map, *picture_, picture);
+  // Each is written beside its target, which it replaces only after all could be written.
+  for (auto* file : {&labels_, &curbs_, &picture_}) {
+    if (*file) (*file)->flush();
   }
-  if (!options.curbs.empty() && options.curbs != "-") {
-    curbs = std::make_unique<AtomicFile>(options.curbs);
-    write_curbs(curbs->stream(), map.curbs);
+  for (auto* file : {&labels_, &curbs_, &picture_}) {
+    if (*file) (*file)->commit();
   }
-  if (labels) labels->flush();
-  if (curbs) curbs->flush();
-  if (!options.picture.empty()) draw_picture(map, options.picture, picture);
-  if (labels) labels->commit();
-  if (curbs) curbs->commit();
-  if (options.curbs == "-") {
+  if (options_.curbs == "-") {
     for (const MapCurb& curb : map.curbs) write_curb_json(std::cout, curb);
   }
-  if (options.json) {
+  if (options_.json) {
     summary["cells"] =
         std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
     summary["planes"] = map.planes.size();

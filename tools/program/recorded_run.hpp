@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "evaluation/scores.hpp"
-#include "picture/picture.hpp"
 #include "program/map_options.hpp"
 #include "simulator/truth.hpp"
 

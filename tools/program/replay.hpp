@@ -11,7 +11,6 @@
 
 #include "curbline/can/tilt_decoder.hpp"
 #include "formats/trajectory.hpp"
-#include "picture/picture.hpp"
 #include "program/host_pipeline.hpp"
 #include "program/scan_source.hpp"
 #include "program/tilt_frames.hpp"

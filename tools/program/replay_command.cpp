@@ -114,16 +114,20 @@ void run(const Options& o) {
   Robot robot = read_robot(o.robot);
   if (!o.logs.poses.empty()) robot.pose.still = false;
   apply_window(o.map, robot.window);
+  const bool batch = o.map.method != MapMethod::curbline;
+  const bool streams = !batch && o.map.curbs == "-";
+  MapOptions of_map = o.map;
+  if (streams) of_map.curbs.clear();
+  MapOutputs outputs(of_map);
   Replay replay(robot, o.logs);
   CurbStream stream;
   std::optional<LineCosts> costs;
   if (!o.line_costs.empty()) costs.emplace(o.line_costs);
-  const bool batch = o.map.method != MapMethod::curbline;
   std::vector<Point> points;
   while (replay.step(batch ? &points : nullptr)) {
     if (costs) costs->add(replay);
     pace.wait_for(replay.line().time_ns);
-    if (!batch && o.map.curbs == "-") stream.give_out(replay.pipeline().curbs());
+    if (streams) stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();
   if (costs) costs->commit();
@@ -140,9 +144,7 @@ void run(const Options& o) {
       map.curbs = replay.all_curbs();
     }
   }
-  MapOptions out = o.map;
-  if (!batch && out.curbs == "-") out.curbs.clear();  // they have been streamed
-  give_out(out, map, {.title = o.logs.scans, .robot = replay.robot()}, summary_of(replay));
+  outputs.give_out(map, {.title = o.logs.scans, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace
