@@ -33,7 +33,6 @@ class TrajectoryReader {
   std::optional<TrajectoryPose> next();
 
   const std::string& path() const { return source_.path(); }
-  long line() const { return source_.line(); }  ///< of the last pose returned
 
  private:
   LineReader source_;
