@@ -106,6 +106,7 @@ TEST_CASE("curb tracer: a probability is at most 1, however many cells agree on 
     settings.window.cols = cols;
     for (double step_m = 0.05; step_m < 0.25; step_m += 0.01) {
       const auto stages = traced([&](double x, double) { return x < 1.2 ? 0.0 : step_m; }, 0.0f, 0.0f, settings);
+      REQUIRE_FALSE(stages->tracer.curbs().empty());
       for (const Curb& curb : stages->tracer.curbs()) CHECK(curb.probability <= 1.0f);
     }
   }
@@ -506,6 +507,7 @@ TEST_CASE(
 //          |____.--
 TEST_CASE("curb tracer: a step down is no better known than its lower plane is at the edge, before the shadow") {
   const double edge = 1.12, drop = 0.232, behind = edge + 0.284;
+  int steps = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const auto stages = std::make_unique<Stages<>>(small_settings());
     Noise noise(seed);
@@ -525,8 +527,10 @@ TEST_CASE("curb tracer: a step down is no better known than its lower plane is a
       const Plane& below = stages->mixture.plane(curb.far_label);
       const float x = 0.5f * (curb.x0_m + curb.x1_m), y = 0.5f * (curb.y0_m + curb.y1_m);
       CHECK(square(curb.height_sd_m) > 0.05f * below.height_variance_m2(x, y));
+      ++steps;
     }
   }
+  CHECK(steps > 0);
 }
 
 TEST_CASE("curb tracer: a low step through the middle of cells is told as high as it is") {
