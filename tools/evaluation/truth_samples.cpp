@@ -30,13 +30,12 @@ std::vector<TruthSample> truth_samples(const Truth& truth) {
 }
 
 bool visible(const TruthSample& s, const Seen& seen) {
-  return seen(s.at.x, s.at.y) && seen(s.at.x + aside_m * s.to_left.x, s.at.y + aside_m * s.to_left.y) &&
-         seen(s.at.x - aside_m * s.to_left.x, s.at.y - aside_m * s.to_left.y);
+  const Point2 left = s.at + aside_m * s.to_left, right = s.at - aside_m * s.to_left;
+  return seen(s.at.x, s.at.y) && seen(left.x, left.y) && seen(right.x, right.y);
 }
 
 double signed_step_m(const TruthSample& s, Point2 robot) {
-  const double left = (robot.x - s.at.x) * s.to_left.x + (robot.y - s.at.y) * s.to_left.y;
-  return left > 0 ? -s.step_m : s.step_m;
+  return dot(robot - s.at, s.to_left) > 0 ? -s.step_m : s.step_m;
 }
 
 Detections::Detections(const Truth& truth) : samples_(truth_samples(truth)), of_curbs_(truth.curbs.size()) {}
@@ -55,7 +54,7 @@ void Detections::observe(double time_s, Point2 robot, const Bounds& window, cons
     if (!found) continue;
     if (!detection.seen_s) detection.seen_s = time_s;
     detection.found_s = time_s;
-    detection.distance_m = std::hypot(s.at.x - robot.x, s.at.y - robot.y);
+    detection.distance_m = length(s.at - robot);
   }
 }
 

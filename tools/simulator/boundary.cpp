@@ -12,7 +12,7 @@ constexpr double aside_m = 1e-5;  // how far to either side of an edge its regio
 struct Edge {
   Point2 a, b;
   std::size_t region;
-  double length_m() const { return std::hypot(b.x - a.x, b.y - a.y); }
+  double length_m() const { return length(b - a); }
   Point2 at(double t) const { return a + t * (b - a); }
   Bounds box() const { return bounds({a, b}); }
 };
@@ -21,9 +21,9 @@ struct Edge {
 /// touch it.
 void note_meetings(const Edge& edge, const Edge& other, std::vector<double>& cuts) {
   const double length = edge.length_m();
-  const double ux = (edge.b.x - edge.a.x) / length, uy = (edge.b.y - edge.a.y) / length;
-  const auto along = [&](Point2 p) { return (p.x - edge.a.x) * ux + (p.y - edge.a.y) * uy; };
-  const auto aside = [&](Point2 p) { return (p.y - edge.a.y) * ux - (p.x - edge.a.x) * uy; };
+  const Point2 ahead{(edge.b.x - edge.a.x) / length, (edge.b.y - edge.a.y) / length};
+  const auto along = [&](Point2 p) { return dot(p - edge.a, ahead); };
+  const auto aside = [&](Point2 p) { return cross(ahead, p - edge.a); };
   const double left_a = aside(other.a), left_b = aside(other.b);
   const auto note = [&](double distance_m) {
     if (distance_m > touch_m && distance_m < length - touch_m) {
@@ -69,13 +69,13 @@ std::vector<double> cuts_of(const Edge& edge, const Edges& edges) {
 /// Appends the visible pieces of an edge, cut at these places; consecutive pieces with the same regions are joined.
 void append_visible(const GroundPlan& plan, const Edge& edge, const std::vector<double>& cuts,
                     std::vector<Boundary>& out) {
-  const double nx = -(edge.b.y - edge.a.y) / edge.length_m() * aside_m;
-  const double ny = (edge.b.x - edge.a.x) / edge.length_m() * aside_m;
+  const double length = edge.length_m();
+  const Point2 to_left{-(edge.b.y - edge.a.y) / length * aside_m, (edge.b.x - edge.a.x) / length * aside_m};
   bool goes_on = false;
   for (std::size_t i = 1; i < cuts.size(); ++i) {
     const Point2 middle = edge.at((cuts[i - 1] + cuts[i]) / 2);
-    const int left = plan.region_at({middle.x + nx, middle.y + ny});
-    const int right = plan.region_at({middle.x - nx, middle.y - ny});
+    const int left = plan.region_at(middle + to_left);
+    const int right = plan.region_at(middle - to_left);
     const bool visible = left != right && std::max(left, right) == static_cast<int>(edge.region);
     if (visible && goes_on && out.back().left == left && out.back().right == right) {
       out.back().to = edge.at(cuts[i]);

@@ -63,7 +63,7 @@ RayCaster::Prism RayCaster::prism_of(const Obstacle& obstacle, const GroundPlan&
     prism.centre.y += p.y / static_cast<double>(obstacle.outline.size());
   }
   for (const Point2 p : obstacle.outline) {
-    prism.radius_m = std::max(prism.radius_m, std::hypot(p.x - prism.centre.x, p.y - prism.centre.y));
+    prism.radius_m = std::max(prism.radius_m, length(p - prism.centre));
   }
   const int region = obstacle.base_m ? -1 : plan.region_at(prism.centre);
   const double base = region < 0 ? 0 : regions_[static_cast<std::size_t>(region)].plane.height_m(prism.centre);
@@ -75,8 +75,8 @@ RayCaster::Prism RayCaster::prism_of(const Obstacle& obstacle, const GroundPlan&
 void RayCaster::move_to(double time_s) {
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     Prism& prism = moved_[i];
-    prism.offset = {moving_[i].velocity_m_s.x * time_s, moving_[i].velocity_m_s.y * time_s};
-    const double ground = ground_height_m({prism.centre.x + prism.offset.x, prism.centre.y + prism.offset.y});
+    prism.offset = time_s * moving_[i].velocity_m_s;
+    const double ground = ground_height_m(prism.centre + prism.offset);
     if (!moving_[i].base_m && std::isfinite(ground)) {
       prism.bottom_m = ground - buried_m;
       prism.top_m = ground + moving_[i].height_m;

@@ -83,9 +83,8 @@ Polygon read_outline(TomlTable& table) {
 
 /// Whether the first three corners lie on one line, and so fix no plane.
 bool first_on_one_line(const Polygon& corners) {
-  const Point2 a{corners[1].x - corners[0].x, corners[1].y - corners[0].y};
-  const Point2 b{corners[2].x - corners[0].x, corners[2].y - corners[0].y};
-  return std::abs(a.x * b.y - a.y * b.x) <= 1e-9 * std::hypot(a.x, a.y) * std::hypot(b.x, b.y);
+  const Point2 a = corners[1] - corners[0], b = corners[2] - corners[0];
+  return std::abs(cross(a, b)) <= 1e-9 * length(a) * length(b);
 }
 
 /// The plane through three corners with given heights.
@@ -123,9 +122,10 @@ Camber read_camber(TomlTable& table) {
   if (!table.has("camber") && !table.has("crown")) return {};
   const double bend_1_m = table.number("camber", {-1, 1});
   const std::vector<Point2> crown = table.points("crown", 2, any);
-  const double dx = crown[1].x - crown[0].x, dy = crown[1].y - crown[0].y, length = std::hypot(dx, dy);
-  if (crown.size() != 2 || !(length > 0)) table.refuse("crown", "is no line; expected two points of it");
-  return {bend_1_m, crown[0], {-dy / length, dx / length}};
+  const Point2 along = crown[1] - crown[0];
+  const double length_m = length(along);
+  if (crown.size() != 2 || !(length_m > 0)) table.refuse("crown", "is no line; expected two points of it");
+  return {bend_1_m, crown[0], {-along.y / length_m, along.x / length_m}};
 }
 
 SurfacePlane read_plane(TomlTable& table, const Polygon& corners) {
@@ -145,7 +145,7 @@ void read_region(TomlTable& table, Scene& scene) {
   read_repeat(table).each([&](Point2 by) {
     SurfacePlane here = plane;
     here.z0_m -= plane.sx * by.x + plane.sy * by.y;
-    here.camber.crown = {plane.camber.crown.x + by.x, plane.camber.crown.y + by.y};
+    here.camber.crown = plane.camber.crown + by;
     scene.regions.push_back({name, moved(outline, by), here});
   });
   table.done();
@@ -202,8 +202,7 @@ void read_wall(TomlTable& table, Scene& scene) {
 double duration_s(const RobotPath& path) {
   double out = 0;
   for (const Leg& leg : legs(path)) {
-    out += std::abs(leg.to_rad - leg.from_rad) / path.turn_rate_rad_s +
-           std::hypot(leg.to.x - leg.from.x, leg.to.y - leg.from.y) / path.speed_m_s;
+    out += std::abs(leg.to_rad - leg.from_rad) / path.turn_rate_rad_s + length(leg.to - leg.from) / path.speed_m_s;
   }
   return out;
 }
@@ -216,8 +215,7 @@ RobotPath read_drive(TomlTable& table) {
   RobotPath path;
   path.waypoints = table.points("path", 2, any);
   for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
-    const Point2 a = path.waypoints[i - 1], b = path.waypoints[i];
-    if (std::hypot(b.x - a.x, b.y - a.y) < 0.01) {
+    if (length(path.waypoints[i] - path.waypoints[i - 1]) < 0.01) {
       table.refuse("path", "has two way points in a row at one place; expected 1 cm between them or more");
     }
   }

@@ -107,17 +107,16 @@ Scene in_map_frame(const Scene& scene) {
   const auto turn_back = [&](Point2 p) { return Point2{c * p.x + s * p.y, -s * p.x + c * p.y}; };
   Scene out = scene;
   for (GroundRegion& region : out.regions) {
-    for (Point2& p : region.outline) p = turn_back({p.x - at.x, p.y - at.y});
+    for (Point2& p : region.outline) p = turn_back(p - at);
     const SurfacePlane& plane = region.plane;
     const Point2 slope = turn_back({plane.sx, plane.sy}), crown = plane.camber.crown;
-    region.plane = {
-        plane.level_m(at) - z,
-        slope.x,
-        slope.y,
-        {plane.camber.bend_1_m, turn_back({crown.x - at.x, crown.y - at.y}), turn_back(plane.camber.across)}};
+    region.plane = {plane.level_m(at) - z,
+                    slope.x,
+                    slope.y,
+                    {plane.camber.bend_1_m, turn_back(crown - at), turn_back(plane.camber.across)}};
   }
   for (Obstacle& obstacle : out.obstacles) {
-    for (Point2& p : obstacle.outline) p = turn_back({p.x - at.x, p.y - at.y});
+    for (Point2& p : obstacle.outline) p = turn_back(p - at);
     obstacle.velocity_m_s = turn_back(obstacle.velocity_m_s);
     if (obstacle.base_m) *obstacle.base_m -= z;
   }
@@ -154,15 +153,15 @@ void RobotMotion::turn(const Scene& scene, const GroundPlan& plan, const Leg& le
 }
 
 void RobotMotion::drive(const Scene& scene, const GroundPlan& plan, const Leg& leg) {
-  const double dx = leg.to.x - leg.from.x, dy = leg.to.y - leg.from.y, length_m = std::hypot(dx, dy);
+  const Point2 whole = leg.to - leg.from;
+  const double length_m = length(whole);
   const double steps = std::ceil(length_m / (scene.path.speed_m_s * step_s));
   const double time_left_s = until_s_ - duration_s() + step_s;
   const Way way(scene, plan, leg.from, leg.to_rad,
                 std::min(length_m, scene.path.speed_m_s * std::max(0.0, time_left_s)));
   for (double i = 1; i <= steps && duration_s() < until_s_; ++i) {
     const double t = i / steps;
-    samples_.push_back(
-        sample(scene, {leg.from.x + t * dx, leg.from.y + t * dy}, leg.to_rad, way.footing(t * length_m)));
+    samples_.push_back(sample(scene, leg.from + t * whole, leg.to_rad, way.footing(t * length_m)));
   }
 }
 

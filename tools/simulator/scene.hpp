@@ -18,7 +18,7 @@ struct Camber {
   double bend_1_m = 0;  ///< 0: none
   Point2 crown;         ///< a point of the crown
   Point2 across;        ///< unit vector across the crown
-  double away_m(Point2 p) const { return across.x * (p.x - crown.x) + across.y * (p.y - crown.y); }
+  double away_m(Point2 p) const { return dot(across, p - crown); }
 };
 
 /// z = z0 + sx x + sy y, minus the camber's fall.

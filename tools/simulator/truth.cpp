@@ -37,7 +37,7 @@ TruthCurb curb_between(Point2 from, Point2 to, const SurfacePlane& left, const S
   curb.to = to;
   curb.from_step_m = left.height_m(from) - right.height_m(from);
   curb.to_step_m = left.height_m(to) - right.height_m(to);
-  const Point2 middle{(from.x + to.x) / 2, (from.y + to.y) / 2};
+  const Point2 middle = 0.5 * (from + to);
   curb.left_z_m = left.height_m(middle);
   curb.right_z_m = right.height_m(middle);
   curb.height_m = std::abs(curb.left_z_m - curb.right_z_m);
@@ -54,7 +54,7 @@ void append_curbs(const Boundary& piece, const SurfacePlane& left, const Surface
     return;
   }
   const double t = whole.from_step_m / (whole.from_step_m - whole.to_step_m);
-  const Point2 level{piece.from.x + t * (piece.to.x - piece.from.x), piece.from.y + t * (piece.to.y - piece.from.y)};
+  const Point2 level = piece.from + t * (piece.to - piece.from);
   out.push_back(curb_between(piece.from, level, left, right));
   out.push_back(curb_between(level, piece.to, left, right));
 }
