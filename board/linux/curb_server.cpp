@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "formats/bad_input.hpp"
-#include "program/endpoint.hpp"
+#include "streams/endpoint.hpp"
 
 namespace curbline::daemon {
 namespace {

@@ -21,21 +21,21 @@
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
 #include "pose_source.hpp"
-#include "program/host_pipeline.hpp"
-#include "program/recorded_times.hpp"
 #include "reports.hpp"
 #include "robot/robot.hpp"
 #include "scan_log.hpp"
 #include "scanner_thread.hpp"
 #include "service_manager.hpp"
 #include "socketcan/socketcan.hpp"
+#include "streams/host_pipeline.hpp"
+#include "streams/recorded_times.hpp"
 #include "troubles.hpp"
 
 namespace curbline::daemon {
 
 struct Options {
   std::string can;    ///< interface; empty for a robot with a fixed tilt
-  std::string scans;  ///< a log, or a scanner: program/scanner_link.hpp
+  std::string scans;  ///< a log, or a scanner: streams/scanner_link.hpp
   std::string poses;  ///< pose_source.hpp; empty for a stationary robot
   std::string curbs;  ///< where clients connect: curb_server.hpp
   bool can_out = false;

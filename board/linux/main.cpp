@@ -4,9 +4,9 @@
 #include <iostream>
 #include <memory>
 
+#include "command_line/checks.hpp"
+#include "command_line/run_program.hpp"
 #include "daemon.hpp"
-#include "program/checks.hpp"
-#include "program/run_program.hpp"
 #include "robot/robot.hpp"
 
 int main(int argc, char** argv) {

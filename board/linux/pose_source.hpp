@@ -12,9 +12,9 @@
 #include "curbline/intake/source_watch.hpp"
 #include "curbline/pose.hpp"
 #include "pose_feed.hpp"
-#include "program/host_pipeline.hpp"
 #include "reports.hpp"
 #include "robot/robot.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace curbline::daemon {
 

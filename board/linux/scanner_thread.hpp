@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "line_inbox.hpp"
-#include "program/scanner_link.hpp"
 #include "scanner/live_scanner.hpp"
+#include "streams/scanner_link.hpp"
 
 namespace curbline::daemon {
 

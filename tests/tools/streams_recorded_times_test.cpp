@@ -1,5 +1,5 @@
 // Recorded times for frames that are played on a bus.
-#include "program/recorded_times.hpp"
+#include "streams/recorded_times.hpp"
 
 #include "curbline/can/servo_presets.hpp"
 #include "formats_support.hpp"

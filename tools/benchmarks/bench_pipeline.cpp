@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "curbline/can/tilt_decoder.hpp"
-#include "program/host_pipeline.hpp"
 #include "reference/reference.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "program/checks.hpp"
+#include "command_line/checks.hpp"
 
 #include <cstdlib>
 

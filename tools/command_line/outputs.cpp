@@ -1,4 +1,4 @@
-#include "program/outputs.hpp"
+#include "command_line/outputs.hpp"
 
 #include <CLI/Error.hpp>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "program/run_program.hpp"
+#include "command_line/run_program.hpp"
 
 #include <exception>
 #include <iostream>

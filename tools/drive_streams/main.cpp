@@ -2,11 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "command_line/checks.hpp"
+#include "command_line/outputs.hpp"
+#include "command_line/run_program.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/csv.hpp"
-#include "program/checks.hpp"
-#include "program/outputs.hpp"
-#include "program/run_program.hpp"
 
 int main(int argc, char** argv) {
   using namespace curbline::tools;

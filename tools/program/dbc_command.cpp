@@ -1,8 +1,8 @@
 #include <iostream>
 #include <memory>
 
+#include "command_line/checks.hpp"
 #include "formats/dbc.hpp"
-#include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "robot/signal_dbc.hpp"
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "program/checks.hpp"
+#include "command_line/checks.hpp"
 #include "program/commands.hpp"
 #include "program/evaluate.hpp"
 #include "program/map_command_line.hpp"

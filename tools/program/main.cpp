@@ -1,6 +1,6 @@
 // curbline: simulate, replay, map, evaluate, dbc.
+#include "command_line/run_program.hpp"
 #include "program/commands.hpp"
-#include "program/run_program.hpp"
 
 int main(int argc, char** argv) {
   using namespace curbline::tools;

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "peers/peers.hpp"
-#include "program/host_pipeline.hpp"
 #include "program/map_window.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace curbline::tools {
 

@@ -4,15 +4,15 @@
 #include <optional>
 #include <span>
 
+#include "command_line/checks.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/cloud.hpp"
 #include "formats/decimals.hpp"
-#include "program/checks.hpp"
 #include "program/commands.hpp"
-#include "program/host_pipeline.hpp"
 #include "program/map_cloud.hpp"
 #include "program/map_command_line.hpp"
 #include "program/map_outputs.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace curbline::tools {
 namespace {

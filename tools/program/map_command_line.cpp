@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "program/checks.hpp"
+#include "command_line/checks.hpp"
 
 namespace curbline::tools {
 namespace {

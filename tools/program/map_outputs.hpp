@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "command_line/outputs.hpp"
 #include "formats/atomic_file.hpp"
 #include "map/map.hpp"
 #include "picture/picture.hpp"
 #include "program/map_options.hpp"
-#include "program/outputs.hpp"
 
 namespace curbline::tools {
 

@@ -9,7 +9,7 @@
 
 #include "curbline/map/dem.hpp"
 #include "formats/decimals.hpp"
-#include "program/host_pipeline.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "curbline/can/tilt_decoder.hpp"
 #include "formats/trajectory.hpp"
-#include "program/host_pipeline.hpp"
 #include "program/scan_source.hpp"
 #include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
+#include "streams/host_pipeline.hpp"
 
 namespace curbline::tools {
 

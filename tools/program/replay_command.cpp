@@ -6,8 +6,8 @@
 #include <optional>
 #include <thread>
 
+#include "command_line/checks.hpp"
 #include "formats/csv.hpp"
-#include "program/checks.hpp"
 #include "program/commands.hpp"
 #include "program/line_costs.hpp"
 #include "program/map_cloud.hpp"

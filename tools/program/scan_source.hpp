@@ -18,8 +18,8 @@
 #include <string>
 
 #include "formats/carmen.hpp"
-#include "program/scanner_link.hpp"
 #include "robot/robot.hpp"
+#include "streams/scanner_link.hpp"
 
 namespace curbline::tools {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <memory>
 
-#include "program/checks.hpp"
+#include "command_line/checks.hpp"
 #include "program/commands.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/simulate.hpp"

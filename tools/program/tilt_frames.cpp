@@ -5,8 +5,8 @@
 #include <span>
 
 #include "formats/bad_input.hpp"
-#include "program/recorded_times.hpp"
 #include "socketcan/socketcan.hpp"
+#include "streams/recorded_times.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "cola/session.hpp"
-#include "program/checks.hpp"
-#include "program/run_program.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/run_program.hpp"
 #include "scanner/server.hpp"
 #include "scip2/session.hpp"
 

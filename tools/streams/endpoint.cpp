@@ -1,4 +1,4 @@
-#include "program/endpoint.hpp"
+#include "streams/endpoint.hpp"
 
 #include "formats/bad_input.hpp"
 #include "formats/parse_number.hpp"

@@ -1,4 +1,4 @@
-#include "program/host_pipeline.hpp"
+#include "streams/host_pipeline.hpp"
 
 #include <cmath>
 

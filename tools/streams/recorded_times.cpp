@@ -1,4 +1,4 @@
-#include "program/recorded_times.hpp"
+#include "streams/recorded_times.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,10 +1,10 @@
-#include "program/scanner_link.hpp"
+#include "streams/scanner_link.hpp"
 
 #include "cola/session.hpp"
 #include "formats/bad_input.hpp"
 #include "lms200/session.hpp"
-#include "program/endpoint.hpp"
 #include "scip2/session.hpp"
+#include "streams/endpoint.hpp"
 
 namespace curbline::tools {
 namespace {
