@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "cola/session.hpp"
-#include "scanner/cola_content.hpp"
+#include "scanner_simulator/cola_content.hpp"
 #include "scanner_support.hpp"
 
 namespace curbline::test {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "scanner/device.hpp"
-#include "scanner/server.hpp"
 #include "scanner/session.hpp"
+#include "scanner_simulator/device.hpp"
+#include "scanner_simulator/server.hpp"
 
 namespace curbline::test {
 

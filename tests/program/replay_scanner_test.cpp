@@ -8,7 +8,7 @@
 #include "formats/csv.hpp"
 #include "program.hpp"
 #include "robot/robot.hpp"
-#include "scanner/server.hpp"
+#include "scanner_simulator/server.hpp"
 
 namespace curbline::tools::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "cola/telegram.hpp"
-#include "scanner/device.hpp"
+#include "scanner_simulator/device.hpp"
 
 namespace curbline::tools {
 

@@ -12,8 +12,8 @@
 #include <set>
 #include <string>
 
-#include "scanner/device.hpp"
-#include "scanner/scan_feed.hpp"
+#include "scanner_simulator/device.hpp"
+#include "scanner_simulator/scan_feed.hpp"
 
 namespace curbline::tools {
 

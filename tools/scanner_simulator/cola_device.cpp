@@ -6,8 +6,8 @@
 #include "cola/session.hpp"
 #include "cola/telegram.hpp"
 #include "formats/bad_input.hpp"
-#include "scanner/cola_content.hpp"
-#include "scanner/device.hpp"
+#include "scanner_simulator/cola_content.hpp"
+#include "scanner_simulator/device.hpp"
 
 namespace curbline::tools {
 namespace {

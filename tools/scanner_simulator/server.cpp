@@ -1,4 +1,4 @@
-#include "scanner/server.hpp"
+#include "scanner_simulator/server.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

@@ -6,7 +6,7 @@
 #include "formats/bad_input.hpp"
 #include "lms200/scan_data.hpp"
 #include "lms200/telegram.hpp"
-#include "scanner/device.hpp"
+#include "scanner_simulator/device.hpp"
 
 namespace curbline::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include "cola/session.hpp"
 #include "command_line/checks.hpp"
 #include "command_line/run_program.hpp"
-#include "scanner/server.hpp"
+#include "scanner_simulator/server.hpp"
 #include "scip2/session.hpp"
 
 namespace curbline::tools {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "formats/bad_input.hpp"
-#include "scanner/device.hpp"
+#include "scanner_simulator/device.hpp"
 #include "scip2/codec.hpp"
 #include "scip2/decoder.hpp"
 

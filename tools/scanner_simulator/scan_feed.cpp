@@ -1,4 +1,4 @@
-#include "scanner/scan_feed.hpp"
+#include "scanner_simulator/scan_feed.hpp"
 
 #include <memory>
 #include <variant>
