@@ -342,6 +342,16 @@ TEST_CASE("program: evaluate prints nothing where its picture is refused") {
     check_refused(curbline({"evaluate", logs.folder(), "--picture", logs.path(name)}), logs.path(name) + ": ", "");
 }
 
+TEST_CASE("program: a label far from the others is refused with the file and line") {
+  const Recording logs = standing();
+  const std::string labels = logs.path("labels.csv");
+  REQUIRE(curbline(logs.replay() + Words{"--labels", labels, "--curbs", logs.path("curbs.csv")}).status == 0);
+  std::string row = lines_of(read_file(labels))[3];
+  row.replace(0, row.find(','), "9e7");
+  logs.directory().write("labels.csv", with_line(read_file(labels), 4, row));
+  check_refused(curbline({"evaluate", logs.folder()}), labels + ":4: ", "x_m lies too far from that of the other rows");
+}
+
 TEST_CASE("program: truth that is cut is refused") {
   const Recording logs = standing();
   const std::string truth = read_file(logs.path("truth.json"));

@@ -55,11 +55,11 @@ long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*
 }
 
 /// The places from the lowest to the highest cell; the middle of each cell is that of a place.
-Grid places_of(const std::vector<LabelledCell>& cells) {
+Grid places_of(const std::vector<LabelledCell>& cells, const std::string& file) {
   const Axis x = axis_of(cells, &LabelledCell::x_m), y = axis_of(cells, &LabelledCell::y_m);
   if (x.count * y.count * (places_along * places_along) > most_places) {
     const bool along_x = x.count > y.count;
-    throw BadInput("labels.csv", line_far_off(cells, along_x ? &LabelledCell::x_m : &LabelledCell::y_m),
+    throw BadInput(file, line_far_off(cells, along_x ? &LabelledCell::x_m : &LabelledCell::y_m),
                    std::string(along_x ? "x_m" : "y_m") +
                        " lies too far from that of the other rows; expected rows of one window");
   }
@@ -113,9 +113,9 @@ struct VMeasures {
 
 /// Compared with the connected parts of the true planes, like regions drawn by hand: two pavements of one height on
 /// either side of a road are two parts. What hides the ground, a shadow or an object on it, does not separate parts.
-VMeasures v_of(const std::vector<LabelledCell>& cells, const Truth& truth) {
+VMeasures v_of(const std::vector<LabelledCell>& cells, const Truth& truth, const std::string& file) {
   if (cells.empty()) return {};
-  const Grid grid = places_of(cells);
+  const Grid grid = places_of(cells, file);
   const std::vector<int> parts = parts_of(grid, truth);
   std::vector<int> of_truth, ground, readings;
   std::map<int, std::size_t> cells_of;
@@ -220,7 +220,7 @@ PlaneScores score_planes(const Found& found, const Truth& truth) {
   SquareMean of_cells, of_planes;
   std::vector<double> of_ground, of_readings, height, slope;
   for (const std::vector<LabelledCell>& window : found.windows) {
-    if (const VMeasures v = v_of(window, truth); !std::isnan(v.ground)) {
+    if (const VMeasures v = v_of(window, truth, found.labels_file); !std::isnan(v.ground)) {
       of_ground.push_back(v.ground);
       of_readings.push_back(v.readings);
     }

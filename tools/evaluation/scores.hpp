@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "evaluation/seen.hpp"
@@ -17,8 +18,9 @@ namespace curbline::tools {
 struct Found {
   /// One window for a robot that stands, several along the path of one that drives.
   std::vector<std::vector<LabelledCell>> windows;
-  std::vector<MapCurb> curbs;       ///< of the whole path
-  std::optional<Point2> seen_from;  ///< near and far sides are as seen from here; if empty, steps have no sign
+  std::vector<MapCurb> curbs;              ///< of the whole path
+  std::optional<Point2> seen_from;         ///< near and far sides are as seen from here; if empty, steps have no sign
+  std::string labels_file = "labels.csv";  ///< that a window was read from, for errors
 };
 
 /// Median and 95 % quantile of errors; NaN if there are none.

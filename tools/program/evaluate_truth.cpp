@@ -38,7 +38,8 @@ Found found_in(const Map& map) {
 /// may differ from the robot's, so for a robot that stood the labels define what was seen.
 void take_results(const std::string& dir, Evaluation& e) {
   if (e.found.windows.empty()) e.found.windows.emplace_back();
-  e.found.windows.back() = read_labels(dir + "/labels.csv");
+  e.found.labels_file = dir + "/labels.csv";
+  e.found.windows.back() = read_labels(e.found.labels_file);
   e.found.curbs = read_curbs(dir + "/curbs.csv");
   if (!e.run || !e.run->drove) e.seen = Seen{};
   for (const LabelledCell& cell : e.found.windows.back()) e.seen.add(cell.x_m, cell.y_m);
