@@ -632,6 +632,24 @@ TEST_CASE("curb tracer: between planes of different slope the height is as uncer
   CHECK(std::sqrt(by_place_m2) == Approx(0.15f * sloped.position_sd_m).epsilon(0.1));
 }
 
+//  ____
+//      ----____        40 cm, as on the flank of a dropped curb
+TEST_CASE("curb tracer: where a slope leads from plane to plane a step's height is less certain than at a face") {
+  const auto deviation_m = [](double length_m) {
+    Stages<> stages(small_settings());
+    stages.view = {-0.3f, 1.2f, 1.1f, 8.0f, 8.0f};  // seen from afar, too, where its spot would have blurred an edge
+    fill(stages.dem,
+         [=](double x, double) { return x < 1.1 ? 0.0 : -0.064 * std::min(1.0, (x - 1.1) / (length_m + 1e-9)); });
+    stages.settle();
+    stages.trace(-0.3f, 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    CHECK(stages.tracer.curbs()[0].height_m == Approx(-0.064).margin(0.005));
+    return stages.tracer.curbs()[0].height_sd_m;
+  };
+  CHECK(deviation_m(0.0) < 0.005f);
+  CHECK(deviation_m(0.4) > 0.02f);  // all but a cell of it may be ground
+}
+
 TEST_CASE("curb tracer: a step that grows along its piece is as uncertain as it grows, if the localisation steps") {
   const auto deviation_m = [](double growth, bool steps) {
     const auto stages = traced([=](double x, double y) { return x < 1.4 ? 0.0 : 0.12 + growth * (y - 1.2); });

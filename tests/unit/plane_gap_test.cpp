@@ -14,6 +14,21 @@ namespace {
 struct Ground {
   double from, to, face;
 
+  /// Sum over four cells of the slope that they show.
+  double sloped_cells() const {
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      const double mean = static_cast<double>(cell(k).far_share);
+      double squares = 0;
+      constexpr int places = 1000;
+      for (int n = 0; n < places; ++n) {
+        const double height = std::clamp((k + (n + 0.5) / places - from) / (to - from), 0.0, 1.0);
+        squares += (height - mean) * (height - mean);
+      }
+      sum += static_cast<double>(curbline::sloped_cells(cell(k).far_share, static_cast<float>(squares / places)));
+    }
+    return sum;
+  }
   bool seen(int k) const { return face > 0 || from > k || to < k + 1; }
   CrossedCell cell(int k) const {
     double points = 0, heights = 0, places = 0;
@@ -89,6 +104,20 @@ TEST_CASE("plane gap: cells of few points have no bias, those wholly on a plane 
       CHECK(sum / draws == Approx(edge).margin(0.007));  // four standard errors
     }
   }
+}
+
+TEST_CASE("plane gap: its cells show how long the slope from plane to plane is, wherever they part it") {
+  for (const double from : {0.2, 0.5, 0.8, 1.0}) {
+    for (const double length : {0.01, 0.5, 1.0, 1.6, 2.5})
+      CHECK((Ground{from, from + length, 1}.sloped_cells()) == Approx(length).margin(0.01));
+  }
+}
+
+TEST_CASE("plane gap: a vertical edge is no slope, and its face counts as the readings that it has") {
+  CHECK(sloped_cells(0.3f, 0.3f * 0.7f) == Approx(0.0f).margin(1e-6));
+  CHECK(sloped_cells(0.5f, 1.0f / 12) == Approx(1.0f));            // face alone
+  CHECK(sloped_cells(0.25f, 0.5f / 3 - 0.0625f) == Approx(0.5f));  // one half of the readings before its foot
+  CHECK(sloped_cells(0.5f, 2.0f) == 0.0f);                         // a post
 }
 
 TEST_CASE("plane gap: heights beyond the planes are no part of the step") {

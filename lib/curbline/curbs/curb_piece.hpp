@@ -33,6 +33,7 @@ struct CurbPiece {
   LineFit::Segment line{};
   float x_m = 0.0f, y_m = 0.0f;  ///< mean of the borders
   float drop_m = 0.0f;           ///< of a brink
+  float sloped_cells = 0.0f;     ///< of a border
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_low{}, beside_high{};  ///< sums
   float borders;                       ///< their number
@@ -117,6 +118,7 @@ void CurbPiece<limits>::take_means(const Part& part) {
   for (const Border& border : part) {
     const float each = part.share(border) / observations;
     drop_m += each * border.drop_m;
+    sloped_cells += each * border.sloped_cells;
     probability += each * border.probability;
     half_gap_m += each * border.half_gap_m;
     beside_low.add(border.beside_low);

@@ -1,6 +1,6 @@
 // A gap between two planes on a row or column of the window: from a cell of one plane to the next cell of the other.
-// Whether a step down hides the rest of a wide gap, where in it the edge is, to a part of a cell, and the probability
-// of one. Cost: a look at each cell of the gap, and along the ray to it if one is empty.
+// Whether a step down hides the rest of a wide gap, where in it the edge is, to a part of a cell, whether a slope takes
+// its place, and the probability of one. Cost: a look at each cell of the gap, and along the ray to it if one is empty.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,15 @@ inline float before_middle(const CrossedCell& cell) {
   return 0.5f - std::clamp(cell.far_share, 0.0f, 1.0f) + cell.centroid;
 }
 
+/// How much of a slope from plane to plane a cell holds, as a length in cells. Heights that are on both planes alone
+/// have a variance of far_share (1 - far_share), in squares of the step; what that lacks, summed over the cells of a
+/// gap, is a sixth of an even slope's length, wherever cells part it. A vertical face counts as the share that its
+/// readings have in their cell. Noise only shortens it.
+inline float sloped_cells(float far_share, float variance) {
+  const float share = std::clamp(far_share, 0.0f, 1.0f);
+  return std::max(0.0f, 6.0f * (share * (1.0f - share) - variance));
+}
+
 template <Limits limits>
 class PlaneGap {
  public:
@@ -57,6 +66,7 @@ class PlaneGap {
     float along_m;  ///< from the line's beginning
     bool open;      ///< Borders::Border::open
     int empty;      ///< cells without a point
+    float sloped;   ///< Borders::Border::sloped_cells
   };
   /// The middle of what parts the planes.
   Middle middle() const;
@@ -131,7 +141,7 @@ auto PlaneGap<limits>::middle() const -> Middle {
   const float x_m = line_.x_m(halfway_m), y_m = line_.y_m(halfway_m);
   const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
   float before = 0.0f;  // in cells, from the first one's near side
-  float covered = 0.0f;
+  float covered = 0.0f, sloped = 0.0f;
   int empty = 0, last_empty = 0;
   for (int along = first_.along; along <= second_.along; ++along) {
     const int s = line_.slot(along);
@@ -144,13 +154,16 @@ auto PlaneGap<limits>::middle() const -> Middle {
       covered += 1.0f;
       before += 0.5f;
     } else {
-      before += before_middle({line_.above_m(along, first) / step_m, 0.5f + line_.offset(cell)});
+      const float far_share = line_.above_m(along, first) / step_m;
+      before += before_middle({far_share, 0.5f + line_.offset(cell)});
+      if (along != first_.along && along != second_.along)
+        sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
   const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
-  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty};
+  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
-  return {(static_cast<float>(first_.along) + before) * cell_m, open, empty};
+  return {(static_cast<float>(first_.along) + before) * cell_m, open, empty, sloped};
 }
 
 /// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is

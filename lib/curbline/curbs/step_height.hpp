@@ -17,6 +17,7 @@
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/planes/run.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {
@@ -63,6 +64,7 @@ class StepHeight {
   // Not inlined: three times inlined it takes 320 bytes of flash more.
   [[gnu::noinline]] Deviations deviations() const;
   float plane_variance_m2(const Plane& plane) const;
+  float slope_variance_m2(const Part& part) const;
 
   const CurbStages<limits>& stages_;
   Piece& piece_;
@@ -88,7 +90,10 @@ void StepHeight<limits>::refine(const Part& part, bool is_step) {
   // visible may be hidden, uniformly.
   variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
   if (is_step && !one_sided) follow_ground(part);
-  if (is_step) follow_ground_beside();
+  if (is_step) {
+    follow_ground_beside();
+    variance_m2_ += slope_variance_m2(part);
+  }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
 }
@@ -231,6 +236,22 @@ auto StepHeight<limits>::deviations() const -> Deviations {
   const float common_m2 = stages_.dem.common_m2();
   return {deviation(piece_.beside_low, piece_.planes.low, -up, -beyond_cells, common_m2),
           deviation(piece_.beside_high, piece_.planes.high, up, beyond_cells, common_m2)};
+}
+
+/// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on
+/// the flank of a dropped curb, the rest of it may be ground, and the step lower by anything up to what that rises.
+template <Limits limits>
+float StepHeight<limits>::slope_variance_m2(const Part& part) const {
+  if (piece_.sloped_cells <= 1.0f) return 0.0f;
+  const bool high_is_upper = height_m_ > 0.0f;
+  const Viewpoint view = seen_from(part, high_is_upper ? piece_.first.low : piece_.first.high);
+  const Plane& lower = high_is_upper ? piece_.planes.low : piece_.planes.high;
+  const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
+  if (!(above_m > 0.0f)) return 0.0f;
+  const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
+  const float face_cells = 1.0f + Strip::spot_cells(range_m2, above_m, piece_.cell_m);
+  const float ground_share = 1.0f - face_cells / std::max(face_cells, piece_.sloped_cells);
+  return (1.0f / 3) * square(ground_share * height_m_);
 }
 
 /// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it

@@ -90,6 +90,10 @@ struct Run {
 /// A run, and the runs before and after it on its row or column.
 struct Strip {
   static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
+  /// Length of a beam's spot on the ground, from a laser above_m above it.
+  static float spot_cells(float range_m2, float above_m, float cell_m) {
+    return beam_rad * range_m2 / (above_m * cell_m);
+  }
 
   const Run &before, &run, &next;
 
@@ -127,8 +131,7 @@ struct Strip {
   float blurred_cells(const Sight& sight, float aside_m) const {
     const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
-    const float spot = beam_rad * (above_m * above_m + away_m * away_m + aside_m * aside_m);
-    return 1.0f + spot / (above_m * sight.cell_m);
+    return 1.0f + spot_cells(above_m * above_m + away_m * away_m + aside_m * aside_m, above_m, sight.cell_m);
   }
 
  private:
