@@ -675,6 +675,18 @@ TEST_CASE("ground: a slope that is no longer than the shadow of its own fall is 
   }));
 }
 
+TEST_CASE("strip: an edge blurs the cells that it crosses and those of the spot from where they were last seen") {
+  const Run none, run(Label{1}, 11, Cell{});
+  const Strip strip{none, run, none};
+  const Sight near{-0.3f, 1.1f, 0.1f, 8.0f};  // on its way from x = 0 to 8 m
+  const float spot = 0.01f * (1.1f * 1.1f + 1.4f * 1.4f) / (1.1f * 0.1f);
+  CHECK(strip.blurred_cells(near, 0.0f, 0.0f) == Approx(1.0f + spot));
+  CHECK(strip.blurred_cells(near, -0.5f, 0.0f) == Approx(1.5f + spot));
+  CHECK(strip.blurred_cells(near, 5.0f, 0.0f) == Approx(2.0f + spot));  // it lies along the row: columns tell
+  CHECK(strip.blurred_cells({-0.3f, 1.1f, 0.1f, 0.0f}, 0.5f, 0.0f) == Approx(1.0f + spot));  // a robot that stands
+  CHECK(strip.blurred_cells({-0.3f, -0.1f, 0.1f, 8.0f}, 0.0f, 0.0f) == 0.0f);
+}
+
 TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
   const auto falls = [](double slope) {
     return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {

@@ -12,15 +12,14 @@
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
 //   - a wake: a narrow ridge on a plane, with an obstacle between it and the laser: readings that mix the edge of a
-//   post
-//     with the ground beyond.
+//     post with the ground beyond.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their
 // heights say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a
 // curb: one that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls
-// away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot on an edge and a
-// cell, at whatever angle the rays cross it: it blurs that edge, unless it falls by too little of the step, as the
-// tread of a stair does. Cost: three passes over the window.
+// away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot, from where it
+// was last seen, and the cells that an edge crosses, at whatever angle the rays cross it: it blurs that edge, unless it
+// falls by too little of the step, as the tread of a stair does. Cost: three passes over the window.
 #pragma once
 
 #include <array>

@@ -3,6 +3,7 @@
 // window along x, and one along y.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
 #include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
@@ -39,13 +41,18 @@ struct Sight {
     const float from_end_m = is_ahead ? end_m - eye_m : eye_m;
     return end_m > 0.0f && away_m > 0.0f && away_m < from_end_m ? from_end_m : away_m;
   }
-  /// The same for an edge at an angle to the grid, along a strip: as if the laser were where the edge's parallel
-  /// through it crosses the row or column, which is `aside_m` from the laser.
-  Sight across(const Plane& strip, std::size_t axis, float aside_m) const {
-    const float along = axis == 0 ? strip.pxx : strip.pyy;  // the strip's normal is (pxx, pxy), or (pxy, pyy)
-    return {along > 0.0f ? eye_m - aside_m * strip.pxy / along : eye_m, eye_z_m, cell_m, end_m};
-  }
+  /// The same for an edge at an angle to the grid: as if the laser were where the edge's parallel through it crosses
+  /// the row or column, which is `aside_m` from the laser.
+  Sight across(float askew, float aside_m) const { return {eye_m - aside_m * askew, eye_z_m, cell_m, end_m}; }
+  /// The same without the way before: from where cells were last seen.
+  Sight now() const { return {eye_m, eye_z_m, cell_m, 0.0f}; }
 };
+
+/// Tangent of the angle between an axis and the normal of a strip, (pxx, pxy) or (pxy, pyy).
+inline float askew(const Plane& strip, std::size_t axis) {
+  const float along = axis == 0 ? strip.pxx : strip.pyy;
+  return along > 0.0f ? strip.pxy / along : 0.0f;
+}
 
 /// How far a run falls from its end near the laser to the far one, and how far the rays do there.
 struct Fall {
@@ -126,12 +133,16 @@ struct Strip {
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
   }
-  /// Number of cells that hold something of both sides of an edge here: the length of the laser's spot on the ground,
-  /// and one more. `aside_m`: distance of the row or column from the laser.
-  float blurred_cells(const Sight& sight, float aside_m) const {
-    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.away_m(run.first, run.last);
+  /// Number of cells that hold something of both sides of an edge here, when they were last seen from where `sight` is:
+  /// one, the length of the laser's spot on the ground, and for a robot that drives, in whose cells readings from
+  /// several places meet, those that the edge crosses more, one if it is 45 degrees askew (beyond, it lies along the
+  /// row). `aside_m`: distance of the row or column from the laser.
+  float blurred_cells(const Sight& sight, float askew, float aside_m) const {
+    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.now().away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
-    return 1.0f + spot_cells(above_m * above_m + away_m * away_m + aside_m * aside_m, above_m, sight.cell_m);
+    const float range_m2 = above_m * above_m + away_m * away_m + aside_m * aside_m;
+    const float crossed = sight.end_m > 0.0f ? std::min(1.0f, magnitude(askew)) : 0.0f;
+    return 1.0f + crossed + spot_cells(range_m2, above_m, sight.cell_m);
   }
 
  private:

@@ -125,11 +125,12 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
         const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-        const Sight across = along.across(planes[run.label], axis, aside_m);
+        const float tilted = askew(planes[run.label], axis);
+        const Sight across = along.across(tilted, aside_m);
         if (carries_step) {
           if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
         }
-        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, aside_m);
+        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, tilted, aside_m);
       }
       if (run.length() > StripTally::longest_strip) return;
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
