@@ -338,6 +338,32 @@ TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which
   CHECK(Street{.slope = -0.5, .from = 1.4, .to = 1.7, .laser_x_m = 2.3f}.one_sided().empty());  // seen from beyond
 }
 
+//  o
+//  ________
+//          '.                a flight down of which no tread is made out: readings fall along its edges for more than
+//            '.              the reach of links, and the floor is not hidden by the first edge but by the last
+//              '._______
+TEST_CASE("border finder: a veil behind which there is ground out of reach is a step down, as deep as the veil falls") {
+  const bool turned = GENERATE(false, true);
+  const auto brinks = Street{.slope = -0.9, .from = 0.6, .to = 9.0, .top = 1.4, .turned = turned}.one_sided();
+  REQUIRE(brinks.size() == 1);
+  CHECK(brinks[0].curb.kind == CurbKind::step_down);
+  CHECK(brinks[0].at == Approx(0.6).margin(0.03));
+  CHECK(brinks[0].curb.height_m == Approx(-0.72).margin(0.04));
+}
+
+// The face of a step up that leans against the grid by 1 in 20: from the step along a row, away from the laser, cells
+// fall down the face to the ground for more than the reach of links.
+TEST_CASE("border finder: the face of a step up, met from behind along a row, is no brink") {
+  Stages<small_limits> stages(small_settings());
+  test::fill(stages.dem, [](double x, double y) { return x < 1.0 + y / 20 ? 0.0 : 0.055; });
+  stages.settle();
+  stages.trace();
+  const auto& borders = stages.work.curbs().borders;
+  REQUIRE(borders.size() >= 24);
+  for (int k = 0; k < borders.size(); ++k) CHECK(borders.at(k).high != no_label);
+}
+
 /// The curbs of a platform up to `edge` and ground `drop` below it, which begins where the laser sees it, or `gap`
 /// beyond the edge, along x or turned.
 std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool turned) {

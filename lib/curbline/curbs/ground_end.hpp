@@ -3,16 +3,18 @@
 //     laser would see it as well as the face; what follows is flatter than the rays.
 //   - a brink: where the ground is followed, away from the laser, by lower readings that mix an edge with what lies
 //     behind it (veils, ground.hpp), are too few for a plane, or belong to an obstacle. They fall as far as is
-//     visible of the step.
+//     visible of the step. Ground may follow beyond the reach of borders: the foot of a flight of stairs.
 // Cost: a look at each cell of a face, a veil and an obstacle.
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 
 #include "curbline/curbs/borders.hpp"
 #include "curbline/curbs/cell_line.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/plane_gap.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/plane.hpp"
@@ -37,6 +39,7 @@ class GroundEnds {
  private:
   static constexpr float widest_face_m = 0.3f;  ///< a curb stone
 
+  bool out_of_reach(const Line& line, const LabelledCell& edge, int first_of_veil, int ground) const;
   Border border_behind(const Line& line, int last, int toward, float along_m) const;
 
   const CurbStages<limits>& stages_;
@@ -94,8 +97,10 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     const int next = last + toward * g;
     const int s = line.slot(next);
     if (stages_.bears_ground(s) &&
-        (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s))))
-      return std::nullopt;
+        (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s)))) {
+      if (!out_of_reach(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil, next)) return std::nullopt;
+      break;
+    }
     if (!may_fall(next)) break;
     last = next;
   }
@@ -106,6 +111,21 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   border.half_gap_m = 0.5f * line.pitch_m();
   border.drop_m = -line.above_m(last, plane) * cells / (cells - 0.5f);
   return border;
+}
+
+/// Is the ground behind a veil too far from the edge for a border between the two (BorderFinder), though the veil is
+/// seen over that edge? A flight of stairs whose treads are hidden but for their ends goes on for more than the reach,
+/// and its foot lies in the shadow of its last edge. A face that the rays meet from its foot begins no veil.
+template <Limits limits>
+bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge, int first_of_veil, int ground) const {
+  const int first_slot = line.slot(first_of_veil);
+  if (std::abs(ground - edge.along) <= stages_.settings.link_reach || stages_.mixture.obstructed(line.dem, first_slot)) return false;
+  const auto seen_over_edge = [&](int along) {
+    const LabelledCell far{edge.label, static_cast<std::int16_t>(along)};
+    return along > edge.along ? PlaneGap<limits>(stages_, line, edge, far).hidden()
+                              : PlaneGap<limits>(stages_, line, far, edge).hidden();
+  };
+  return seen_over_edge(first_of_veil) && !seen_over_edge(ground);
 }
 
 /// A border behind the last cell of a plane, with no_label for `high`, on the unseen side.
