@@ -40,6 +40,7 @@
 #include "curbline/map/laser_way.hpp"           // from where a driving laser has seen the cells
 #include "curbline/map/window.hpp"              // where cells lie, in the map and in memory
 #include "curbline/map/dem.hpp"                 // what is in them
+#include "curbline/map/level_cell.hpp"          // what their spread tells of a slope
 
 // Cells to regions.
 #include "curbline/regions/link.hpp"            // neighbours on a row or column

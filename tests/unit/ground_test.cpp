@@ -803,6 +803,21 @@ TEST_CASE("ground: what stands on the ground is measured against the largest pla
   CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells have the road's label
 }
 
+//  _____
+//       '-.            cells as level as treads, each lower than the one before; or a bank that falls as steeply
+//          '-.____
+TEST_CASE("ground: a plane down a flight of stairs, whose cells lie level, may be a veil, one down a bank is ground") {
+  const auto may_be_one = [](double slope, bool treads) {
+    const Viewpoint view{0.0f, 1.2f, 1.0f};
+    return may_be_veil(view, 1.2, 1.2, [=](double x, double) {
+      return -slope * (std::clamp(treads ? std::floor(10 * x) / 10 + 0.05 : x, 0.6, 1.8) - 0.6);
+    });
+  };
+  CHECK(may_be_one(0.6, true));
+  CHECK_FALSE(may_be_one(0.6, false));
+  CHECK_FALSE(may_be_one(0.3, true));  // ground may be as steep
+}
+
 TEST_CASE("ground: a slope that a robot can stand on is ground") {
   CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : 0.3 * (x - 1.0); }) == 2);
 }

@@ -224,6 +224,35 @@ TEST_CASE("label field: the ground below an obstacle is that of the cells around
   CHECK(on_road == 4 * 8);
 }
 
+TEST_CASE(
+    "label field: a cell that lies level is not given a plane along a flight of stairs that passes nearer to it") {
+  Stages<small_limits> stages(small_settings());
+  Noise noise;
+  const auto height = [](double x, double) { return x < 1.2 ? 0.0 : 0.6 * (1.2 - x); };
+  for (const Point& p : test::sample({0, 2.4, 0, 1.2}, 0.02, 0.005, noise, height)) stages.dem.add(p);
+  stages.segment();
+  stages.mix();
+  const Label level = stages.mixture.region_label(stages.dem.slot(5, 5));
+  const Label steep = stages.mixture.region_label(stages.dem.slot(20, 5));
+  REQUIRE((level != no_label && steep != no_label && level != steep));
+  const auto label = [&](double slope) {  // of a cell 2 cm lower than the level plane and 1 cm higher than the other
+    Dem<small_limits> dem{};
+    LabelField<small_limits> field{};
+    const Settings settings = small_settings();
+    dem.init(settings.window, settings.planes.prior);
+    field.init(settings.labels);
+    for (int k = 0; k < 25; ++k) {
+      const double dx = 0.02 * (k % 5) - 0.04, dy = 0.02 * (k / 5) - 0.04;
+      dem.add({static_cast<float>(1.25 + dx), static_cast<float>(1.85 + dy), static_cast<float>(-0.02 - slope * dx),
+               1e-4f});
+    }
+    field.update(dem, stages.mixture, FieldScope::window, stages.work.visits(), stages.counters);
+    return field.label(dem.slot(12, 18));
+  };
+  CHECK(label(0.0) == level);
+  CHECK(label(0.6) == steep);
+}
+
 TEST_CASE("label field: two pavements of one height keep their labels apart") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;

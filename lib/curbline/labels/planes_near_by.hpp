@@ -4,6 +4,7 @@
 // for a cell's candidates a visit of each plane near by.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -12,6 +13,8 @@
 #include "curbline/labels/label_site.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"
+#include "curbline/map/level_cell.hpp"
+#include "curbline/math.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 
 namespace curbline {
@@ -24,7 +27,8 @@ class PlanesNearBy {
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
   /// The candidates of a valid cell, as of the last follow(). Node potentials: Student t with 6 degrees of freedom
-  /// about each plane.
+  /// about each plane. A plane along a flight of stairs passes near the heights of all its treads, but a cell that lies
+  /// level is not on it, whatever its neighbours say (three standard deviations at most).
   LabelSite::Candidates candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
                                    const Cell& cell) const;
 
@@ -89,7 +93,9 @@ LabelSite::Candidates PlanesNearBy<limits>::candidates(const Dem<limits>& dem, c
     float u = 1.0f + residual * residual / (6.0f * variance);
     if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
     const float u3 = u * u * u;
-    candidates.consider(static_cast<Label>(k), variance * u3 * u3 * u);
+    float doubt = variance * u3 * u3 * u;
+    if (plane.steeper_than_ground()) doubt *= exp(std::min(level_likelihood(dem, cell, plane), gate));
+    candidates.consider(static_cast<Label>(k), doubt);
   };
   near_[block(i, j)].for_each(consider);
   if (candidates.label[0] == no_label) {
