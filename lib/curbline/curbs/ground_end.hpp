@@ -118,8 +118,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
 /// and its foot lies in the shadow of its last edge. A face that the rays meet from its foot begins no veil.
 template <Limits limits>
 bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge, int first_of_veil, int ground) const {
-  const int first_slot = line.slot(first_of_veil);
-  if (std::abs(ground - edge.along) <= stages_.settings.link_reach || stages_.mixture.obstructed(line.dem, first_slot)) return false;
+  if (std::abs(ground - edge.along) <= stages_.settings.link_reach) return false;
   const auto seen_over_edge = [&](int along) {
     const LabelledCell far{edge.label, static_cast<std::int16_t>(along)};
     return along > edge.along ? PlaneGap<limits>(stages_, line, edge, far).hidden()
