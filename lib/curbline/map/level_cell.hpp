@@ -24,11 +24,12 @@ float slope_scatter_m2(const Dem<limits>& dem, const Cell& cell, const Plane& pl
          cell.weight / cell.points;
 }
 
-/// Is the scatter of a cell nearer to that of level ground than to that of the slope? The noise is at least the
-/// texture of the ground.
+/// Is the scatter of a cell nearer to that of level ground than to what the slope makes over a whole cell? The noise is
+/// at least the texture of the ground.
 template <Limits limits>
 bool lies_level(const Dem<limits>& dem, const Cell& cell, const Plane& plane) {
-  return cell.scatter_m2 < (cell.points - 1.0f) * (dem.prior().texture_m2 + 0.5f * slope_scatter_m2(dem, cell, plane));
+  const float slope_m2 = dem.slope_m2(plane) * cell.weight / cell.points;
+  return cell.scatter_m2 < (cell.points - 1.0f) * (dem.prior().texture_m2 + 0.5f * slope_m2);
 }
 
 /// Twice the log of the likelihood ratio of level ground to the slope, for the scatter of a cell: each with the noise
