@@ -26,7 +26,7 @@ class Borders {
     float probability;               ///< that the cells on both sides belong to different planes
     float half_gap_m;                ///< half the distance between the cells of both planes
     float drop_m;                    ///< of a brink: down to the lowest visible behind it; else 0
-    float sloped_cells;              ///< length of the slope from plane to plane that the cells of the gap show
+    float sloped_cells;              ///< length of the slope from plane to plane that the cells in between show
     Beside beside_low, beside_high;  ///< on the sides of `low` and `high`
     Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
     std::int8_t axis;  ///< 0: found along x, 1: along y

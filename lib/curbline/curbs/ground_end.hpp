@@ -4,7 +4,7 @@
 //   - a brink: where the ground is followed, away from the laser, by lower readings that mix an edge with what lies
 //     behind it (veils, ground.hpp), are too few for a plane, or belong to an obstacle. They fall as far as is
 //     visible of the step. Ground may follow beyond the reach of borders: the foot of a flight of stairs.
-// Cost: a look at each cell of a face, a veil and an obstacle.
+// Cost: a look at each cell of a face, a veil and an obstacle, another where ground follows out of reach.
 #pragma once
 
 #include <cstdint>

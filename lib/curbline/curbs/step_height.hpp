@@ -1,6 +1,6 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
 // the ground along it and next to it where that deviates from them. Cost: eight cells beside each border, and on a
-// robot that drives those up to the first one of the lower side.
+// robot that drives those up to the first one of the lower side, twice where a slope lies between the planes.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // What the spread of heights within a cell tells about the slope of its ground. Readings on a tread lie level, although
-// the plane along a flight of stairs rises by half a cell's length and more across each cell. 20 operations a cell.
+// the plane along a flight of stairs rises by half a cell's length and more across each cell. 20 operations a cell,
+// and a logarithm.
 #pragma once
 
 #include <algorithm>

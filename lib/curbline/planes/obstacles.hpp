@@ -5,7 +5,8 @@
 // it, as high above the ground, a plane that is no top, or one higher or lower by as much as the next step of a stair.
 // A region that reaches the window's end may be larger than it looks; so may one that begins where nothing is seen
 // before it and, on a robot that drives, one that ends where nothing is seen beyond: the laser may not have looked
-// there yet. Cost: a pass over the window, and two more where there may be tops.
+// there yet. Cost: a pass over the window, and two more where there may be tops; of hides(), a look at each cell on the
+// way to the laser, at most.
 #pragma once
 
 #include <array>

@@ -44,8 +44,8 @@ struct Sight {
   /// The same for an edge at an angle to the grid: as if the laser were where the edge's parallel through it crosses
   /// the row or column, which is `aside_m` from the laser.
   Sight across(float askew, float aside_m) const { return {eye_m - aside_m * askew, eye_z_m, cell_m, end_m}; }
-  /// The same without the way before: from where cells were last seen.
-  Sight now() const { return {eye_m, eye_z_m, cell_m, 0.0f}; }
+  /// The same for a laser that stands where cells were last seen from.
+  Sight standing() const { return {eye_m, eye_z_m, cell_m, 0.0f}; }
 };
 
 /// Tangent of the angle between an axis and the normal of a strip, (pxx, pxy) or (pxy, pyy).
@@ -135,10 +135,10 @@ struct Strip {
   }
   /// Number of cells that hold something of both sides of an edge here, when they were last seen from where `sight` is:
   /// one, the length of the laser's spot on the ground, and for a robot that drives, in whose cells readings from
-  /// several places meet, those that the edge crosses more, one if it is 45 degrees askew (beyond, it lies along the
-  /// row). `aside_m`: distance of the row or column from the laser.
+  /// several places meet, as many more as an edge at an angle to the grid crosses on a row: one if that is 45 degrees
+  /// (beyond, it lies along the row). `aside_m`: distance of the row or column from the laser.
   float blurred_cells(const Sight& sight, float askew, float aside_m) const {
-    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.now().away_m(run.first, run.last);
+    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.standing().away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
     const float range_m2 = above_m * above_m + away_m * away_m + aside_m * aside_m;
     const float crossed = sight.end_m > 0.0f ? std::min(1.0f, magnitude(askew)) : 0.0f;

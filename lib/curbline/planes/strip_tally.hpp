@@ -1,6 +1,6 @@
 // Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
-// lie in strips that carry a step, in the shadow of one, beside a high obstacle, or where an edge is blurred. Cost:
-// that of the runs.
+// lie in strips that carry a step, in the shadow of one, beside a high obstacle or behind one, or where an edge is
+// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip that stands on one plane.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +48,7 @@ struct StripTally {
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
-
-  std::array<float, 2> wake_cells{};  ///< in strips that stand on one plane, hidden behind an obstacle
+  std::array<float, 2> wake_cells{};     ///< in strips that stand on one plane, hidden behind an obstacle
 
   /// Adds a strip between two others. Its cells' spread beyond noise is that beyond the spread of the quieter plane
   /// beside it.
@@ -125,12 +124,12 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
         const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
-        const float tilted = askew(planes[run.label], axis);
-        const Sight across = along.across(tilted, aside_m);
+        const float tangent = askew(planes[run.label], axis);
+        const Sight across = along.across(tangent, aside_m);
         if (carries_step) {
           if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
         }
-        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, tilted, aside_m);
+        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent, aside_m);
       }
       if (run.length() > StripTally::longest_strip) return;
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
