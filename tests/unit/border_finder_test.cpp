@@ -364,11 +364,18 @@ TEST_CASE("border finder: ground that ends, a ramp down, and a veil behind which
 //              '._______
 TEST_CASE("border finder: a veil behind which there is ground out of reach is a step down, as deep as the veil falls") {
   const bool turned = GENERATE(false, true);
-  const auto brinks = Street{.slope = -0.9, .from = 0.6, .to = 9.0, .top = 1.4, .turned = turned}.one_sided();
+  const auto brinks = Street{.slope = -1.5, .from = 0.6, .to = 9.0, .top = 1.4, .turned = turned}.one_sided();
   REQUIRE(brinks.size() == 1);
   CHECK(brinks[0].curb.kind == CurbKind::step_down);
   CHECK(brinks[0].at == Approx(0.6).margin(0.03));
-  CHECK(brinks[0].curb.height_m == Approx(-0.72).margin(0.04));
+  CHECK(brinks[0].curb.height_m == Approx(-1.2).margin(0.04));
+}
+
+// A bank that is seen from above may be a veil: its slope is known, and it is no step.
+TEST_CASE("border finder: a bank that leads to ground out of reach is no brink") {
+  for (const double slope : {-0.4, -0.5, -0.7}) {
+    CHECK(Street{.slope = slope, .from = 0.6, .to = 9.0, .top = 1.6, .laser_x_m = -2.0f}.one_sided().empty());
+  }
 }
 
 // The face of a step up that leans against the grid by 1 in 20: from the step along a row, away from the laser, cells

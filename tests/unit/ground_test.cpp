@@ -630,21 +630,45 @@ TEST_CASE("ground: a strip that does not touch an obstacle is no fringe of it") 
 // Seen from above, from the left:   .  .  .  .  .  .
 //                                   .  #  ~  ~  ~  .    a post, and a ridge one cell wide that begins at it
 //                                   .  .  .  .  .  .
-TEST_CASE("ground: a narrow ridge that the laser sees past a post alone is no ground, one that it sees freely is") {
-  const auto ground_with = [](double post_y_m, bool seen_before_it) {
-    return [=](double x, double y) {
-      const bool in_row = y >= 1.1 && y < 1.2;
-      if (x >= 0.7 && x < 0.9 && y >= post_y_m && y < post_y_m + 0.1)
-        return static_cast<int>(y * 100) % 10 < 5 ? 0.5 : 2.0;
-      if (x >= 0.9 && x < 1.1 && in_row && !seen_before_it) return std::nan("");
-      return x >= 1.1 && x < 1.6 && in_row ? 0.05 : 0.0;
-    };
+TEST_CASE("ground: a narrow ridge that is hardly seen past a post is no ground, one that is seen past a curb is") {
+  struct Ridge {
+    double before_m = 2.0;      ///< height of what stands before it
+    double post_y_m = 1.1;      ///< where
+    bool seen_between = false;  ///< the ground between both
+    int times_seen = 1;         ///< where the ground beside it is seen three times
+    bool along_y = false;       ///< the whole map turned
+    Viewpoint view{0.0f, 1.15f, 1.0f};
   };
-  const Viewpoint in_line{0.0f, 1.15f, 1.0f}, aside{1.35f, 0.0f, 1.0f};
-  CHECK(borne_from(in_line, ground_with(1.1, false)) == 1);
-  CHECK(borne_from(in_line, ground_with(1.1, true)) == 2);
-  CHECK(borne_from(in_line, ground_with(1.5, true)) == 2);
-  CHECK(borne_from(aside, ground_with(1.1, false)) == 2);
+  const auto planes = [](const Ridge& ridge) {
+    const auto height_m = [&](bool again, double x, double y) {
+      if (ridge.along_y) std::swap(x, y);
+      const bool in_row = y >= 1.1 && y < 1.2;
+      if (x >= 0.7 && x < 0.9 && y >= ridge.post_y_m && y < ridge.post_y_m + 0.1)
+        return static_cast<int>((x + y) * 100) % 10 < 5 ? 0.0 : ridge.before_m;
+      if (x >= 0.9 && x < 1.1 && in_row && !ridge.seen_between) return std::nan("");
+      if (x >= 1.1 && x < 1.6 && in_row) return again ? std::nan("") : 0.05;
+      return 0.0;
+    };
+    Stages<small_limits> stages(small_settings());
+    stages.view = ridge.view;
+    if (ridge.along_y) std::swap(stages.view.x_m, stages.view.y_m);
+    for (int k = 0; k < 3; ++k) {
+      fill(stages.dem, [&](double x, double y) { return height_m(k >= ridge.times_seen, x, y); });
+    }
+    stages.settle();
+    std::set<int> labels;
+    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
+    return labels.size();
+  };
+  for (const bool along_y : {false, true}) {
+    CHECK(planes({.along_y = along_y}) == 1);
+    CHECK(planes({.before_m = 0.12, .along_y = along_y}) == 2);  // a curb, or the ridge's own face
+    CHECK(planes({.seen_between = true, .along_y = along_y}) == 2);
+    CHECK(planes({.post_y_m = 1.5, .along_y = along_y}) == 2);
+    CHECK(planes({.times_seen = 3, .along_y = along_y}) == 2);  // an upstand is seen as its ground is
+    CHECK(planes({.along_y = along_y, .view = {1.35f, 0.0f, 1.0f}}) == 2);
+    CHECK(planes({.along_y = along_y, .view = {0.0f, 1.15f, 0.2f}}) == 2);  // not where the laser was
+  }
 }
 
 TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left to it, too") {
@@ -801,21 +825,6 @@ TEST_CASE("ground: what stands on the ground is measured against the largest pla
   CHECK(stages.label_at(2, 12) == platform);
   REQUIRE(stages.label_at(20, 2) != platform);
   CHECK(stages.label_at(15, 12) == stages.label_at(20, 2));  // the box's cells have the road's label
-}
-
-//  _____
-//       '-.            cells as level as treads, each lower than the one before; or a bank that falls as steeply
-//          '-.____
-TEST_CASE("ground: a plane down a flight of stairs, whose cells lie level, may be a veil, one down a bank is ground") {
-  const auto may_be_one = [](double slope, bool treads) {
-    const Viewpoint view{0.0f, 1.2f, 1.0f};
-    return may_be_veil(view, 1.2, 1.2, [=](double x, double) {
-      return -slope * (std::clamp(treads ? std::floor(10 * x) / 10 + 0.05 : x, 0.6, 1.8) - 0.6);
-    });
-  };
-  CHECK(may_be_one(0.6, true));
-  CHECK_FALSE(may_be_one(0.6, false));
-  CHECK_FALSE(may_be_one(0.3, true));  // ground may be as steep
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {

@@ -30,7 +30,6 @@ struct OneCell {
   }
   const Cell& cell() const { return dem->cell(dem->slot(10, 10)); }
   float expected_m2() const { return slope_scatter_m2(*dem, cell(), plane); }
-  bool level() const { return lies_level(*dem, cell(), plane); }
   float likelihood() const { return level_likelihood(*dem, cell(), plane); }
 
   std::unique_ptr<Dem<small_limits>> dem = std::make_unique<Dem<small_limits>>();
@@ -41,12 +40,6 @@ TEST_CASE("level cell: a slope scatters heights by its rise in the cell, less wh
   const OneCell slope(0.6);
   CHECK(slope.expected_m2() == Approx(slope.cell().scatter_m2 / slope.cell().points).epsilon(0.05));
   CHECK(OneCell(0.6, 1, 0.01).expected_m2() < 0.5f * OneCell(0.6, 1, 0.05).expected_m2());
-}
-
-TEST_CASE("level cell: what lies level is told from what rises as the plane does") {
-  CHECK(OneCell(0.0).level());
-  CHECK_FALSE(OneCell(0.6).level());
-  CHECK_FALSE(OneCell(-0.6).level());
 }
 
 TEST_CASE("level cell: level readings tell against a slope, the more of them the more, a single one says nothing") {
@@ -61,7 +54,6 @@ TEST_CASE("level cell: level readings tell against a slope, the more of them the
   Plane plane;
   plane.slope_x = 0.6f;
   CHECK(level_likelihood(*dem, dem->cell(dem->slot(10, 10)), plane) == 0.0f);
-  CHECK_FALSE(lies_level(*dem, dem->cell(dem->slot(10, 10)), plane));
 }
 
 }  // namespace

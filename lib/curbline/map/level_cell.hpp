@@ -25,14 +25,6 @@ float slope_scatter_m2(const Dem<limits>& dem, const Cell& cell, const Plane& pl
          cell.weight / cell.points;
 }
 
-/// Is the scatter of a cell nearer to that of level ground than to what the slope makes over a whole cell? The noise is
-/// at least the texture of the ground.
-template <Limits limits>
-bool lies_level(const Dem<limits>& dem, const Cell& cell, const Plane& plane) {
-  const float slope_m2 = dem.slope_m2(plane) * cell.weight / cell.points;
-  return cell.scatter_m2 < (cell.points - 1.0f) * (dem.prior().texture_m2 + 0.5f * slope_m2);
-}
-
 /// Twice the log of the likelihood ratio of level ground to the slope, for the scatter of a cell: each with the noise
 /// that suits it best, as the sensor's is not known so well. 0 where heights spread as far as the slope makes them.
 template <Limits limits>

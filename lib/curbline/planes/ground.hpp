@@ -11,17 +11,15 @@
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
-//   - a wake: a narrow ridge on a plane, with an obstacle between it and the laser: readings that mix the edge of a
-//     post with the ground beyond.
+//   - a wake: a narrow ridge on a plane, seen less than half as often as that, with an obstacle higher than a curb
+//     between it and the laser: readings that mix the edge of a post with the ground beyond.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their
 // heights say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a
 // curb: one that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls
 // away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot, from where it
 // was last seen, and the cells that an edge crosses, at whatever angle the rays cross it: it blurs that edge, unless it
-// falls by too little of the step, as the tread of a stair does. So is one along a flight of stairs down, of whose
-// treads only the ends are seen: its cells lie level, although it does not. Cost: three passes over the window, and one
-// for each plane that falls as steeply as stairs.
+// falls by too little of the step, as the tread of a stair does. Cost: three passes over the window.
 #pragma once
 
 #include <array>
@@ -31,7 +29,6 @@
 
 #include "curbline/grid.hpp"
 #include "curbline/map/dem.hpp"
-#include "curbline/map/level_cell.hpp"
 #include "curbline/per_cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/planes/obstacles.hpp"
@@ -75,15 +72,13 @@ class Ground {
   }
   static Kind kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                       const Obstacles<limits>& obstacles, const Viewpoint& view);
-  static bool on_stairs(const Dem<limits>& dem, const CellLabels<limits>& region_label, std::size_t label,
-                        const Plane& plane, const Viewpoint& view);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
 
   std::array<Kind, limits.planes> kind_{};
 };
 
-/// Veils are only considered for a laser well above the ground: else the points were not seen from the viewpoint, as in
-/// a cloud whose origin is on the ground, and a plane that contains it may be a pavement.
+/// Veils and wakes are only considered for a laser well above the ground: else the points were not seen from the
+/// viewpoint, as in a cloud whose origin is on the ground, and a plane that contains it may be a pavement.
 template <Limits limits>
 auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                              const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
@@ -91,10 +86,10 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   if (obstacles.is(label)) return Kind::cover;
   const Plane* ground = obstacles.ground();
   if (ground == nullptr || !plane.alive()) return Kind::ground;
-  if (tally.wake()) return Kind::cover;
   const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
+  if (tally.wake()) return Kind::cover;
   const bool steep = plane.steeper_than_ramp();
   // A mixture of an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
@@ -104,23 +99,6 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
-/// Does a plane run down a flight of stairs, along the edges of its treads? Then most of its points lie in cells that
-/// lie level. (On banks that fall by 1 in 3 to 4 in 5 at most a third do, by chance.) A pass over the window for a
-/// plane that falls away from the laser more steeply than ground.
-template <Limits limits>
-bool Ground<limits>::on_stairs(const Dem<limits>& dem, const CellLabels<limits>& region_label, std::size_t label,
-                               const Plane& plane, const Viewpoint& view) {
-  if (!plane.steeper_than_ground() || !drops_off(plane, Plane{}, view)) return false;
-  float points = 0.0f, level_points = 0.0f;
-  dem.for_each_valid([&](int, int, int s) {
-    if (region_label[s] != label) return;
-    const Cell& cell = dem.cell(s);
-    points += cell.points;
-    if (lies_level(dem, cell, plane)) level_points += cell.points;
-  });
-  return 2.0f * level_points > points;
-}
-
 template <Limits limits>
 template <typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
@@ -128,8 +106,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const Obstacles<limits> obstacles(dem, planes, view, region_label);
   const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
-    if (kind == Kind::ground && on_stairs(dem, region_label, l, planes[l], view)) kind = Kind::doubtful;
+    const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
     const Kind before = kind_[l];
     kind_[l] = kind;
     if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<Label>(l));

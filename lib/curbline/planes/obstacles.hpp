@@ -37,8 +37,8 @@ class Obstacles {
   bool high(std::size_t label) const { return high_[label]; }
   /// Is it small, level and higher than most steps, but part of a way?
   bool way(std::size_t label) const { return way_[label]; }
-  /// Seen back from cell (i, j) of this plane toward the laser, where it last saw the cell: is the first that is seen,
-  /// and not of the plane, an obstacle?
+  /// Seen back from cell (i, j) of this plane toward the laser, where it last saw the cell: does an obstacle higher
+  /// than a step stand before any ground? A cell that a step crosses is neither.
   bool hides(int i, int j, Label label) const;
   /// Number of cells of a plane's region.
   float cells(std::size_t label) const { return cells_[label]; }
@@ -61,6 +61,10 @@ class Obstacles {
   };
   using Extents = std::array<Extent, limits.planes>;
 
+  /// Do heights with this variance spread, evenly, over more than a step?
+  static bool higher_than_step(float variance_m2) {
+    return variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+  }
   void add_tops();
   void take_ways_from(PlaneFlags& top, const Neighbours& beside);
   Extents extents_of(const PlaneFlags& asked) const;
@@ -90,7 +94,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
   });
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     const bool steep = dem_.steep(spread[l], weight[l]);
-    high_[l] = steep && planes_[l].variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
+    high_[l] = steep && higher_than_step(planes_[l].variance_m2);
     is_[l] = steep && (high_[l] || planes_[l].narrower_than(shoulders_m));
     if (!planes_[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
@@ -157,7 +161,9 @@ bool Obstacles<limits>::hides(int i, int j, Label label) const {
     const int slot = dem_.slot(static_cast<int>(p), static_cast<int>(q));
     const Cell& cell = dem_.cell(slot);
     const Label other = region_label_[slot];
-    if (cell.valid() && other != label) return dem_.steep(cell) || (other != no_label && is_[other]);
+    if (!cell.valid() || other == label) continue;
+    if ((other != no_label && high_[other]) || higher_than_step(cell.scatter_m2 / cell.weight)) return true;
+    if (!dem_.steep(cell)) return false;
   }
   return false;
 }

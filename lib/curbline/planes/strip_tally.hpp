@@ -135,8 +135,9 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
-      if (strip.between(StripTally::sparse_gap) && strip.stands_on_one() &&
-          obstacles.hides(axis == 0 ? run.first : line, axis == 0 ? line : run.first, run.label)) {
+      const int middle = (run.first + run.last) / 2;
+      if (strip.between(StripTally::sparse_gap) && strip.stands_on_one() && strip.half_hidden() &&
+          obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
         tally.wake_cells[axis] += cells;
       }
       if (strip.alone(StripTally::sparse_gap)) {
