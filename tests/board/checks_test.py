@@ -65,13 +65,17 @@ class Stack(Built):
     def test_a_function_of_unknown_code_is_refused(self):
         self.refuses('extern "C" int elsewhere();\nextern "C" int root() { return elsewhere() + 1; }', "not in the program")
 
-
     def test_a_program_that_is_none_is_told_in_one_line(self):
         self.build(self.leaf)
         none = self.folder / "none.elf"
         none.write_text("no program")
         done = subprocess.run([sys.executable, BOARDS / "stack.py", none, "root"], capture_output=True, text=True)
         self.assertRegex(done.stderr, f"^{ARM}objdump .*none.elf: .*\n$")
+
+    def test_binutils_that_are_not_there_are_told_in_one_line(self):
+        program = self.build(self.leaf)
+        done = subprocess.run([sys.executable, BOARDS / "stack.py", program, "root", "none-"], capture_output=True, text=True)
+        self.assertRegex(done.stderr, "^none-objdump: .*; expected .*\n$")
 
     def test_who_reads_no_more_gets_no_traceback(self):
         program = self.build(self.leaf + 'extern "C" int root(char* p) { return leaf(p) + 1; }')

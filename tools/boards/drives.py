@@ -9,8 +9,8 @@ sys.path.append(str(boards.ROOT / "tools"))
 import scoring
 
 RECORDED = boards.ROOT.parent / "shared" / "data" / "clausius"
-# The streets with the most planes, curbs and work, a drive whose window moves, and one whose poses step.
 PROGRAMS = ["curbline", "curbline-drive-log"]
+# The streets with the most planes, curbs and work, a drive whose window moves, and one whose poses step.
 LASER = "utm30lx"
 SCENES = ["street", "steps", "roundabout", "inclined_planes", "city", "random-drive:9001"]
 ERRORS = {"random-drive:9001": scoring.JUMPS}

@@ -17,7 +17,10 @@ FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "p
 def run(line, text=None):
     """Standard output of a command. Ends with one line if it fails."""
     words = [str(word) for word in line]
-    done = subprocess.run(words, input=text, capture_output=True, text=True)
+    try:
+        done = subprocess.run(words, input=text, capture_output=True, text=True)
+    except OSError as error:
+        raise SystemExit(f"{words[0]}: {error.strerror}; expected a program") from None
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(words)}: {' '.join(done.stderr.split())}")
     return done.stdout
