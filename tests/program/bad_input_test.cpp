@@ -105,12 +105,17 @@ TEST_CASE("program: a time that goes back is refused in scan lines and poses") {
   check_refused(replay_with(logs, "poses", swapped("poses.tum")), logs.path("back") + ":5: ", "goes back; expected");
 }
 
-TEST_CASE("program: a CAN log whose times all go back is refused for its times") {
+TEST_CASE("program: a CAN log whose times go back or stand is refused for its times") {
   const Recording logs = standing();
-  std::string back;
-  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) back = line + "\n" + back;
-  const std::string log = logs.directory().write("back", back);
-  check_refused(replay_with(logs, "can", log), log + ": the times go back: ", "; expected times that rise\n");
+  std::string back, still;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) {
+    back = line + "\n" + back;
+    still += "(0.500000" + line.substr(line.find(')')) + "\n";
+  }
+  for (const std::string& text : {back, still}) {
+    const std::string log = logs.directory().write("can", text);
+    check_refused(replay_with(logs, "can", log), log + ": the times do not rise: ", "; expected times that rise\n");
+  }
 }
 
 TEST_CASE("program: a pose of the future is refused with the line behind it") {

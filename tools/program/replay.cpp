@@ -218,7 +218,7 @@ void Replay::check_complete() const {
     throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
   if (lines_taken_ > 0) return;
   if (const long back = pipeline_->counters().tilt_dropped; 2 * back > tilt_readings_) {
-    throw BadInput(logs_.can + ": the times go back: " + std::to_string(back) + " of " +
+    throw BadInput(logs_.can + ": the times do not rise: " + std::to_string(back) + " of " +
                    std::to_string(tilt_readings_) +
                    " tilt readings were dropped, and no scan line could be used; expected times that rise");
   }
