@@ -262,7 +262,7 @@ TEST_CASE("program: a file that cannot be written is named and none is left") {
 TEST_CASE("program: a file that cannot be written is refused before the work begins") {
   const Recording logs = standing();
   const std::string none = logs.path("none"), nowhere = logs.path("nowhere/out.svg"), bitmap = logs.path("map.bmp");
-  for (const std::string option : {"--labels", "--curbs", "--picture"})
+  for (const std::string option : {"--labels", "--curbs", "--picture", "--line-costs"})
     check_refused(curbline(logs.replay("scans", none) + Words{option, nowhere}), nowhere + ": ", "cannot be written");
   check_refused(curbline(logs.replay("scans", none) + Words{"--picture", bitmap}), bitmap + ": ", "ends in .png");
   check_refused(curbline({"map", none + ".xyz", "--picture", bitmap}), bitmap + ": ", "ends in .png");
@@ -275,6 +275,15 @@ std::string line_of(const Words& arguments) {
   std::string line = CURBLINE_PROGRAM;
   for (const std::string& word : arguments) line += " '" + word + "'";
   return line;
+}
+
+TEST_CASE("program: a pipe to write is opened when there is something to write") {
+  const Recording logs = standing();
+  const std::string in = logs.path("in"), out = logs.path("out");
+  REQUIRE(std::system(("mkfifo " + in + " " + out).c_str()) == 0);
+  const std::string replay = "timeout 20 " + line_of(logs.replay("scans", in) + Words{"--labels", out});
+  const std::string feed = "timeout 10 sh -c 'cat " + logs.path("scans.carmen") + " > " + in + "'";
+  CHECK(std::system((replay + " & " + feed + " && timeout 10 grep -q x_m " + out).c_str()) == 0);
 }
 
 TEST_CASE("program: nothing is left of what a signal ends, and it ends by that signal") {
@@ -294,6 +303,14 @@ TEST_CASE("program: nothing is left of what a signal ends, and it ends by that s
     CHECK(status_of(logs.replay() + Words{"--speed", "1", "--line-costs", logs.path("lines.csv")}) == 128 + number);
     CHECK(names_in(logs.folder()) == before);
   }
+}
+
+TEST_CASE("program: a replay that is killed leaves nothing beside the files that it has not begun") {
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  const Words before = names_in(logs.folder());
+  const std::string replay = line_of(logs.replay() + Words{"--speed", "1", "--labels", logs.path("labels.csv")});
+  CHECK(WEXITSTATUS(std::system(("ulimit -c 0; timeout -s KILL 0.5 " + replay).c_str())) == 128 + 9);
+  CHECK(names_in(logs.folder()) == before);
 }
 
 TEST_CASE("program: a reader that closes the pipe leaves nothing half-written") {

@@ -3,6 +3,8 @@
 #include <CLI/Error.hpp>
 #include <filesystem>
 
+#include "formats/atomic_file.hpp"
+
 namespace curbline::tools {
 namespace {
 
@@ -31,6 +33,13 @@ void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<Name
       throw CLI::ValidationError(output->option, "-; expected a file name: standard output is not for it");
     for (const NamedFile& input : inputs) check_apart(*output, input);
     for (auto before = outputs.begin(); before != output; ++before) check_apart(*output, *before);
+  }
+}
+
+void check_writable(const std::vector<NamedFile>& outputs) {
+  for (const NamedFile& output : outputs) {
+    std::error_code none;
+    if (!output.path.empty() && !fs::is_other(fs::status(output.path, none))) AtomicFile file(output.path);
   }
 }
 

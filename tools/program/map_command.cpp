@@ -57,11 +57,11 @@ void add_map(CLI::App& app) {
   add_map_options(*command, o->map);
   command->callback([o] {
     check_outputs(outputs_of(o->map), {{"the cloud", o->cloud}});
-    MapOutputs outputs(o->map);
+    check_map_outputs(o->map);
     const std::vector<Point3> cloud = read_cloud(o->cloud);
     const Map map = map_cloud(cloud, o->map);
     check_seen(o->cloud, cloud, map.grid.bounds(), o->map.max_height_m);
-    outputs.give_out(map, {.title = o->cloud, .robot = RobotMarker{}}, {{"points", cloud.size()}});
+    give_out(o->map, map, {.title = o->cloud, .robot = RobotMarker{}}, {{"points", cloud.size()}});
   });
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "formats/atomic_file.hpp"
 #include "formats/csv.hpp"
 
 namespace curbline::tools {
@@ -14,28 +16,27 @@ std::vector<NamedFile> outputs_of(const MapOptions& options) {
   return files;
 }
 
-MapOutputs::MapOutputs(const MapOptions& options) : options_(options) {
+void check_map_outputs(const MapOptions& options) {
   if (!options.picture.empty()) check_picture_name(options.picture);
-  if (!options.labels.empty()) labels_.emplace(options.labels);
-  if (!options.curbs.empty() && options.curbs != "-") curbs_.emplace(options.curbs);
-  if (!options.picture.empty()) picture_.emplace(options.picture);
+  check_writable(outputs_of(options));
 }
 
-void MapOutputs::give_out(const Map& map, const PictureExtras& picture, nlohmann::json summary) {
-  if (labels_) write_labels(labels_->stream(), map);
-  if (curbs_) write_curbs(curbs_->stream(), map.curbs);
-  if (picture_) draw_picture(map, *picture_, picture);
+void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary) {
+  std::optional<AtomicFile> labels, curbs, drawn;
+  if (!options.labels.empty()) write_labels(labels.emplace(options.labels).stream(), map);
+  if (!options.curbs.empty() && options.curbs != "-") write_curbs(curbs.emplace(options.curbs).stream(), map.curbs);
+  if (!options.picture.empty()) draw_picture(map, drawn.emplace(options.picture), picture);
   // Each is written beside its target, which it replaces only after all could be written.
-  for (auto* file : {&labels_, &curbs_, &picture_}) {
+  for (auto* file : {&labels, &curbs, &drawn}) {
     if (*file) (*file)->flush();
   }
-  for (auto* file : {&labels_, &curbs_, &picture_}) {
+  for (auto* file : {&labels, &curbs, &drawn}) {
     if (*file) (*file)->commit();
   }
-  if (options_.curbs == "-") {
+  if (options.curbs == "-") {
     for (const MapCurb& curb : map.curbs) write_curb_json(std::cout, curb);
   }
-  if (options_.json) {
+  if (options.json) {
     summary["cells"] =
         std::count_if(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points > 0; });
     summary["planes"] = map.planes.size();

@@ -1,33 +1,23 @@
-// The outputs of map and replay for a finished map. Their files are opened before the work begins: one that cannot be
-// written is refused at once, not after an hour of scan lines.
+// The outputs of map and replay for a finished map.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <vector>
 
 #include "command_line/outputs.hpp"
-#include "formats/atomic_file.hpp"
 #include "map/map.hpp"
 #include "picture/picture.hpp"
 #include "program/map_options.hpp"
 
 namespace curbline::tools {
 
-/// The files that MapOutputs would write.
+/// The files that give_out() would write.
 std::vector<NamedFile> outputs_of(const MapOptions& options);
 
-class MapOutputs {
- public:
-  /// Throws BadInput if a requested file cannot be written, or a picture has another ending than .png or .svg.
-  explicit MapOutputs(const MapOptions& options);
+/// Before the work begins: check_writable(), and throws BadInput if a picture has another ending than .png or .svg.
+void check_map_outputs(const MapOptions& options);
 
-  /// Writes the requested files, all or none, and the summary with --json. `summary` may have further entries.
-  void give_out(const Map& map, const PictureExtras& picture, nlohmann::json summary);
-
- private:
-  MapOptions options_;
-  std::optional<AtomicFile> labels_, curbs_, picture_;
-};
+/// Writes the requested files, all or none, and the summary with --json. `summary` may have further entries.
+void give_out(const MapOptions& options, const Map& map, const PictureExtras& picture, nlohmann::json summary);
 
 }  // namespace curbline::tools

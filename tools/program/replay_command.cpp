@@ -116,9 +116,8 @@ void run(const Options& o) {
   apply_window(o.map, robot.window);
   const bool batch = o.map.method != MapMethod::curbline;
   const bool streams = !batch && o.map.curbs == "-";
-  MapOptions of_map = o.map;
-  if (streams) of_map.curbs.clear();
-  MapOutputs outputs(of_map);
+  check_map_outputs(o.map);
+  check_writable({{"--line-costs", o.line_costs}});
   Replay replay(robot, o.logs);
   CurbStream stream;
   std::optional<LineCosts> costs;
@@ -144,7 +143,9 @@ void run(const Options& o) {
       map.curbs = replay.all_curbs();
     }
   }
-  outputs.give_out(map, {.title = o.logs.scans, .robot = replay.robot()}, summary_of(replay));
+  MapOptions out = o.map;
+  if (streams) out.curbs.clear();  // they have been given out
+  give_out(out, map, {.title = o.logs.scans, .robot = replay.robot()}, summary_of(replay));
 }
 
 }  // namespace
