@@ -93,23 +93,23 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
                                       line.away(line.dem.seen_from(s, stages_.view), along) == toward);
   };
   if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
-  const auto on_slope = [&](int s) {
+  const auto on_bank = [&](int s) {  // on a plane that only may be a veil
     return stages_.mixture.region_label(s) != no_label && stages_.mixture.on_ground(s);
   };
   int last = first_of_veil;
-  bool slope = on_slope(line.slot(last));
+  bool bank = on_bank(line.slot(last));
   while (const int g = line.next_valid(last, toward, stages_.settings.link_reach)) {
     const int next = last + toward * g;
     const int s = line.slot(next);
     if (stages_.bears_ground(s) &&
         (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s)))) {
-      if (slope || !out_of_reach(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil, next))
+      if (bank || !out_of_reach(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil, next))
         return std::nullopt;
       break;
     }
     if (!may_fall(next)) break;
     last = next;
-    slope = slope || on_slope(s);
+    bank = bank || on_bank(s);
   }
   if (!below(last)) return std::nullopt;
 
