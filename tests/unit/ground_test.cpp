@@ -17,16 +17,20 @@ using test::small_limits;
 using test::small_settings;
 using test::Stages;
 
-/// The number of different planes that cells of the window have as labels.
+/// The number of different planes that cells of the window have as labels, once these have settled.
+std::size_t borne_by(Stages<small_limits>& stages) {
+  stages.settle();
+  std::set<int> labels;
+  stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
+  return labels.size();
+}
+
 template <typename Height>
 std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
   stages.view = view;
   fill(stages.dem, height_m);
-  stages.settle();
-  std::set<int> labels;
-  stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
-  return labels.size();
+  return borne_by(stages);
 }
 
 template <typename Height>
@@ -299,10 +303,7 @@ TEST_CASE("ground: readings in the shadow of a step stay what they are when the 
     fill(stages.dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; });
     stages.dem.look_from(robot_x_m, 1.2f);
     stages.view.x_m = robot_x_m;
-    stages.settle();
-    std::set<int> labels;
-    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
-    return labels.size();
+    return borne_by(stages);
   };
   CHECK(borne_after(0.0f) == 2);
   CHECK(borne_after(1.55f) == 2);
@@ -346,10 +347,7 @@ TEST_CASE(
     see(false);
     look_from(robot_x_m);
     see(true);
-    stages.settle();
-    std::set<int> labels;
-    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
-    return labels.size();
+    return borne_by(stages);
   };
   CHECK(borne_after(0.0f) == 2);
   CHECK(borne_after(2.2f) == 2);
@@ -362,10 +360,7 @@ TEST_CASE("ground: the face of a curb is one in a window that is longer than wid
       return (along < 0.55 ? 0.0 : 0.05) + (along > 1.2 && across > 0.55 ? 0.05 : 0.0);
     };
     fill(stages.dem, [&](double x, double y) { return rows > cols ? ground(x, y) : ground(y, x); });
-    stages.settle();
-    std::set<int> labels;
-    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
-    return labels.size();
+    return borne_by(stages);
   };
   CHECK(borne_in(24, 12) == 3);
   CHECK(borne_in(12, 24) == 3);
@@ -655,10 +650,7 @@ TEST_CASE("ground: a narrow ridge that is hardly seen past a post is no ground, 
     for (int k = 0; k < 3; ++k) {
       fill(stages.dem, [&](double x, double y) { return height_m(k >= ridge.times_seen, x, y); });
     }
-    stages.settle();
-    std::set<int> labels;
-    stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
-    return labels.size();
+    return borne_by(stages);
   };
   for (const bool along_y : {false, true}) {
     CHECK(planes({.along_y = along_y}) == 1);
