@@ -50,9 +50,7 @@ Edges edges_of(const std::vector<GroundRegion>& regions) {
     for (std::size_t i = 0; i < outline.size(); ++i)
       all.push_back({outline[i], outline[(i + 1) % outline.size()], own});
   }
-  std::vector<Bounds> boxes;
-  for (const Edge& edge : all) boxes.push_back(edge.box());
-  return {all, BoundsTree(boxes)};
+  return {all, tree_of(all, [](const Edge& edge) { return edge.box(); })};
 }
 
 /// Where the edge must be cut so that each piece has one region on either side.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "map/polygon.hpp"
@@ -31,5 +32,13 @@ class BoundsTree {
   std::vector<std::size_t> order_;
   std::vector<Node> nodes_;
 };
+
+/// The tree of the boxes around things.
+template <typename Thing, typename BoxOf>
+BoundsTree tree_of(const std::vector<Thing>& things, BoxOf box_of) {
+  std::vector<Bounds> boxes;
+  for (const Thing& thing : things) boxes.push_back(box_of(thing));
+  return BoundsTree(std::move(boxes));
+}
 
 }  // namespace curbline::tools

@@ -8,18 +8,14 @@ namespace {
 
 constexpr double furthest_m = std::numeric_limits<double>::max();  // of the ground without bounds
 
-std::vector<Bounds> boxes_of(const std::vector<GroundRegion>& regions) {
-  std::vector<Bounds> boxes;
-  for (const GroundRegion& region : regions) {
-    boxes.push_back(region.outline.empty() ? Bounds{-furthest_m, -furthest_m, furthest_m, furthest_m}
-                                           : bounds(region.outline));
-  }
-  return boxes;
+Bounds about_region(const GroundRegion& region) {
+  return region.outline.empty() ? Bounds{-furthest_m, -furthest_m, furthest_m, furthest_m} : bounds(region.outline);
 }
 
 }  // namespace
 
-GroundPlan::GroundPlan(const std::vector<GroundRegion>& regions) : regions_(regions), tree_(boxes_of(regions)) {}
+GroundPlan::GroundPlan(const std::vector<GroundRegion>& regions)
+    : regions_(regions), tree_(tree_of(regions, about_region)) {}
 
 int GroundPlan::region_at(Point2 p) const {
   for (const std::size_t k : near({p.x, p.y, p.x, p.y})) {

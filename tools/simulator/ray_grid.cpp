@@ -20,13 +20,6 @@ bool any_edge_crosses(const Polygon& outline, const Bounds& box) {
   return false;
 }
 
-template <typename Thing, typename Box>
-BoundsTree tree_of(const std::vector<Thing>& things, Box box_of) {
-  std::vector<Bounds> boxes;
-  for (const Thing& thing : things) boxes.push_back(box_of(thing));
-  return BoundsTree(std::move(boxes));
-}
-
 }  // namespace
 
 /// What lies on the plan, for the cells.
