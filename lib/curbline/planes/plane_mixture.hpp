@@ -93,6 +93,10 @@ class PlaneMixture {
 
  private:
   using Fitted = typename CleanFits<limits>::Wanted;
+  // Not inlined: the ranking takes a kilobyte of stack, which is free again for what follows.
+  template <typename LabelOf>
+  [[gnu::noinline]] Fitted match_regions(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
+                                         LabelOf&& label_of, Counters& counters);
   void take_labels(const RegionRanking<limits>& ranking);
   Fitted fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking);
 
@@ -110,6 +114,16 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
                                   const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of,
                                   Counters& counters) {
   if (!dem.any_touched()) return;
+  const Fitted fitted = match_regions(dem, work, label_of, counters);
+  ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_.insert(label); });
+  CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
+}
+
+/// Gives each region its plane, and each cell that of its region. Returns which planes are fitted to their region.
+template <Limits limits>
+template <typename LabelOf>
+auto PlaneMixture<limits>::match_regions(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
+                                         LabelOf&& label_of, Counters& counters) -> Fitted {
   RegionRanking<limits> ranking(work, settings_.min_cells, counters);
   dem.for_each_valid([&](int, int, int s) {
     const Label rank = ranking.rank_of_cell(s);
@@ -127,9 +141,7 @@ void PlaneMixture<limits>::update(const Dem<limits>& dem, const typename Segment
     region_label_[s] = label;
     relabelled_.insert(s);
   });
-  const Fitted fitted = fit(dem, ranking);
-  ground_.update(dem, planes_, view, region_label_, [this](Label label) { fresh_.insert(label); });
-  CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
+  return fit(dem, ranking);
 }
 
 /// Planes whose label no region has taken die.
