@@ -1,6 +1,6 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
 // the ground along it and next to it where that deviates from them. Cost: eight cells beside each border, and on a
-// robot that drives those up to the first one of the lower side, twice where a slope lies between the planes.
+// robot that drives those up to the first one of the lower side.
 #pragma once
 
 #include <algorithm>
@@ -51,8 +51,9 @@ class StepHeight {
   float shadow_m() const { return shadow_m_; }
 
  private:
-  void leave_shadow(const Part& part);
-  Viewpoint seen_from(const Part& part, Label lower) const;
+  bool high_is_upper() const { return height_m_ > 0.0f; }
+  Viewpoint lower_seen_from(const Part& part) const;
+  void leave_shadow(const Viewpoint& view);
   int cell_beside(const Border& border, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const Part& part, Label label) const;
@@ -64,7 +65,7 @@ class StepHeight {
   // Not inlined: three times inlined it takes 320 bytes of flash more.
   [[gnu::noinline]] Deviations deviations() const;
   float plane_variance_m2(const Plane& plane) const;
-  float slope_variance_m2(const Part& part) const;
+  float ground_share_of_slope(const Viewpoint& view) const;
 
   const CurbStages<limits>& stages_;
   Piece& piece_;
@@ -84,7 +85,12 @@ template <Limits limits>
 void StepHeight<limits>::refine(const Part& part, bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
-  if (is_step && !one_sided) leave_shadow(part);
+  float ground_share = 0.0f;  // of the step
+  if (is_step && !one_sided) {
+    const Viewpoint view = lower_seen_from(part);
+    ground_share = ground_share_of_slope(view);
+    leave_shadow(view);
+  }
   const auto [low, high] = piece_.planes;
   // A plane's error is common to the whole piece: it does not average out. Behind a brink up to as much again as is
   // visible may be hidden, uniformly.
@@ -92,7 +98,7 @@ void StepHeight<limits>::refine(const Part& part, bool is_step) {
   if (is_step && !one_sided) follow_ground(part);
   if (is_step) {
     follow_ground_beside();
-    variance_m2_ += slope_variance_m2(part);
+    variance_m2_ += square(ground_share * height_m_) * (1.0f / 3);
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
@@ -106,29 +112,12 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
   if (stages_.view.localisation_steps) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
 }
 
-/// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
-/// distance of its planes at the edge, to which the line moves.
-template <Limits limits>
-void StepHeight<limits>::leave_shadow(const Part& part) {
-  const bool high_is_upper = height_m_ > 0.0f;
-  const Viewpoint view = seen_from(part, high_is_upper ? piece_.first.low : piece_.first.high);
-  const bool upper_is_right = high_is_upper != piece_.low_is_right;
-  if (piece_.has_right(view) != upper_is_right) return;
-  const auto [low, high] = piece_.planes;
-  const Plane &above = high_is_upper ? high : low, &below = high_is_upper ? low : high;
-  const float above_m = view.z_m - above.height_m(piece_.x_m, piece_.y_m);
-  const float x_m = piece_.line.x0_m, y_m = piece_.line.y0_m;
-  shadow_m_ = move_before_shadow(piece_.line, view, {magnitude(height_m_), above_m, piece_.gap_m + piece_.cell_m});
-  const float dx_m = piece_.line.x0_m - x_m, dy_m = piece_.line.y0_m - y_m;
-  const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
-  height_m_ += high_is_upper ? rise_m : -rise_m;
-}
-
 /// From where the lower side was last seen: mean over its cells next to the borders.
 template <Limits limits>
-Viewpoint StepHeight<limits>::seen_from(const Part& part, Label lower) const {
+Viewpoint StepHeight<limits>::lower_seen_from(const Part& part) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
+  const Label lower = high_is_upper() ? piece_.first.low : piece_.first.high;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
     const int slot = cell_beside(border, lower);
@@ -159,6 +148,35 @@ int StepHeight<limits>::cell_beside(const Border& border, Label own) const {
     j += step_j[d];
   }
   return -1;
+}
+
+/// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on
+/// the flank of a dropped curb, the rest of it may be ground, and the step lower by anything up to what that rises: the
+/// share that this is of the step.
+template <Limits limits>
+float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
+  const Plane& lower = high_is_upper() ? piece_.planes.low : piece_.planes.high;
+  const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
+  if (!(above_m > 0.0f)) return 0.0f;
+  const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
+  const float face_cells = 1.0f + Strip::spot_cells(range_m2, above_m, piece_.cell_m);
+  return std::max(0.0f, 1.0f - face_cells / piece_.sloped_cells);
+}
+
+/// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
+/// distance of its planes at the edge, to which the line moves.
+template <Limits limits>
+void StepHeight<limits>::leave_shadow(const Viewpoint& view) {
+  const bool upper_is_right = high_is_upper() != piece_.low_is_right;
+  if (piece_.has_right(view) != upper_is_right) return;
+  const auto [low, high] = piece_.planes;
+  const Plane &above = high_is_upper() ? high : low, &below = high_is_upper() ? low : high;
+  const float above_m = view.z_m - above.height_m(piece_.x_m, piece_.y_m);
+  const float x_m = piece_.line.x0_m, y_m = piece_.line.y0_m;
+  shadow_m_ = move_before_shadow(piece_.line, view, {magnitude(height_m_), above_m, piece_.gap_m + piece_.cell_m});
+  const float dx_m = piece_.line.x0_m - x_m, dy_m = piece_.line.y0_m - y_m;
+  const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
+  height_m_ += high_is_upper() ? rise_m : -rise_m;
 }
 
 /// Rise of a plane extrapolated to an unseen place: less than its slope says, by the square of the distance relative to
@@ -236,22 +254,6 @@ auto StepHeight<limits>::deviations() const -> Deviations {
   const float common_m2 = stages_.dem.common_m2();
   return {deviation(piece_.beside_low, piece_.planes.low, -up, -beyond_cells, common_m2),
           deviation(piece_.beside_high, piece_.planes.high, up, beyond_cells, common_m2)};
-}
-
-/// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on
-/// the flank of a dropped curb, the rest of it may be ground, and the step lower by anything up to what that rises.
-template <Limits limits>
-float StepHeight<limits>::slope_variance_m2(const Part& part) const {
-  if (piece_.sloped_cells <= 1.0f) return 0.0f;
-  const bool high_is_upper = height_m_ > 0.0f;
-  const Viewpoint view = seen_from(part, high_is_upper ? piece_.first.low : piece_.first.high);
-  const Plane& lower = high_is_upper ? piece_.planes.low : piece_.planes.high;
-  const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
-  if (!(above_m > 0.0f)) return 0.0f;
-  const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
-  const float face_cells = 1.0f + Strip::spot_cells(range_m2, above_m, piece_.cell_m);
-  const float ground_share = 1.0f - face_cells / std::max(face_cells, piece_.sloped_cells);
-  return (1.0f / 3) * square(ground_share * height_m_);
 }
 
 /// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it
