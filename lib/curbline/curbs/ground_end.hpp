@@ -92,12 +92,9 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     return stages_.may_be_veil(s) || (stages_.mixture.covered(s) && below(along) &&
                                       line.away(line.dem.seen_from(s, stages_.view), along) == toward);
   };
-  if (!on_plane(edge, label) || !may_fall(first_of_veil)) return std::nullopt;
-  const auto on_bank = [&](int s) {  // on a plane that only may be a veil
-    return stages_.mixture.region_label(s) != no_label && stages_.mixture.on_ground(s);
-  };
-  int last = first_of_veil;
-  bool bank = on_bank(line.slot(last));
+  if (!on_plane(edge, label)) return std::nullopt;
+  int last = edge;    // of the veil, as far as it has been followed
+  bool bank = false;  // some of it is on a plane that only may be a veil
   while (const int g = line.next_valid(last, toward, stages_.settings.link_reach)) {
     const int next = last + toward * g;
     const int s = line.slot(next);
@@ -109,7 +106,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     }
     if (!may_fall(next)) break;
     last = next;
-    bank = bank || on_bank(s);
+    bank = bank || (stages_.mixture.region_label(s) != no_label && stages_.mixture.on_ground(s));
   }
   if (!below(last)) return std::nullopt;
 
