@@ -82,7 +82,7 @@
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next
 #include "curbline/curbs/surfaces.hpp"          // which planes are one bent surface, without creases
-#include "curbline/curbs/doubles.hpp"           // steps that were found twice
+#include "curbline/curbs/duplicates.hpp"        // steps that were found twice
 #include "curbline/curbs/curb_tracer.hpp"       // from borders to curbs
 #include "curbline/curbs/crossed_cells.hpp"     // cells that steps cross, for the planes of the next line
 

@@ -20,7 +20,7 @@
 #include "curbline/curbs/curb_maker.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
-#include "curbline/curbs/doubles.hpp"
+#include "curbline/curbs/duplicates.hpp"
 #include "curbline/curbs/line_fit.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/surfaces.hpp"
@@ -47,7 +47,7 @@ class CurbTracer {
     Borders<limits> borders;
     std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of at least three borders
     std::array<Curb, limits.curbs> curb;
-    std::array<bool, limits.curbs> is_double;
+    std::array<bool, limits.curbs> is_duplicate;
     int curbs;
     typename Surfaces<limits>::Work surfaces;
   };
@@ -71,7 +71,7 @@ class CurbTracer {
   static int bend(const Part& part);
   static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
   static void leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work);
-  static void leave_out_doubles(Work& work, float cell_m);
+  static void leave_out_duplicates(Work& work, float cell_m);
   void keep_ids(Work& work, float near_m);
 
   CurbSettings settings_{};
@@ -96,7 +96,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   const std::span<Curb> found(work.curb.data(), static_cast<std::size_t>(work.curbs));
   work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, found));
   const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
-  leave_out_doubles(work, cell_m);
+  leave_out_duplicates(work, cell_m);
   keep_ids(work, 2.0f * cell_m);
 }
 
@@ -108,12 +108,12 @@ void CurbTracer<limits>::leave_out_behind_obstacles(const CurbMaker<limits>& mak
 }
 
 template <Limits limits>
-void CurbTracer<limits>::leave_out_doubles(Work& work, float cell_m) {
+void CurbTracer<limits>::leave_out_duplicates(Work& work, float cell_m) {
   const auto found = static_cast<std::size_t>(work.curbs);
-  find_doubles(std::span(work.curb.data(), found), cell_m, work.is_double);
+  find_duplicates(std::span(work.curb.data(), found), cell_m, work.is_duplicate);
   work.curbs = 0;
   for (std::size_t k = 0; k < found; ++k) {
-    if (!work.is_double[k]) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
+    if (!work.is_duplicate[k]) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
   }
 }
 

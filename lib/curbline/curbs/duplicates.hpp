@@ -1,6 +1,6 @@
 // Steps that were found twice. Cells crossed by an edge may belong to a third plane, which makes a second step, of
 // another height, within a cell of the first. Of two steps along each other (all but a cell of the shorter one) the
-// longer stands for the edge, of equals the first; the other is a double. A function without state.
+// longer stands for the edge, of equals the first; the other is a duplicate. A function without state.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace curbline {
 
-/// Sets for each curb whether it is a double. O(curbs^2).
-void find_doubles(std::span<const Curb> curbs, float cell_m, std::span<bool> is_double);
+/// Sets for each curb whether it is a duplicate. O(curbs^2).
+void find_duplicates(std::span<const Curb> curbs, float cell_m, std::span<bool> is_duplicate);
 
 }  // namespace curbline

@@ -1,5 +1,5 @@
 // Curbs beside each other: which of them are one edge.
-#include "curbline/curbs/doubles.hpp"
+#include "curbline/curbs/duplicates.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,30 +12,30 @@ Curb step(float x_m, float length_m) {
   return {.x0_m = x_m, .y0_m = 0.0f, .x1_m = x_m, .y1_m = length_m, .kind = CurbKind::step_up};
 }
 
-TEST_CASE("doubles: of parallel steps the longest is reported, in any order, and of equal ones one") {
+TEST_CASE("duplicates: of parallel steps the longest is reported, in any order, and of equal ones one") {
   std::array<Curb, 3> curbs{step(1.0f, 3.0f), step(1.08f, 2.0f), step(1.16f, 1.0f)};
   const auto by_x = [](const Curb& a, const Curb& b) { return a.x0_m < b.x0_m; };
   do {
-    std::array<bool, 3> is_double{};
-    find_doubles(curbs, 0.1f, is_double);
-    for (std::size_t k = 0; k < curbs.size(); ++k) CHECK(is_double[k] == (curbs[k].x0_m > 1.0f));
+    std::array<bool, 3> is_duplicate{};
+    find_duplicates(curbs, 0.1f, is_duplicate);
+    for (std::size_t k = 0; k < curbs.size(); ++k) CHECK(is_duplicate[k] == (curbs[k].x0_m > 1.0f));
   } while (std::next_permutation(curbs.begin(), curbs.end(), by_x));
-  std::array<bool, 2> is_double{};
-  find_doubles(std::array{step(1.0f, 2.0f), step(1.05f, 2.0f)}, 0.1f, is_double);
-  CHECK_FALSE(is_double[0]);
-  CHECK(is_double[1]);
+  std::array<bool, 2> is_duplicate{};
+  find_duplicates(std::array{step(1.0f, 2.0f), step(1.05f, 2.0f)}, 0.1f, is_duplicate);
+  CHECK_FALSE(is_duplicate[0]);
+  CHECK(is_duplicate[1]);
 }
 
-TEST_CASE("doubles: a step is told beside a longer crease, and of two far apart each") {
+TEST_CASE("duplicates: a step is told beside a longer crease, and of two far apart each") {
   std::array<Curb, 2> curbs{step(0.0f, 1.0f)};
   curbs[0].kind = CurbKind::step_down;
   const auto shorter_is_told = [&](CurbKind kind, float x_m) {
     curbs[1] = step(x_m, 2.0f);
     curbs[1].kind = kind;
-    std::array<bool, 2> is_double{};
-    find_doubles(curbs, 0.1f, is_double);
-    CHECK_FALSE(is_double[1]);
-    return !is_double[0];
+    std::array<bool, 2> is_duplicate{};
+    find_duplicates(curbs, 0.1f, is_duplicate);
+    CHECK_FALSE(is_duplicate[1]);
+    return !is_duplicate[0];
   };
   CHECK_FALSE(shorter_is_told(CurbKind::step_up, 0.05f));
   CHECK(shorter_is_told(CurbKind::step_up, 0.15f));
