@@ -174,7 +174,7 @@ class Dem : public Window<limits> {
     laser_way_.look_from({x_m, y_m});
     flags_ = static_cast<std::uint8_t>(laser_way_.newest() * a_place + seen_bits);
   }
-  /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved.
+  /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved, at the height of now.
   // Not inlined: it is called for edges only.
   [[gnu::noinline]] Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
