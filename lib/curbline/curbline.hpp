@@ -77,6 +77,7 @@
 #include "curbline/curbs/curb.hpp"              // out: a curb
 #include "curbline/curbs/plane_pair.hpp"        // the planes on both sides of a border: step or crease
 #include "curbline/curbs/curb_piece.hpp"        // borders on one line
+#include "curbline/curbs/corner.hpp"            // where a chain of borders goes on along another line
 #include "curbline/curbs/shadow.hpp"            // of a step down
 #include "curbline/curbs/step_height.hpp"       // the height of a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations

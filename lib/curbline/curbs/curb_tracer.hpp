@@ -16,12 +16,12 @@
 #include "curbline/counters.hpp"
 #include "curbline/curbs/border_finder.hpp"
 #include "curbline/curbs/borders.hpp"
+#include "curbline/curbs/corner.hpp"
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_maker.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/duplicates.hpp"
-#include "curbline/curbs/line_fit.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/surfaces.hpp"
 #include "curbline/labels/label_field.hpp"
@@ -65,10 +65,8 @@ class CurbTracer {
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
   using Ends = typename CurbMaker<limits>::Ends;
-  using Piece = CurbPiece<limits>;
 
   static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
-  static int bend(const Part& part);
   static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
   static void leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work);
   static void leave_out_duplicates(Work& work, float cell_m);
@@ -153,7 +151,7 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   curbs_ = work.curbs;
 }
 
-/// Splits the chain where it bends, halves straight parts until their height is even, and gives out the pieces in
+/// Splits the chain at its corners, halves straight parts until their height is even, and gives out the pieces in
 /// order.
 template <Limits limits>
 void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters) {
@@ -166,9 +164,9 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
   std::size_t parts = 0;  // whose ends are known; the next one's end comes last
   work.ends[parts++] = length - 1;
   while (parts > 0) {
-    const int last = work.ends[parts - 1], split = bend(work.borders.part(first, last));
-    if (split >= 0) {
-      work.ends[parts++] = first + split;
+    const int last = work.ends[parts - 1], corner = corner_of<limits>(work.borders.part(first, last));
+    if (corner >= 0) {
+      work.ends[parts++] = first + corner;
       continue;
     }
     --parts;
@@ -179,36 +177,6 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
       first = end + 1;
     }
   }
-}
-
-/// The last border of the first of two lines, if two follow the borders better than one; else -1. Decided by evidence:
-/// residuals, in half gaps, are normal with an unknown variance, whose prior weighs as four borders anywhere within
-/// their gaps. All open borders together are one observation. A second line has two parameters and a place to begin,
-/// each of which costs half the logarithm of the number of borders (Schwarz 1978). Two borders always lie on a line: it
-/// takes three.
-template <Limits limits>
-int CurbTracer<limits>::bend(const Part& part) {
-  LineFit before, after;
-  const auto weight = [&](const Border& border) { return border.weight() * part.share(border); };
-  for (const Border& border : part) after.add(border.x_m, border.y_m, weight(border));
-  const float one = after.squares(), n = part.observations();
-  float two = one;
-  int found = -1;
-  for (int k = 0; k < part.size() - 3; ++k) {
-    const Border& border = part[k];
-    const float border_weight = weight(border);
-    before.add(border.x_m, border.y_m, border_weight);
-    after.remove(border.x_m, border.y_m, border_weight);
-    if (k < 2) continue;
-    const float squares = before.squares() + after.squares();
-    if (squares >= two) continue;
-    two = squares;
-    found = k;
-  }
-  if (found < 0) return -1;
-  const float gain =
-      (Piece::place_a0 + 0.5f * n) * log((Piece::place_prior + one) / (Piece::place_prior + two)) - 1.5f * log(n);
-  return gain > 0.0f ? found : -1;
 }
 
 /// A full store loses obstacles, too: what is behind them may then be given out.
