@@ -62,13 +62,13 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
   LabelledCell before_in_row;
   int row = -1;
   dem.for_each_valid([&](int i, int j, int s) {
-    const Label label = stages_.field.label(s);
-    if (!stages_.bears_ground(s) || !stages_.lies_on(i, j, dem.cell(s), stages_.mixture.plane(label))) {
+    if (!stages_.shows_ground(i, j, s)) {
       end_before({dem, 0, j}, i), end_before({dem, 1, i}, j);
       return;
     }
     if (i != row) before_in_row = {};
     row = i;
+    const Label label = stages_.field.label(s);
     pass(before_in_col[static_cast<std::size_t>(j)], {label, static_cast<std::int16_t>(i)}, {dem, 0, j});
     pass(before_in_row, {label, static_cast<std::int16_t>(j)}, {dem, 1, i});
   });

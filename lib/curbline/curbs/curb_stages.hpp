@@ -28,6 +28,10 @@ struct CurbStages {
     const Label label = field.label(slot);
     return label != no_label && mixture.on_ground(slot) && mixture.plane(label).alive() && !mixture.may_be_veil(label);
   }
+  /// Does it also lie on that plane? Only such cells are the sides of borders; others are looked through.
+  bool shows_ground(int i, int j, int slot) const {
+    return bears_ground(slot) && lies_on(i, j, dem.cell(slot), mixture.plane(field.label(slot)));
+  }
   /// May a cell without ground, or off its plane, be a mixture of two sides: of a veil, of a region too small for a
   /// plane, or of a plane that may be a veil?
   bool may_be_veil(int slot) const {

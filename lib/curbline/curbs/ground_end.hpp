@@ -80,26 +80,27 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
   const int toward = line.away(stages_.view, first_of_veil);
   const int before = line.next_valid(first_of_veil, -toward, stages_.settings.link_reach);
   const int edge = first_of_veil - toward * before;
-  if (before == 0 || !stages_.bears_ground(line.slot(edge))) return std::nullopt;
-  const auto on_plane = [&](int along, Label label) {
-    return stages_.lies_on(line.row(along), line.col(along), line.cell(along), stages_.mixture.plane(label));
+  const auto shows_ground = [&](int along) {
+    return stages_.shows_ground(line.row(along), line.col(along), line.slot(along));
   };
+  if (before == 0 || !shows_ground(edge)) return std::nullopt;
   const Label label = stages_.field.label(line.slot(edge));
   const Plane& plane = stages_.mixture.plane(label);
-  const auto below = [&](int along) { return line.above_m(along, plane) < 0.0f && !on_plane(along, label); };
+  const auto below = [&](int along) {
+    return line.above_m(along, plane) < 0.0f &&
+           !stages_.lies_on(line.row(along), line.col(along), line.cell(along), plane);
+  };
   const auto may_fall = [&](int along) {
     const int s = line.slot(along);
     return stages_.may_be_veil(s) || (stages_.mixture.covered(s) && below(along) &&
                                       line.away(line.dem.seen_from(s, stages_.view), along) == toward);
   };
-  if (!on_plane(edge, label)) return std::nullopt;
   int last = edge;    // of the veil, as far as it has been followed
   bool bank = false;  // some of it is on a plane that only may be a veil
   while (const int g = line.next_valid(last, toward, stages_.settings.link_reach)) {
     const int next = last + toward * g;
     const int s = line.slot(next);
-    if (stages_.bears_ground(s) &&
-        (stages_.mixture.region_label(s) != no_label || on_plane(next, stages_.field.label(s)))) {
+    if (shows_ground(next)) {
       if (bank || !out_of_reach(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil, next))
         return std::nullopt;
       break;
