@@ -1,6 +1,6 @@
 // Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is all of its
-// memory: nothing is allocated later. The stack of a call grows by 2 bytes for each pair of planes and 128 for each
-// plane: 4 KiB suffice for 16 (tools/budget), 255 need 160 KiB more.
+// memory: nothing is allocated later. The stack of a call, 3 KiB for 16 planes (tools/budget), grows by 140 bytes for
+// each more, beyond 64 by 2 for each pair of planes: 255 need 130 KiB.
 #pragma once
 
 namespace curbline {
@@ -17,7 +17,7 @@ struct Limits {
   int regions = 384;      ///< leaves and standing regions that one merging pass holds
   int links = 1024;       ///< links between them
   int borders = 512;      ///< border points between planes, at most 65534
-  int curbs = 96;         ///< pieces of curb given out; random streets have at most 32
+  int curbs = 96;         ///< pieces of curb given out, at most 65535; random streets have at most 32
 };
 
 }  // namespace curbline

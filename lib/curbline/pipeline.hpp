@@ -48,8 +48,10 @@ class Pipeline {
   static_assert(limits.planes >= 2 && limits.planes <= 255, "Limits: planes must be 2 to 255, as label 255 says none");
   static_assert(limits.borders >= 1 && limits.borders < 65535,
                 "Limits: borders must be 1 to 65534, as a border's number is 16 bits, of which 65535 says none");
-  static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1 && limits.curbs >= 1,
-                "Limits: beams, poses, regions, links and curbs must be 1 at least");
+  static_assert(limits.curbs >= 1 && limits.curbs <= 65535,
+                "Limits: curbs must be 1 to 65535, as each has a number of 16 bits other than 0");
+  static_assert(limits.beams >= 1 && limits.poses >= 1 && limits.regions >= 1 && limits.links >= 1,
+                "Limits: beams, poses, regions and links must be 1 at least");
 
   /// Checks the settings and empties everything. A Status other than ok names the part with a bad setting, and
   /// bad_setting(settings, limits) the setting itself; the pipeline then refuses lines, points and poses, and has no
