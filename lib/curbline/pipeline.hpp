@@ -90,8 +90,9 @@ class Pipeline {
   void infer();
 
   /// infer() for a finished map: repeats the pass over the labels, with no bound on messages, until no label changes or
-  /// `passes` (at least 1) are made. The noise that cells share keeps its value: one sweep does not show it. Returns
-  /// the passes made.
+  /// `passes` (at least 1) are made, then fits the planes by these labels and the curbs, as further lines would, and
+  /// repeats both. The noise that cells share keeps its value: one sweep does not show it. Returns the passes made, of
+  /// the last repetition.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and lie in
@@ -138,6 +139,7 @@ class Pipeline {
   void take_point(const Point& point);
   void follow_regions();
   int follow_labels(FieldScope scope);
+  int settle_labels(int passes);
   void follow_curbs();
   void follow_noise();
   Eigen::Vector3f p_base_tilt() const {
@@ -278,7 +280,18 @@ void Pipeline<limits>::infer() {
 template <Limits limits>
 int Pipeline<limits>::settle(int passes) {
   if (!ready_) return 0;
+  const bool touched = dem_.any_touched();
   follow_regions();
+  const int pass = settle_labels(passes);
+  if (!touched) return pass;
+  plane_mixture_.refine(dem_, view(), crossed_cells(dem_, curbs()),
+                        [this](int slot) { return label_field_.label(slot); });
+  return settle_labels(passes);
+}
+
+/// Labels of a finished map, and curbs by them. Returns the passes made.
+template <Limits limits>
+int Pipeline<limits>::settle_labels(int passes) {
   const bool planes_move = plane_mixture_.mode() == PlaneUpdate::responsibilities;
   int pass = 1;
   for (int changed = follow_labels(FieldScope::window); changed > 0 && pass < passes; ++pass) {

@@ -15,6 +15,7 @@
 
 #include "support/heap_count.hpp"
 #include "support/nodding_pipeline.hpp"
+#include "support/terrain.hpp"
 
 namespace curbline {
 namespace {
@@ -581,6 +582,18 @@ TEST_CASE("pipeline: a finished map settles, and then nothing changes any more")
   CHECK(bytes(pipeline->curbs()) == settled);
   CHECK(longest(pipeline->curbs()).height_m == Approx(0.12).margin(0.01));
   CHECK_FALSE(settled.empty());
+}
+
+TEST_CASE("pipeline: the cells that a low step crosses tilt no plane of a finished map") {
+  const auto pipeline = started();
+  test::Noise noise;
+  const auto ground = [](double x, double y) { return x < 2.0 + 0.3 * y ? 0.0 : 0.02; };
+  pipeline->observe(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, ground));
+  pipeline->settle();
+  const Curb step = longest(pipeline->curbs());
+  CHECK(step.kind == CurbKind::step_up);
+  // Some 700 cells of 11 points on either side; the 60 that are crossed hold half of the step.
+  CHECK(step.height_m == Approx(0.02).margin(0.0005));
 }
 
 TEST_CASE("pipeline: a damaged tilt reading leaves no wrong latency where readings come more slowly than lines") {

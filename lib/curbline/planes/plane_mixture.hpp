@@ -41,6 +41,10 @@ class PlaneMixture {
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
               const CellSet<limits>& crossed, LabelOf&& label_of, Counters& counters);
 
+  /// Fits planes of ground again, by what labels and steps have told since update(): for a finished map.
+  template <typename LabelOf>
+  void refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of);
+
   /// M-step of the paper's EM (PlaneUpdate::responsibilities): for_each_belief(i, j, visit) calls visit(label,
   /// responsibility) for each candidate of a cell.
   template <typename ForEachBelief>
@@ -142,6 +146,16 @@ auto PlaneMixture<limits>::match_regions(const Dem<limits>& dem, const typename 
     relabelled_.insert(s);
   });
   return fit(dem, ranking);
+}
+
+template <Limits limits>
+template <typename LabelOf>
+void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed,
+                                  LabelOf&& label_of) {
+  Fitted fitted{};
+  for (std::size_t l = 0; l < planes_.size(); ++l)
+    fitted[l] = planes_[l].alive() && settings_.update != PlaneUpdate::responsibilities;
+  CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
 }
 
 /// Planes whose label no region has taken die.
