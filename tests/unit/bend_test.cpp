@@ -124,6 +124,21 @@ TEST_CASE("bend: a bent plane and a flat one share no bend, however certain the 
   CHECK_FALSE(one_bend(road, sd_m));
 }
 
+TEST_CASE("bend: a plane that says hardly anything is no objection, one that is flat for certain is") {
+  Plane plane, other;
+  plane.fit_variance_m2 = other.fit_variance_m2 = noise_m2;
+  other.x_m = 1.0f;
+  other.slope_x = 0.02f;
+  const BendSums bent = sums_of(halves([](double x, double) { return 0.01 * (x - 2.0) * (x - 2.0); }).before);
+  const auto few = [](float middle_m) {  // three cells, bent the other way
+    BendSums sums;
+    for (const float x_m : {-0.3f, 0.0f, 0.3f}) sums.add(x_m, 0.0f, x_m == 0.0f ? middle_m : -0.5f * middle_m);
+    return sums;
+  };
+  CHECK(one_bend(plane, bent, other, few(0.005f)));  // as far as chance takes a cell
+  CHECK_FALSE(one_bend(plane, bent, other, few(0.02f)));
+}
+
 TEST_CASE("bend: parallel planes follow none, nor do those of which no cell is seen alone") {
   Plane plane, other;
   plane.fit_variance_m2 = other.fit_variance_m2 = noise_m2;

@@ -27,10 +27,11 @@ float BendSums::likelier_bent(const Bend& bend, float variance_m2) const {
 
 bool one_bend(const Plane& first, const BendSums& of_first, const Plane& second, const BendSums& of_second) {
   constexpr float sure = 0.5f * gate;  // three standard deviations, as a log likelihood ratio
+  constexpr float contrary = -0.5f;    // one: cells that say hardly anything do so either way
   const Bend bend = Bend::between(first, second);
   const float one = of_first.likelier_bent(bend, first.fit_variance_m2);
   const float other = of_second.likelier_bent(bend, second.fit_variance_m2);
-  return one + other > sure && std::min(one, other) >= 0.0f;
+  return one + other > sure && std::min(one, other) > contrary;
 }
 
 }  // namespace curbline

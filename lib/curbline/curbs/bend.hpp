@@ -43,7 +43,7 @@ class BendSums {
 };
 
 /// Do two planes follow one bent surface? Their cells must say so by three standard deviations together, and those of
-/// neither the contrary: one plane may hold more than one surface, and look bent.
+/// neither the contrary by one: one plane may hold more than one surface, and look bent.
 [[gnu::cold]] bool one_bend(const Plane& first, const BendSums& of_first, const Plane& second,
                             const BendSums& of_second);
 
