@@ -39,7 +39,10 @@ struct Viewpoint {
   /// stands.
   float end_x_m = 0.0f, end_y_m = 0.0f;
   bool localisation_steps = false;  ///< it has been found to step: PoseOffset::localisation_steps()
+  float divergence_rad = 0.01f;     ///< of a beam: LaserSettings::beam_divergence_rad
 
+  /// Length of a beam's spot on level ground that lies above_m below the laser, sqrt(range_m2) away.
+  float spot_m(float range_m2, float above_m) const { return divergence_rad * range_m2 / above_m; }
   bool drives() const { return end_x_m > 0.0f; }
 };
 

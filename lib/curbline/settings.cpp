@@ -61,7 +61,8 @@ Bad first_bad(const LaserSettings& l, const Limits& limits) {
   if (!within(l.min_range_m, 0.0f, 1e6f)) return "laser.min_range_m";
   if (!within(l.max_range_m, 0.0f, 1e6f) || l.max_range_m <= l.min_range_m) return "laser.max_range_m";
   if (!deviation_m(l.range_sd_m)) return "laser.range_sd_m";
-  return deviation_rad(l.bearing_sd_rad) ? nullptr : "laser.bearing_sd_rad";
+  if (!deviation_rad(l.bearing_sd_rad)) return "laser.bearing_sd_rad";
+  return within(l.beam_divergence_rad, 0.0f, 1.0f) ? nullptr : "laser.beam_divergence_rad";
 }
 
 Bad first_bad(const TiltSettings& t) {

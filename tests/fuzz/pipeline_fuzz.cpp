@@ -66,6 +66,7 @@ Settings some_settings(Numbers& numbers) {
   numbers.change(l.max_range_m, 0.0f, 1e6f);
   numbers.change(l.range_sd_m, 0.0f, 10.0f);
   numbers.change(l.bearing_sd_rad, 0.0f, 1.0f);
+  numbers.change(l.beam_divergence_rad, 0.0f, 1.0f);
 
   TiltSettings& t = s.tilt;
   if (numbers.flag()) t.T_base_tilt = some_mount(numbers);

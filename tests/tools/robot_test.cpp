@@ -45,6 +45,9 @@ TEST_CASE("robot: a laser's model sets its data sheet, keys override it") {
   CHECK(robot.scan_rate_hz == 50.0);
   CHECK(robot.laser.bearing_step_rad == Approx(std::numbers::pi / 360));
   CHECK(robot.laser.max_range_m == 20.0f);
+  CHECK(robot.laser.beam_divergence_rad == 0.015f);
+  CHECK(parsed("[laser]\nmodel = \"lms-151\"\nbeam_divergence_rad = 0.01\n").laser.beam_divergence_rad == 0.01f);
+  CHECK(parsed("[laser]\nmodel = \"lms-200\"\n").laser.beam_divergence_rad == LaserSettings{}.beam_divergence_rad);
 }
 
 TEST_CASE("robot: beams of every model lie symmetrically about straight ahead") {

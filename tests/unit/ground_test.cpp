@@ -457,6 +457,19 @@ TEST_CASE("ground: what leans as the hill does is no blurred edge, though it is 
   CHECK(may_blur(0.04, 0.15));  // a street
 }
 
+//  o          --__
+//                 |____      a kerb stone between a road and a bed, 30 cm, seen from afar
+//  ___________|
+TEST_CASE("ground: what is higher than the ground on both its sides is no blurred edge") {
+  const auto may_blur = [](double road_m) {
+    return may_be_veil({-8.0f, 1.2f, 6.0f, 8.0f, 8.0f}, 1.55, 1.25, [=](double x, double) {
+      return x < 1.4 ? road_m : x < 1.7 ? -0.15 * (x - 1.4) : -0.09;
+    });
+  };
+  CHECK_FALSE(may_blur(-0.12));
+  CHECK(may_blur(0.0));
+}
+
 //  o    ____
 //           `--.___
 //                  |____      a tread of a flight down, seen from afar, tilted by cells that hold something of the next
@@ -694,13 +707,16 @@ TEST_CASE("ground: a slope that is no longer than the shadow of its own fall is 
 TEST_CASE("strip: an edge blurs the cells that it crosses and those of the spot from where they were last seen") {
   const Run none, run(Label{1}, 11, Cell{});
   const Strip strip{none, run, none};
-  const Sight near{-0.3f, 1.1f, 0.1f, 8.0f};  // on its way from x = 0 to 8 m
   const float spot = 0.01f * (1.1f * 1.1f + 1.4f * 1.4f) / (1.1f * 0.1f);
-  CHECK(strip.blurred_cells(near, 0.0f, 0.0f) == Approx(1.0f + spot));
-  CHECK(strip.blurred_cells(near, -0.5f, 0.0f) == Approx(1.5f + spot));
-  CHECK(strip.blurred_cells(near, 5.0f, 0.0f) == Approx(2.0f + spot));  // it lies along the row: columns tell
-  CHECK(strip.blurred_cells({-0.3f, 1.1f, 0.1f, 0.0f}, 0.5f, 0.0f) == Approx(1.0f + spot));  // a robot that stands
-  CHECK(strip.blurred_cells({-0.3f, -0.1f, 0.1f, 8.0f}, 0.0f, 0.0f) == 0.0f);
+  const auto cells = [&](float askew, float divergence_rad = 0.01f, float laser_z_m = 1.1f) {
+    const Viewpoint view{.x_m = -0.3f, .z_m = laser_z_m, .end_x_m = 8.0f, .divergence_rad = divergence_rad};
+    return strip.blurred_cells(view, {view.x_m, view.z_m, 0.1f, view.end_x_m}, askew, 0.0f);
+  };
+  CHECK(cells(0.0f) == Approx(1.0f + spot));
+  CHECK(cells(0.0f, 0.015f) == Approx(1.0f + 1.5f * spot));
+  CHECK(cells(-0.5f) == Approx(1.5f + spot));
+  CHECK(cells(5.0f) == Approx(2.0f + spot));  // it lies along the row: columns tell
+  CHECK(cells(0.0f, 0.01f, -0.1f) == 0.0f);
 }
 
 TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {

@@ -47,6 +47,7 @@ TEST_CASE("settings: the bounds themselves are good") {
   low.laser.first_bearing_rad = -2.0f * pi;
   low.laser.bearing_step_rad = -1.0f;
   low.laser.beam_interval_s = low.laser.min_range_m = low.laser.range_sd_m = low.laser.bearing_sd_rad = 0.0f;
+  low.laser.beam_divergence_rad = 0.0f;
   low.tilt.T_base_tilt = low.tilt.T_tilt_laser = {-100.0f, -100.0f, -100.0f, -2.0f * pi, -2.0f * pi, -2.0f * pi};
   low.tilt.fixed_tilt_rad = -pi;
   low.tilt.latency_s = -10.0f;
@@ -68,6 +69,7 @@ TEST_CASE("settings: the bounds themselves are good") {
   high.laser.bearing_step_rad = high.laser.beam_interval_s = high.laser.bearing_sd_rad = 1.0f;
   high.laser.max_range_m = 1e6f;
   high.laser.range_sd_m = 10.0f;
+  high.laser.beam_divergence_rad = 1.0f;
   high.tilt.T_base_tilt = high.tilt.T_tilt_laser = {100.0f, 100.0f, 100.0f, 2.0f * pi, 2.0f * pi, 2.0f * pi};
   high.tilt.fixed_tilt_rad = pi;
   high.tilt.latency_s = high.tilt.max_extrapolation_s = high.tilt.max_gap_s = 10.0f;
@@ -112,6 +114,8 @@ TEST_CASE("settings: a bad laser is named") {
   refuses(bad, "laser.range_sd_m", [](Settings& s) -> float& { return s.laser.range_sd_m; }, {-0.01f, nan, infinity});
   refuses(bad, "laser.bearing_sd_rad", [](Settings& s) -> float& { return s.laser.bearing_sd_rad; },
           {-0.01f, nan, infinity});
+  refuses(bad, "laser.beam_divergence_rad", [](Settings& s) -> float& { return s.laser.beam_divergence_rad; },
+          {-0.001f, 1.1f, nan});
 }
 
 TEST_CASE("settings: of a shortest range beyond the longest the longest is named") {

@@ -16,16 +16,19 @@ struct LaserModel {
   double turn_s;  ///< of the mirror; a turn has 360 / step beams, including those behind the housing
   double min_range_m, max_range_m;
   double range_sd_m;
+  double beam_divergence_rad = static_cast<double>(LaserSettings{}.beam_divergence_rad);
 };
 
+/// Where a data sheet states no divergence, it is the default of LaserSettings.
 constexpr LaserModel models[] = {
     // Hokuyo UTM-30LX data sheet: 270 deg, 0.25 deg, 25 ms a scan, 0.1 to 30 m guaranteed (60 m at most), repeatability
-    // below 10 mm to 10 m (accuracy +-30 mm); SCIP 2.0 manual C-42-03320B: 1440 steps a turn, 1081 of them measured.
+    // below 10 mm to 10 m (accuracy +-30 mm); SCIP 2.0 manual C-42-03320B: 1440 steps a turn, 1081 of
+    // them measured.
     {"utm-30lx", -135.0, 0.25, 1081, 40.0, 0.025, 0.1, 30.0, 0.010},
     // SICK LMS1xx operating instructions 8012471: 270 deg, 0.5 deg at 50 Hz or 0.25 deg at 25 Hz, to 50 m; the LMS151
-    // from 0.5 m; statistical error 12 mm (systematic +-30 mm). 50 Hz gives as many points a second, and more lines
-    // while nodding.
-    {"lms-151", -135.0, 0.5, 541, 50.0, 0.020, 0.5, 50.0, 0.012},
+    // from 0.5 m; statistical error 12 mm (systematic +-30 mm); divergence 15 mrad. 50 Hz gives as many points a
+    // second, and more lines while nodding.
+    {"lms-151", -135.0, 0.5, 541, 50.0, 0.020, 0.5, 50.0, 0.012, 0.015},
     // SICK LMS2xx technical description: 180 deg, mirror at 75 Hz, mm mode to 8 m, statistical error 5 mm. Steps of 1
     // deg: for 0.5 deg the scanner interlaces two turns, so neighbouring beams are 13 ms apart, which is unusable on a
     // nodding laser.
@@ -43,6 +46,7 @@ bool set_model(const std::string& name, Robot& robot) {
     robot.laser.min_range_m = static_cast<float>(model.min_range_m);
     robot.laser.max_range_m = static_cast<float>(model.max_range_m);
     robot.laser.range_sd_m = static_cast<float>(model.range_sd_m);
+    robot.laser.beam_divergence_rad = static_cast<float>(model.beam_divergence_rad);
     return true;
   }
   return false;
@@ -80,6 +84,7 @@ void read_laser(TomlTable table, Robot& robot) {
   table.read("max_range_m", laser.max_range_m, {0.01, 1000.0});
   table.read("range_sd_m", laser.range_sd_m, {1e-5, 1.0});
   table.read("bearing_sd_rad", laser.bearing_sd_rad, {0.0, 0.1});
+  table.read("beam_divergence_rad", laser.beam_divergence_rad, {0.0, 0.1});
   table.done();
   check_scan(table, robot);
 }

@@ -159,7 +159,7 @@ float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
   const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
   if (!(above_m > 0.0f)) return 0.0f;
   const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
-  const float face_cells = 1.0f + Strip::spot_cells(range_m2, above_m, piece_.cell_m);
+  const float face_cells = 1.0f + view.spot_m(range_m2, above_m) / piece_.cell_m;
   return std::max(0.0f, 1.0f - face_cells / piece_.sloped_cells);
 }
 

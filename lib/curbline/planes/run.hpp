@@ -96,12 +96,6 @@ struct Run {
 
 /// A run, and the runs before and after it on its row or column.
 struct Strip {
-  static constexpr float beam_rad = 0.01f;  ///< divergence of a beam
-  /// Length of a beam's spot on the ground, from a laser above_m above it.
-  static float spot_cells(float range_m2, float above_m, float cell_m) {
-    return beam_rad * range_m2 / (above_m * cell_m);
-  }
-
   const Run &before, &run, &next;
 
   /// Is it between two other runs, neither more than `gap` cells away?
@@ -113,10 +107,9 @@ struct Strip {
     const float from = before.last_height_m, to = next.first_height_m;
     return (from < run.lowest_m && run.highest_m < to) || (from > run.highest_m && run.lowest_m > to);
   }
-  /// Is it between two runs of one plane, and above both?
-  bool stands_on_one() const {
-    return before.any() && before.label == next.label && run.lowest_m > before.last_height_m &&
-           run.lowest_m > next.first_height_m;
+  /// Is it between two runs and above both?
+  bool stands() const {
+    return before.any() && next.any() && run.lowest_m > before.last_height_m && run.lowest_m > next.first_height_m;
   }
   /// Are its cells seen less than half as often as those of both runs beside it, as if most beams had met something
   /// before?
@@ -140,16 +133,16 @@ struct Strip {
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
   }
-  /// Number of cells that hold something of both sides of an edge here, when they were last seen from where `sight` is:
-  /// one, the length of the laser's spot on the ground, and for a robot that drives, in whose cells readings from
-  /// several places meet, as many more as an edge at an angle to the grid crosses on a row: one if that is 45 degrees
-  /// (beyond, it lies along the row). `aside_m`: distance of the row or column from the laser.
-  float blurred_cells(const Sight& sight, float askew, float aside_m) const {
+  /// Number of cells that hold something of both sides of an edge here, when they were last seen from `view`, to which
+  /// `sight` belongs: one, as many more as an edge at an angle to the grid crosses on a row (one if that is 45 degrees;
+  /// beyond, it lies along the row), and the length of the laser's spot on the ground. `aside_m`: distance of the row
+  /// or column from the laser.
+  float blurred_cells(const Viewpoint& view, const Sight& sight, float askew, float aside_m) const {
     const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.standing().away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
     const float range_m2 = above_m * above_m + away_m * away_m + aside_m * aside_m;
-    const float crossed = sight.end_m > 0.0f ? std::min(1.0f, magnitude(askew)) : 0.0f;
-    return 1.0f + crossed + spot_cells(range_m2, above_m, sight.cell_m);
+    const float crossed = std::min(1.0f, magnitude(askew));
+    return 1.0f + crossed + view.spot_m(range_m2, above_m) / sight.cell_m;
   }
 
  private:

@@ -129,15 +129,16 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
         if (carries_step) {
           if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
         }
-        if (drops[run.label]) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent, aside_m);
+        if (drops[run.label] && !strip.stands())
+          tally.blurred_cells[axis] += strip.blurred_cells(from, across, tangent, aside_m);
       }
       if (run.length() > StripTally::longest_strip) return;
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
       const int middle = (run.first + run.last) / 2;
-      if (strip.between(StripTally::sparse_gap) && strip.stands_on_one() && strip.half_hidden() &&
-          obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
+      if (strip.between(StripTally::sparse_gap) && before.label == next.label && strip.stands() &&
+          strip.half_hidden() && obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
         tally.wake_cells[axis] += cells;
       }
       if (strip.alone(StripTally::sparse_gap)) {
