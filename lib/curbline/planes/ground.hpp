@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "curbline/grid.hpp"
 #include "curbline/map/dem.hpp"
@@ -70,11 +71,14 @@ class Ground {
   static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
     return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
   }
+  using Kinds = std::array<Kind, limits.planes>;
   static Kind kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                       const Obstacles<limits>& obstacles, const Viewpoint& view);
+  static Kinds kinds(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                     const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles);
   Kind kind(int label) const { return kind_[static_cast<std::size_t>(label)]; }
 
-  std::array<Kind, limits.planes> kind_{};
+  Kinds kind_{};
 };
 
 /// Veils and wakes are only considered for a laser well above the ground: else the points were not seen from the
@@ -99,17 +103,25 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
+// Not inlined: the tallies are large, and the search for obstacles goes deeper without them on the stack.
+template <Limits limits>
+[[gnu::noinline]] auto Ground<limits>::kinds(const Dem<limits>& dem, std::span<const Plane> planes,
+                                             const Viewpoint& view, const CellLabels<limits>& region_label,
+                                             const Obstacles<limits>& obstacles) -> Kinds {
+  const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
+  Kinds found;
+  for (std::size_t l = 0; l < found.size(); ++l) found[l] = kind_of(l, planes[l], tallies[l], obstacles, view);
+  return found;
+}
+
 template <Limits limits>
 template <typename Changed>
 void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
                             const CellLabels<limits>& region_label, Changed&& changed) {
   const Obstacles<limits> obstacles(dem, planes, view, region_label);
-  const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
+  const Kinds before = std::exchange(kind_, kinds(dem, planes, view, region_label, obstacles));
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    const Kind kind = kind_of(l, planes[l], tallies[l], obstacles, view);
-    const Kind before = kind_[l];
-    kind_[l] = kind;
-    if (kind != before && !(borne(kind) && borne(before))) changed(static_cast<Label>(l));
+    if (kind_[l] != before[l] && !(borne(kind_[l]) && borne(before[l]))) changed(static_cast<Label>(l));
   }
 }
 
