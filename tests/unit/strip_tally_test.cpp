@@ -40,5 +40,59 @@ TEST_CASE("strip tally: of a strip the cells that are seen count, as of its plan
   CHECK(tally.shadow[0].cells == 2.0f);
 }
 
+/// Is a strip of so many rows of cells a face, between a road and a pavement 12 cm higher? height(across, k): its share
+/// of the step, in row k of the strip, from 0 to 1 across the row.
+template <typename Height>
+bool face(int cells, Height&& height) {
+  Dem<small_limits> dem;
+  const Settings settings = test::small_settings();
+  dem.init(settings.window, settings.planes.prior);
+  CellLabels<small_limits> labels;
+  labels.fill(no_label);
+  for (int i = 0; i < 24; ++i) {
+    const int k = i - 10;
+    for (int j = 0; j < 24; ++j) {
+      for (int n = 0; n < 12; ++n) {
+        const float across = (static_cast<float>(n) + 0.5f) / 12.0f, noise_m = n % 2 == 0 ? 0.002f : -0.002f;
+        const float share = k < 0 ? 0.0f : k >= cells ? 1.0f : height(across, k);
+        dem.add({0.1f * (static_cast<float>(i) + across), 0.1f * static_cast<float>(j) + 0.05f, 0.12f * share + noise_m,
+                 1e-4f});
+      }
+      labels[dem.slot(i, j)] = k < 0 ? 0 : k >= cells ? 2 : 1;
+    }
+  }
+  const std::array<Plane, small_limits.planes> planes{};
+  const Viewpoint view{0.0f, 1.2f, 1.0f};
+  const Obstacles<small_limits> obstacles(dem, planes, view, labels);
+  return tally_strips(dem, std::span<const Plane>(planes), view, labels, obstacles)[1].face();
+}
+
+//            _____
+//           |            on the border between two rows, which see more of road and pavement than of the face
+//  _________|
+TEST_CASE("strip tally: a face is one on the border between two rows of cells, too, however little is seen of it") {
+  const auto readings_on_face = [](float part) {
+    return face(2, [=](float across, int k) {
+      if (k == 0) return across < 1.0f - part ? 0.0f : 0.5f * (across - (1.0f - part)) / part;
+      return across < part ? 0.5f + 0.5f * across / part : 1.0f;
+    });
+  };
+  CHECK(readings_on_face(0.5f));
+  CHECK(readings_on_face(0.25f));
+  CHECK(readings_on_face(0.125f));
+}
+
+//            _____             _____
+//         __|                /           a tread one or two rows of cells wide; a slope of two
+//  ______|           ______/
+TEST_CASE("strip tally: a level tread is no face, nor is a slope of two cells") {
+  for (const float level : {0.1f, 0.3f, 0.5f}) {
+    CHECK_FALSE(face(1, [=](float, int) { return level; }));
+    CHECK_FALSE(face(2, [=](float, int) { return level; }));
+    CHECK_FALSE(face(2, [=](float across, int k) { return k == 0 && across < 0.2f ? 0.0f : level; }));
+  }
+  CHECK_FALSE(face(2, [](float across, int k) { return 0.5f * (across + static_cast<float>(k)); }));
+}
+
 }  // namespace
 }  // namespace curbline

@@ -67,6 +67,7 @@ struct Run {
   int cells = 0;  ///< that have been seen
   float first_height_m = 0.0f, last_height_m = 0.0f, lowest_m = 0.0f, highest_m = 0.0f;
   float scatter_m2 = 0.0f, weight = 0.0f;
+  float above_m = 0.0f, above_m2 = 0.0f;  ///< weighted sums of heights above the first one, and of their squares
 
   Run() = default;
   Run(Label plane, int at, const Cell& cell)
@@ -89,6 +90,9 @@ struct Run {
     if (cell.height_m > highest_m) highest_m = cell.height_m;
     scatter_m2 += cell.scatter_m2;
     weight += cell.weight;
+    const float above_first_m = cell.height_m - first_height_m;
+    above_m += cell.weight * above_first_m;
+    above_m2 += cell.weight * above_first_m * above_first_m;
   }
   bool any() const { return label != no_label; }
   int length() const { return last - first + 1; }
@@ -110,6 +114,11 @@ struct Strip {
   /// Is it between two runs and above both?
   bool stands() const {
     return before.any() && next.any() && run.lowest_m > before.last_height_m && run.lowest_m > next.first_height_m;
+  }
+  /// The scatter of its cells if each held, with its mean height, nothing but the levels of the two runs beside it.
+  float two_levels_m2() const {
+    const float before_m = before.last_height_m - run.first_height_m, next_m = next.first_height_m - run.first_height_m;
+    return (before_m + next_m) * run.above_m - run.above_m2 - before_m * next_m * run.weight;
   }
   /// Are its cells seen less than half as often as those of both runs beside it, as if most beams had met something
   /// before?

@@ -43,7 +43,8 @@ struct StripTally {
   std::array<float, 2> silent_cells{};  ///< in short strips that are alone, by axis
   // Of strips that rise or fall between two planes that are no obstacles, up to sparse_gap cells away.
   float strip_cells = 0.0f, strips = 0.0f, step_m = 0.0f, strip_spread_m2 = 0.0f, strip_weight = 0.0f;
-  float along_step_m = 0.0f;  ///< how far they rise or fall themselves, as the step does
+  float two_levels_m2 = 0.0f;  ///< their scatter if their cells held the two planes, and nothing between
+  float along_step_m = 0.0f;   ///< how far they rise or fall themselves, as the step does
   // By the axis along which the strip was found, x and y.
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
@@ -63,15 +64,16 @@ struct StripTally {
     along_step_m += step < 0.0f ? -rise_m : rise_m;
     strip_spread_m2 += run.scatter_m2 - run.weight * std::min(other_m2, one_m2);
     strip_weight += run.weight;
+    two_levels_m2 += strip.two_levels_m2();
   }
 
   /// Is the plane a face? At least half of its cells, counted along x and along y, must be in such strips, strips that
   /// are alone left out, on rows or on columns: between sparse scan lines only the face is seen.
   bool face() const {
     if (!(strips > 0.0f) || 2.0f * strip_cells < cells - std::max(silent_cells[0], silent_cells[1])) return false;
-    const float mean_step_m = step_m / strips;
+    const float mean_step_m = step_m / strips, step_m2 = mean_step_m * mean_step_m * strip_weight;
     // A step spread evenly over a width of w cells has a standard deviation of step / (w sqrt(12)) within each.
-    return mean_step_m * mean_step_m * strip_weight <= narrow * narrow * 12.0f * strip_spread_m2;
+    return step_m2 <= narrow * narrow * 12.0f * strip_spread_m2 || stands_between_cells(step_m2);
   }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
@@ -81,6 +83,14 @@ struct StripTally {
  private:
   bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
+  /// A face between two rows of cells, of which each holds more of the plane beside it than of the face. Heights on a
+  /// slope of w cells scatter less than those of two levels would, by w / 6 of step^2 in all, wherever cells part
+  /// it. On an even slope that is 2 w^2 times as much as they do scatter, on a level tread many times.
+  bool stands_between_cells(float step_m2) const {
+    const float lacking_m2 = two_levels_m2 - strip_spread_m2;
+    return lacking_m2 <= 2.0f * narrow * narrow * strip_spread_m2 &&
+           lacking_m2 * strip_cells <= narrow * (1.0f / 6) * step_m2 * strips;
+  }
   /// The blur of an edge goes from one plane to the other: over n cells it falls by 1 - 1/n of the step. What falls by
   /// less than a quarter of that is no blur but the tread of a stair, level but for what its end cells hold of the
   /// next.
