@@ -19,10 +19,11 @@ float slope_m(float x_m) {
   return 0.1f * x_m;
 }
 
-/// A slope that one sweep has seen. In the next sweep every line is late by lag_s.
+/// A slope that one sweep has seen, with a wall of this height across it from 1.0 to 1.3 m. In the next sweep every
+/// line is late by lag_s.
 struct Late {
-  Late() {
-    test::fill(stages->dem, [](double x, double) { return static_cast<double>(slope_m(static_cast<float>(x))); });
+  explicit Late(float wall = 0.0f) : wall_m(wall) {
+    test::fill(stages->dem, [this](double x, double) { return static_cast<double>(top_m(static_cast<float>(x))); });
     stages->settle();
     stages->dem.begin_sweep();
     const Settings settings = test::small_settings();
@@ -30,6 +31,7 @@ struct Late {
     offset.init(settings.pose);
     latency.begin_line(0.2f, rate_rad_s, 0);
   }
+  float top_m(float x_m) const { return slope_m(x_m) + (x_m >= 1.0f && x_m < 1.3f ? wall_m : 0.0f); }
   /// Twenty lines, each with a point of row i in every column.
   void look(int i, const LineMotion& motion = {}) {
     const MapComparison<small_limits> map(stages->dem, stages->mixture, stages->field, 10);
@@ -38,7 +40,7 @@ struct Late {
       auto line = std::make_unique<ProjectedLine<small_limits>>();
       const float x_m = 0.1f * static_cast<float>(i) + 0.02f;  // off the cell's points, so that the slope matters
       for (int j = 0; j < 24; ++j) {
-        Point p{x_m, 0.1f * static_cast<float>(j) + 0.05f, slope_m(x_m), 1e-4f};
+        Point p{x_m, 0.1f * static_cast<float>(j) + 0.05f, top_m(x_m), 1e-4f};
         p.z_m -= growth_m_s * (lag_s - latency.offset_s());
         p.growth_m_s = growth_m_s;
         if (!motion.still) p.variance_m2 += motion.blur_m2(p.x_m, p.y_m);
@@ -49,6 +51,7 @@ struct Late {
     }
   }
 
+  float wall_m;
   std::unique_ptr<Stages<>> stages = std::make_unique<Stages<>>(test::small_settings());
   TiltLatency latency{};
   PoseOffset offset{};
@@ -122,6 +125,14 @@ TEST_CASE("map comparison: ground that this sweep has seen, or that holds two su
   two.stages->dem.begin_sweep();
   two.look(12);
   CHECK(two.latency.offset_s() == 0.0f);
+}
+
+TEST_CASE("map comparison: what covers the ground, such as a wall or a hedge, does not tell how late the tilt is") {
+  Late late(0.4f);
+  late.look(12);
+  CHECK(late.latency.offset_s() == 0.0f);
+  late.look(16);
+  CHECK(late.latency.offset_s() == Approx(lag_s).margin(0.001));
 }
 
 TEST_CASE("map comparison: points beside the window are asked nothing") {

@@ -31,7 +31,8 @@ class MapComparison {
   JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,
                       const PoseOffset& offset) const;
 
-  /// Gives `latency` the points on ground seen by an earlier sweep, and not yet by this one.
+  /// Gives `latency` the points on ground seen by an earlier sweep, and not yet by this one. An obstacle is none: in a
+  /// cell of a hedge's side one line is all that has been seen, and the next one meets it at another height.
   void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
                       TiltLatency& latency) const;
 
@@ -102,8 +103,9 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
   Ground ground;
   for (const Point& p : line.points()) {
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
-    if (!place.inside() || !dem_.mapped_before(dem_.slot(place.i, place.j)) || !ground_at(p, place, place, ground))
-      continue;
+    if (!place.inside()) continue;
+    const int slot = dem_.slot(place.i, place.j);
+    if (!dem_.mapped_before(slot) || mixture_.covered(slot) || !ground_at(p, place, place, ground)) continue;
     const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
     const float doubt_m2 = offset.doubt_m2(p.x_m, p.y_m);
     latency.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
