@@ -91,8 +91,8 @@ class Pipeline {
 
   /// infer() for a finished map: repeats the pass over the labels, with no bound on messages, until no label changes or
   /// `passes` (at least 1) are made, then fits the planes by these labels and the curbs, as further lines would, and
-  /// repeats both. The noise that cells share keeps its value: one sweep does not show it. Returns the passes made, of
-  /// the last repetition.
+  /// repeats the passes, at most as many again. The noise that cells share keeps its value: one sweep does not show it.
+  /// Returns the passes made, of the last repetition.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and lie in
@@ -159,6 +159,7 @@ class Pipeline {
   Settings settings_{};
   bool ready_ = false;
   bool planes_next_ = true;                               ///< which half of the inference is due
+  bool unrefined_ = false;                                ///< planes were fitted since settle()
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
   Counters counters_{};
   LineIntake<limits> line_intake_{};
@@ -181,6 +182,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   if (prior.noise_m2 < by_range_m2) prior.noise_m2 = by_range_m2;
   counters_ = Counters{};
   planes_next_ = true;
+  unrefined_ = false;
   p_map_tilt_ = p_base_tilt();
   line_intake_.init(settings);
   dem_.init(settings.window, prior);
@@ -281,10 +283,10 @@ void Pipeline<limits>::infer() {
 template <Limits limits>
 int Pipeline<limits>::settle(int passes) {
   if (!ready_) return 0;
-  const bool touched = dem_.any_touched();
   follow_regions();
   const int pass = settle_labels(passes);
-  if (!touched) return pass;
+  if (!unrefined_ || plane_mixture_.mode() == PlaneUpdate::responsibilities) return pass;
+  unrefined_ = false;
   plane_mixture_.refine(dem_, view(), crossed_cells(dem_, curbs()),
                         [this](int slot) { return label_field_.label(slot); });
   return settle_labels(passes);
@@ -305,6 +307,7 @@ int Pipeline<limits>::settle_labels(int passes) {
 template <Limits limits>
 void Pipeline<limits>::follow_regions() {
   auto& work = workspace_.segmentation();
+  unrefined_ = unrefined_ || dem_.any_touched();
   segmentation_.update(
       dem_, work, plane_mixture_.largest_ground(), [this](int slot) { return plane_mixture_.obstructed(dem_, slot); },
       counters_);

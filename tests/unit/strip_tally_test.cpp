@@ -92,6 +92,10 @@ TEST_CASE("strip tally: a level tread is no face, nor is a slope of two cells") 
     CHECK_FALSE(face(2, [=](float across, int k) { return k == 0 && across < 0.2f ? 0.0f : level; }));
   }
   CHECK_FALSE(face(2, [](float across, int k) { return 0.5f * (across + static_cast<float>(k)); }));
+  CHECK_FALSE(face(3, [](float across, int k) {  // whose end cells hold something of both sides
+    if (k == 0 && across < 0.75f) return 0.0f;
+    return k == 2 && across > 0.25f ? 1.0f : 0.5f;
+  }));
 }
 
 }  // namespace

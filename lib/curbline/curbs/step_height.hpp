@@ -17,7 +17,6 @@
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
-#include "curbline/planes/run.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {

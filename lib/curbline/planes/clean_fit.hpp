@@ -80,7 +80,7 @@ struct CleanFit {
   }
 };
 
-/// The fits of all planes, and which cells are clean for them. Lives for one PlaneMixture::update().
+/// The fits of all planes, and which cells are clean for them. Lives for one PlaneMixture::update() or refine().
 template <Limits limits>
 class CleanFits {
  public:

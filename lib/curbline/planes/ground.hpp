@@ -1,7 +1,7 @@
 // Which planes are ground. A region may fit a plane on which no wheel could stand:
 //   - a face: a strip between two others, at a height between theirs. The heights within its cells spread over most
-//     of the step, beyond the noise of the planes beside it: it is narrower than a cell and a half, and its plane
-//     is a mixture of both sides.
+//     of the step, beyond the noise of the planes beside it, or as on both sides of a border between two rows: it is
+//     narrower than a cell and a half, and its plane is a mixture of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
 //     itself, as no visible surface does; or it is no wider than the shadow of a step down between two planes that are
@@ -19,7 +19,8 @@
 // curb: one that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls
 // away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot, from where it
 // was last seen, and the cells that an edge crosses, at whatever angle the rays cross it: it blurs that edge, unless it
-// falls by too little of the step, as the tread of a stair does. Cost: three passes over the window.
+// falls by too little of the step, as the tread of a stair does, or stands above both its sides. Cost: three passes
+// over the window.
 #pragma once
 
 #include <array>

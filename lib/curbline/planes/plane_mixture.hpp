@@ -41,7 +41,7 @@ class PlaneMixture {
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
               const CellSet<limits>& crossed, LabelOf&& label_of, Counters& counters);
 
-  /// Fits planes of ground again, by what labels and steps have told since update(): for a finished map.
+  /// Fits planes again (PlaneUpdate::regions), by what labels and steps have told since update(): for a finished map.
   template <typename LabelOf>
   void refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of);
 
@@ -152,9 +152,16 @@ template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed,
                                   LabelOf&& label_of) {
+  std::array<PlaneMoments, limits.planes> regions{};
+  dem.for_each_valid([&](int i, int j, int s) {
+    if (region_label_[s] != no_label) regions[region_label_[s]].add(dem.moments(i, j, dem.cell(s)));
+  });
   Fitted fitted{};
-  for (std::size_t l = 0; l < planes_.size(); ++l)
-    fitted[l] = planes_[l].alive() && settings_.update != PlaneUpdate::responsibilities;
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
+    if (!(regions[l].cells > 0.0f)) continue;
+    planes_[l] = fit_plane(regions[l], dem.prior());
+    fitted[l] = true;
+  }
   CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
 }
 

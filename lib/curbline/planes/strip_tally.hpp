@@ -33,8 +33,8 @@ struct Shadowed {
 };
 
 struct StripTally {
-  /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a beam's spot on the
-  /// ground 6 m away, seen from 1.2 m above it.
+  /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a 10 mrad beam's spot
+  /// on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
   static constexpr int sparse_gap = 5;   ///< cells: scan lines on the ground are up to that far apart
