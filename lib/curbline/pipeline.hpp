@@ -268,7 +268,7 @@ void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
-  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y(), heading(T_map_base));
+  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y());
 }
 
 template <Limits limits>

@@ -82,8 +82,6 @@ struct PoseSettings {
                                      ///< standing, how much the robot sways
   float attitude_sd_rad = 0.0f;      ///< of roll and pitch, [0, 1]; standing, the same
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
-  float lean_sd_rad = 0.005f;        ///< of the laser's pitch against the poses, [0, 1]: mount, zero of the attitude,
-                                     ///< z that drifts with the way. 0: it is not estimated
 };
 
 /// How cells become regions. lib/README.md has the reason of each constant, and how little depends on it.

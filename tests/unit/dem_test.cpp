@@ -444,20 +444,6 @@ TEST_CASE("dem: a latency found to be greater corrects heights, those of this sw
   CHECK(height_m(3) == Approx(0.1 + 0.030).margin(1e-5));
 }
 
-TEST_CASE("dem: a lean corrects heights by how far ahead cells lay when they were last seen") {
-  Map dem = make_map(moving());
-  dem.look_from(-1.0f, 0.05f, {0.0f, 1.0f});
-  REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
-  dem.look_from(-0.5f, 0.05f, {1.0f, 0.0f});  // heads along y
-  REQUIRE(dem.add(at(0.05, 0.35, 0.1)));
-  const int first = slot_at(dem, 0.05f, 0.05f), second = slot_at(dem, 0.05f, 0.35f);
-  CHECK(dem.farther_m(first, 0.05f, 0.05f) == Approx(0.0 - 1.05).margin(1e-5));
-  CHECK(dem.farther_m(second, 0.05f, 0.35f) == 0.0f);
-  dem.lean(0.01f);
-  CHECK(dem.cell(first).height_m == Approx(0.1 - 0.0105).margin(1e-5));
-  CHECK(dem.cell(second).height_m == Approx(0.1 - 0.003).margin(1e-5));
-}
-
 TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, however many have been") {
   Map dem = make_map(moving());
   REQUIRE(dem.add(at(0.05, 0.05)));

@@ -107,9 +107,8 @@ Status LineIntake<limits>::place(const ScanLine& line, Dem<limits>& dem, Work& w
   if (still) return Status::ok;
   const PoseJumps jumps = pose_track_.jumps(line.time_ns, last_beam_ns);
   follow_poses(line.time_ns, first, jumps.any(), dem);
-  const float lean_rad = tilt_latency_.lean_rad();
-  work.motion = {make_transform(detail::leaned(pose_offset_.corrected(first), lean_rad)),
-                 make_transform(detail::leaned(pose_offset_.corrected(last), lean_rad)), false, jumps};
+  work.motion = {make_transform(pose_offset_.corrected(first)), make_transform(pose_offset_.corrected(last)), false,
+                 jumps};
   return Status::ok;
 }
 
@@ -167,7 +166,6 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   map.follow_latency(work.projected, motion, pose_offset_, tilt_latency_);
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem.delay(correction.this_sweep_s, correction.earlier_s);
-  if (correction.lean_rad != 0.0f) dem.lean(correction.lean_rad);
   return true;
 }
 

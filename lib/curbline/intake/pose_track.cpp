@@ -41,16 +41,6 @@ bool near_origin(const Pose& pose) {
   return true;
 }
 
-Pose leaned(const Pose& pose, float by_rad) {
-  const float half = 0.5f * by_rad;
-  Pose out = pose;
-  out.qw = pose.qw - half * pose.qy;
-  out.qx = pose.qx - half * pose.qz;
-  out.qy = pose.qy + half * pose.qw;
-  out.qz = pose.qz + half * pose.qx;
-  return out;
-}
-
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
   const float s = to_float(time_ns - a.time_ns) / to_float(b.time_ns - a.time_ns);
   const float sign = nearer_sign(a, b);

@@ -52,8 +52,6 @@ namespace detail {
 bool acceptable(const Pose& pose);
 /// Within Pose::furthest_m of the map's origin?
 bool near_origin(const Pose& pose);
-/// Pitched down by a small angle.
-Pose leaned(const Pose& pose, float by_rad);
 Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns);
 
 /// How far a pose deviates from where others lead.

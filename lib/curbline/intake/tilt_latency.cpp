@@ -34,8 +34,6 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   angle_variance_ += square(pose.attitude_sd_rad);
   height_variance_m2_ = square(pose.height_sd_m);
   covariance_[constant][constant] = prior_variance_s2_;
-  lean_sd_rad_ = pose.lean_sd_rad;
-  found_variance_ = square(lean_sd_rad_);
   turn_driving();
 }
 
@@ -76,17 +74,12 @@ void TiltLatency::turn_driving() {
   p[now][now] = p[constant][constant] + square(sweep_share) * prior_variance_s2_;
   p[constant][now] = p[now][constant] = p[constant][constant];
   p[now][earlier] = p[earlier][now] = p[constant][earlier];
-  lean_due_ = square(found_rad_) > (lean_rad_ == 0.0f ? gate : 1.0f) * found_variance_;
-  by_lean_s_rad_[earlier] = by_lean_s_rad_[now];
-  by_lean_s_rad_[now] = by_lean_s_rad_[constant];
-  found_variance_ = std::min(found_variance_ + square(sweep_share * lean_sd_rad_), square(lean_sd_rad_));
 }
 
 void TiltLatency::Sums::add(const Sighting& seen) {
   const float weight = seen.growth_m_s / seen.variance_m2;
   precision += weight * seen.growth_m_s;
   mapped += weight * seen.map_growth_m_s;
-  farther += weight * seen.farther_m;
   weighted -= weight * seen.above_m;
   growth += seen.growth_m_s;
   common_m2 += seen.common_variance_m2;
@@ -96,7 +89,6 @@ void TiltLatency::Sums::add(const Sighting& seen) {
 void TiltLatency::Sums::add(const Sums& other) {
   precision += other.precision;
   mapped += other.mapped;
-  farther += other.farther;
   weighted += other.weighted;
   growth += other.growth;
   common_m2 += other.common_m2;
@@ -107,10 +99,8 @@ void TiltLatency::Sums::add(const Sums& other) {
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
-  const float by_lean_m = seen.farther_m - g * by_lean_s_rad_[now] + m * by_lean_s_rad_[earlier];
-  const float variance_m2 =
-      seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m) + square(by_lean_m) * found_variance_;
-  const float above_m2 = square(seen.above_m - by_lean_m * found_rad_);
+  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m);
+  const float above_m2 = square(seen.above_m);
   if (above_m2 <= gate * variance_m2) {
     seen_.add(seen);
     return;
@@ -138,8 +128,7 @@ TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
 TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
   const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
   const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
-  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision,
-          sums.farther / sums.precision};
+  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision};
 }
 
 /// Kalman update by one observation of this sweep's offset less a multiple of the ground's; false if it disagrees with
@@ -148,12 +137,7 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   std::array<float, states> cross{};  // covariance of each state and the observation
   for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  const float by_lean = by_lean_s_rad_[now] - seen.mapped_share * by_lean_s_rad_[earlier] - seen.farther_share;
-  const float off_s = seen.missing_s - by_lean * found_rad_, total_s2 = variance_s2 + square(by_lean) * found_variance_;
-  if (!(square(off_s) <= gate * total_s2)) return false;  // NaN too
-  const float lean_gain = by_lean * found_variance_ / total_s2;
-  found_rad_ += lean_gain * off_s;
-  found_variance_ -= lean_gain * by_lean * found_variance_;
+  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // NaN too
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
   offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
@@ -163,25 +147,10 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
     const float least_s2 = least_share * prior_variance_s2_;
     if (open && covariance_[a][a] < least_s2) covariance_[a][a] = least_s2;
   }
-  correction = {offset_s_ - before_s, cross[earlier] * weight, 0.0f};
-  for (std::size_t a = 0; a < states; ++a) by_lean_s_rad_[a] -= cross[a] / variance_s2 * by_lean;
-  if (lean_due_) take_up_lean(correction);
+  correction = {offset_s_ - before_s, cross[earlier] * weight};
   mended_s_ += correction.earlier_s;
   other_.offset_s += correction.earlier_s;
   return true;
-}
-
-/// Takes off the lean that was found, with what the offsets lack for it.
-void TiltLatency::take_up_lean(Correction& correction) {
-  lean_due_ = false;
-  const float by_rad = std::clamp(found_rad_, -5.0f * lean_sd_rad_ - lean_rad_, 5.0f * lean_sd_rad_ - lean_rad_);
-  found_rad_ = 0.0f;
-  lean_rad_ += by_rad;
-  constant_s_ += by_lean_s_rad_[constant] * by_rad;
-  offset_s_ += by_lean_s_rad_[now] * by_rad;
-  correction.this_sweep_s += by_lean_s_rad_[now] * by_rad;
-  correction.earlier_s += by_lean_s_rad_[earlier] * by_rad;
-  correction.lean_rad = by_rad;
 }
 
 /// A line that disagrees with the estimate. A step moves every state that is not known exactly: ground that is the

@@ -9,13 +9,9 @@
 //   - A robot that drives leaves its datum behind. The ground before is always that of the last sweep, and every
 //     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
 //     upward and downward sweeps would come to agree on tilted ground.
-// A laser that leans (its mount, the attitude's zero, or z that drifts with the way) lifts ground too, by how much
-// farther ahead it lay when it was mapped: on a drive always to one side, in sweeps up and down. Beside the offsets, a
-// second stage estimates this lean, and how far it has bent each of them (Friedland's separate bias); at a turn, one of
-// three standard deviations is taken off the poses, the map and the offsets. A latency that steps by more than either
-// allows (the servo was restarted, a clock was set) contradicts the estimate: after ten consecutive lines that do, and
-// agree with each other, it is as uncertain as at the beginning. Cost: 30 operations a point, and a pass over the
-// window for each line that corrects the map.
+// A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the estimate:
+// after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning. Cost: 30
+// operations a point, and a pass over the window for each line that corrects the map.
 #pragma once
 
 #include <array>
@@ -42,14 +38,12 @@ class TiltLatency {
     float common_variance_m2;  ///< the part shared with the line's other points: by the ground's slope
     float growth_m_s;          ///< of its height with a second of latency
     float map_growth_m_s;      ///< of the ground's
-    float farther_m = 0.0f;    ///< how much farther ahead it lies than when that ground was seen
   };
   void compare(const Sighting& seen);
 
   /// By how much the latency is greater than that with which heights were mapped.
   struct Correction {
     float this_sweep_s = 0.0f, earlier_s = 0.0f;
-    float lean_rad = 0.0f;  ///< and the laser's lean
     bool any() const { return this_sweep_s != 0.0f || earlier_s != 0.0f; }
   };
   /// The line ends: its points together are one observation. Returns the correction of the map.
@@ -71,9 +65,6 @@ class TiltLatency {
   float own_variance_m2(float growth_m_s, float map_growth_m_s) const {
     return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
   }
-
-  /// By how much the laser looks farther down than mount and poses say, as taken off. 0 until it is known.
-  float lean_rad() const { return lean_rad_; }
 
   /// Of this sweep: the offset to add to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return offset_s_; }
@@ -101,12 +92,10 @@ class TiltLatency {
     float missing_s;  ///< what this sweep's offset lacks, less mapped_share times what the ground's lacks
     float variance_s2;
     float mapped_share;
-    float farther_share;  ///< and this times the lean
   };
   /// Sightings of a line.
   struct Sums {
-    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, farther = 0.0f, growth = 0.0f, common_m2 = 0.0f,
-          points = 0.0f;
+    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
     void add(const Sighting& seen);
     void add(const Sums& other);
   };
@@ -116,7 +105,6 @@ class TiltLatency {
   void take_up_other_direction();
   Observation observation(const Sums& sums, float tilt_rate_rad_s) const;
   bool update(const Observation& seen, Correction& correction);
-  void take_up_lean(Correction& correction);
   void suspect(const Observation& seen);
   bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
@@ -130,13 +118,6 @@ class TiltLatency {
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
   std::array<std::array<float, states>, states> covariance_{};
   Known other_{};  ///< of the last sweep, of the other direction; driving, only its offset
-
-  float lean_sd_rad_ = 0.0f;                   ///< before any observation
-  float lean_rad_ = 0.0f;                      ///< taken off
-  float found_rad_ = 0.0f;                     ///< lean that is left ...
-  float found_variance_ = 0.0f;                ///< ... and its variance
-  bool lean_due_ = false;                      ///< to be taken off
-  std::array<float, states> by_lean_s_rad_{};  ///< what each offset lacks for a lean that is left
 
   Sums seen_{};              ///< of the current line: points that agree with the estimate ...
   Sums stepped_{};           ///< ... and those that would only after a step

@@ -52,8 +52,6 @@ class Dem : public Window<limits> {
   /// Corrects heights for a latency that is greater than assumed, by this_sweep_s for cells seen in this sweep, by
   /// earlier_s for the others. Cells do not count as touched: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
-  /// Corrects heights for a pitch of the laser that is greater than assumed, from where cells were last seen.
-  void lean(float by_rad);
 
   // Its cells.
 
@@ -172,8 +170,8 @@ class Dem : public Window<limits> {
   void begin_marking() { clear_all(marked_bit); }
   bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
   /// Where the laser is from now on, in the map frame.
-  void look_from(float x_m, float y_m, const SinCos& ahead = {0.0f, 1.0f}) {
-    laser_way_.look_from({x_m, y_m, ahead.cos, ahead.sin});
+  void look_from(float x_m, float y_m) {
+    laser_way_.look_from({x_m, y_m});
     flags_ = static_cast<std::uint8_t>(laser_way_.newest() * a_place + seen_bits);
   }
   /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved, at the height of now.
@@ -185,11 +183,6 @@ class Dem : public Window<limits> {
     view.x_m = from.x_m - origin_x_m();
     view.y_m = from.y_m - origin_y_m();
     return view;
-  }
-  /// How much farther ahead a place, in the map frame, lies now than when this cell was last seen.
-  float farther_m(int slot, float x_m, float y_m) const {
-    const LaserWay::Position &now = laser_way_.at(laser_way_.newest()), &then = laser_way_.at(seen_[slot] / a_place);
-    return now.ahead_m(x_m, y_m) - then.ahead_m(x_m, y_m);
   }
   /// Has the laser moved? If not, all cells were seen from one place.
   bool seen_from_several() const { return laser_way_.moved(); }
@@ -363,15 +356,6 @@ template <Limits limits>
 void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
   for_each_valid(
       [&](int, int, int s) { cells_[s].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s); });
-}
-
-template <Limits limits>
-void Dem<limits>::lean(float by_rad) {
-  for_each_valid([&](int i, int j, int s) {
-    const float x_m = origin_x_m() + (static_cast<float>(i) + 0.5f) * cell_x_m();
-    const float y_m = origin_y_m() + (static_cast<float>(j) + 0.5f) * cell_y_m();
-    cells_[s].height_m -= by_rad * laser_way_.at(seen_[s] / a_place).ahead_m(x_m, y_m);
-  });
 }
 
 }  // namespace curbline

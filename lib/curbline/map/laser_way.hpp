@@ -14,10 +14,7 @@ class LaserWay {
   static constexpr int numbers = 32;
 
   struct Position {
-    float x_m = 0.0f, y_m = 0.0f;          ///< map frame
-    float ahead_x = 1.0f, ahead_y = 0.0f;  ///< where the robot headed
-    /// How far a place lies ahead.
-    float ahead_m(float at_x_m, float at_y_m) const { return (at_x_m - x_m) * ahead_x + (at_y_m - y_m) * ahead_y; }
+    float x_m = 0.0f, y_m = 0.0f;  ///< map frame
   };
 
   void init(float window_side_m) {
@@ -32,8 +29,7 @@ class LaserWay {
       began_ = position;
       ++places_;
     }
-    at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + position.x_m), 0.5f * (began_.y_m + position.y_m),
-                                               position.ahead_x, position.ahead_y};
+    at_[static_cast<std::size_t>(newest())] = {0.5f * (began_.x_m + position.x_m), 0.5f * (began_.y_m + position.y_m)};
   }
 
   /// Has the laser left its first place?
