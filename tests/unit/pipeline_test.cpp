@@ -601,6 +601,25 @@ TEST_CASE("pipeline: the cells that a low step crosses tilt no plane of a finish
   CHECK(settled(true).height_m == Approx(0.02).margin(0.0005));
 }
 
+//           ______
+//        __/            a slope of 14 cm: a face, as far as the laser's spot blurs it, or ground
+//  _____/
+TEST_CASE("pipeline: the wider the laser's spot, the less of a slope beside a step may be ground") {
+  const auto told = [](float divergence_rad) {
+    Settings settings = NoddingLaser::settings();
+    settings.laser.beam_divergence_rad = divergence_rad;
+    const auto pipeline = started(settings);
+    test::Noise noise;
+    pipeline->observe(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, [](double x, double) {
+      return x < 2.0 ? 0.0 : x < 2.14 ? (x - 2.0) : 0.14;
+    }));
+    pipeline->settle();
+    return longest(pipeline->curbs());
+  };
+  CHECK(told(0.0f).kind == CurbKind::step_up);
+  CHECK(told(0.0f).height_sd_m > 2.0f * told(0.05f).height_sd_m);
+}
+
 TEST_CASE(
     "pipeline: the ground of a narrow verge is known no better than its roughness allows, in a finished map too") {
   test::Noise noise;
