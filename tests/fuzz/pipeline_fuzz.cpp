@@ -89,7 +89,7 @@ Settings some_settings(Numbers& numbers) {
     numbers.change(*reach, 1, max_link_reach);
   PlanePrior& prior = s.planes.prior;
   numbers.change(prior.noise_m2, 1e-10f, 100.0f);
-  numbers.change(prior.texture_m2, 0.0f, prior.noise_m2);
+  numbers.change(prior.texture_m2, 0.0f, prior.noise_m2 >= 0.0f ? prior.noise_m2 : 100.0f);  // it may be any by now
   numbers.change(prior.degrees, 1.0f, 1e6f);
   numbers.change(prior.common_share, 0.01f, 1.0f);
   numbers.change(prior.curvature_1_m, 0.0f, 10.0f);
