@@ -38,6 +38,15 @@ void stand(FullPipeline& pipeline, NoddingLaser& laser, const Street& street, in
   }
 }
 
+/// The finished map of these points.
+std::unique_ptr<FullPipeline> map_of(const std::vector<Point>& points,
+                                     const Settings& settings = NoddingLaser::settings()) {
+  auto pipeline = started(settings);
+  pipeline->observe(points);
+  pipeline->settle();
+  return pipeline;
+}
+
 /// Everything about curbs except their numbers, which depend on how often they were traced.
 std::vector<char> bytes(std::span<const Curb> curbs) {
   std::vector<char> out;
@@ -88,11 +97,10 @@ TEST_CASE("pipeline: a narrow top is a wall's for a robot that stands, for one t
   const auto is_ground = [](bool still) {
     Settings settings = NoddingLaser::settings();
     settings.pose.still = still;
-    const auto pipeline = started(settings);
     test::Noise noise;
-    pipeline->observe(
-        test::sample({0, 2.35, -2, 2}, 0.05, 0.005, noise, [](double x, double) { return x < 2.0 ? 0.0 : 0.25; }));
-    pipeline->settle();
+    const auto pipeline = map_of(
+        test::sample({0, 2.35, -2, 2}, 0.05, 0.005, noise, [](double x, double) { return x < 2.0 ? 0.0 : 0.25; }),
+        settings);
     return pipeline->label(21, 20) != pipeline->label(10, 20);
   };
   CHECK_FALSE(is_ground(true));
@@ -608,13 +616,9 @@ TEST_CASE("pipeline: the wider the laser's spot, the less of a slope beside a st
   const auto told = [](float divergence_rad) {
     Settings settings = NoddingLaser::settings();
     settings.laser.beam_divergence_rad = divergence_rad;
-    const auto pipeline = started(settings);
     test::Noise noise;
-    pipeline->observe(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, [](double x, double) {
-      return x < 2.0 ? 0.0 : x < 2.14 ? (x - 2.0) : 0.14;
-    }));
-    pipeline->settle();
-    return longest(pipeline->curbs());
+    const auto ground = [](double x, double) { return x < 2.0 ? 0.0 : x < 2.14 ? (x - 2.0) : 0.14; };
+    return longest(map_of(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, ground), settings)->curbs());
   };
   CHECK(told(0.0f).kind == CurbKind::step_up);
   CHECK(told(0.0f).height_sd_m > 2.0f * told(0.05f).height_sd_m);
@@ -627,9 +631,7 @@ TEST_CASE(
     const double across = x - 1.95 - 0.1 * y;
     return across >= 0.0 && across < 0.3 ? 0.05 + 0.01 * noise.normal() : 0.0;
   };
-  const auto pipeline = started();
-  pipeline->observe(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, ground));
-  pipeline->settle();
+  const auto pipeline = map_of(test::sample({0, 4, -2, 2}, 0.03, 0.006, noise, ground));
   CHECK(longest(pipeline->curbs()).height_sd_m > 0.006f);  // the edge may begin anywhere within 1 cm / sqrt 3
 }
 
