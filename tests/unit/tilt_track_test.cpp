@@ -120,6 +120,68 @@ TEST_CASE("tilt track: how many readings have come after a line's last beam chan
   CHECK(told.size() == 26);
 }
 
+/// A track of readings every 10 ms, in the order given, in milliradians.
+std::unique_ptr<TiltTrack<Limits{}>> readings_mrad(const std::vector<float>& angles) {
+  auto track = std::make_unique<TiltTrack<Limits{}>>();
+  track->init(TiltSettings{});
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    REQUIRE(track->push({t0 + 10 * ms * static_cast<std::int64_t>(k), 1e-3f * angles[k]}));
+  }
+  return track;
+}
+
+/// The angles at the times of those readings, in milliradians, if there have been `repeats` in a row before.
+std::vector<float> told_mrad(const std::vector<float>& angles, int repeats = 0) {
+  TiltSnapshot<Limits{}> told;
+  readings_mrad(angles)->snapshot(told, 0.0f, INT64_MAX, repeats);
+  std::vector<float> out;
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    out.push_back(std::round(1e4f * told.at(t0 + 10 * ms * static_cast<std::int64_t>(k)).angle_rad) / 10.0f);
+  }
+  return out;
+}
+
+TEST_CASE("tilt track: an angle sent again under a new stamp while the servo turns is none of that time") {
+  CHECK(told_mrad({0, 5, 10, 10, 20, 25, 25, 25, 40, 45}) == std::vector<float>{0, 5, 10, 15, 20, 25, 30, 35, 40, 45});
+  CHECK(told_mrad({0, -6, -12, -12, -24, -30}) == std::vector<float>{0, -6, -12, -18, -24, -30});
+  // Angles of 33 Hz sent at 100 Hz: the first three are not known to be repeats.
+  CHECK(told_mrad({0, 0, 0, 15, 15, 15, 30, 30, 30, 45}) == std::vector<float>{0, 0, 0, 15, 20, 25, 30, 35, 40, 45});
+}
+
+TEST_CASE("tilt track: a servo that stands keeps its angle, and so does one that turns round or is coarse") {
+  const auto stays = [](const std::vector<float>& angles, int repeats = 0) {
+    CHECK(told_mrad(angles, repeats) == angles);
+  };
+  stays({0, 5, 10, 10, 10, 10, 10, 10, 15, 20});  // it stops, and goes on
+  stays({0, 5, 10, 10, 15, 20, 25});              // for a moment only
+  stays({0, 5, 10, 10, 10, 10, 10, 10, 22, 34});  // twice as fast
+  stays({0, 5, 10, 10, 10, 10});                  // until now
+  stays({0, 5, 10, 10, 10, 10}, 2);               // for longer than repeats have been seen
+  stays({0, 5, 10, 10, 0, -10});                  // it turns round
+  stays({0, 2, 2, 4, 4, 4, 8, 8, 10});            // steps of its resolution
+  stays({10, 10, 10, 10});
+}
+
+TEST_CASE("tilt track: where repeats have been seen the newest angle may be one") {
+  TiltSnapshot<Limits{}> told;
+  readings_mrad({0, 5, 10, 10, 20, 25, 25, 25, 40})->snapshot(told, 0.0f, INT64_MAX);
+  CHECK(told.most_repeats() == 2);
+  CHECK(told_mrad({0, 5, 10, 10}) == std::vector<float>{0, 5, 10, 10});
+  CHECK(told_mrad({0, 5, 10, 10}, 2) == std::vector<float>{0, 5, 10, 15});
+  CHECK(told_mrad({0, 5, 10, 10, 20, 25, 25}) == std::vector<float>{0, 5, 10, 15, 20, 25, 30});
+}
+
+TEST_CASE("tilt track: how many readings have come after a line does not decide what is a repeat") {
+  const std::vector<float> angles{0, 5, 10, 10, 20, 25, 30, 30, 40, 45, 50};
+  const std::int64_t last_beam = t0 + 65 * ms;  // awaits the repeat at 70 ms
+  for (std::size_t known = 8; known <= angles.size(); ++known) {
+    TiltSnapshot<Limits{}> told;
+    readings_mrad({angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(known)})
+        ->snapshot(told, 0.0f, last_beam);
+    CHECK(told.at(last_beam).angle_rad == Approx(0.0325));
+  }
+}
+
 TEST_CASE("tilt track: near a turn, beside a damaged reading and where readings come slowly the rate is their own") {
   TiltSettings settings;
   settings.angle_sd_rad = 1e-4f;

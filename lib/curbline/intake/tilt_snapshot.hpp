@@ -1,8 +1,10 @@
 // The angle of the tilt servo at each beam of a line, interpolated between the readings that a TiltTrack held when the
-// line came, and extrapolated a little. Working memory of one line. Cost: a step a beam, and a search for the rate a
-// reading.
+// line came, and extrapolated a little. A driver that has no new angle may send its last one again, under a new stamp:
+// between readings that show how the servo moved, such a repeat is replaced by the angle on the line through them.
+// Working memory of one line. Cost: a step a beam, a search for the rate a reading, a comparison for every second one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,10 +31,14 @@ class TiltSnapshot {
  public:
   /// For TiltTrack: put() stores `count` readings, number 0 the oldest, and begin() uses the newest `whole` of them, as
   /// far as their times rise. `written` counts the readings up to the newest since init(). Angles between readings do
-  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam.
+  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `repeats` is
+  /// what most_repeats() of the last snapshot was.
   void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
   void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
-             std::int64_t until_ns);
+             std::int64_t until_ns, int repeats);
+
+  /// The largest number of repeats in a row, so far.
+  int most_repeats() const { return most_repeats_; }
 
   /// The angle at a time; Source::none where no readings are near. Times must not fall, except after rewind(). O(1) on
   /// average.
@@ -55,10 +61,16 @@ class TiltSnapshot {
   }
   static TiltAngle alone(std::int64_t time_ns, const TiltReading& reading);
   float rate_about(int before, int after, float own_rad_s) const;
+  void fill_repeats();
+  int other_angle(int after) const;
+  bool moves(int from, int to) const;
+  bool goes_on(int before, int at, int next) const;
+  void fill(int at, int next, float rate_rad_s);
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
+  int most_repeats_ = 0;       ///< in a row
   int awaited_ = 0;            ///< readings up to the first one later than the line's last beam
   std::uint32_t written_ = 0;  ///< readings up to the newest, since init()
   int cursor_ = 0;             ///< the first reading later than the last time asked for, or size_
@@ -75,7 +87,7 @@ class TiltSnapshot {
 
 template <Limits limits>
 void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written,
-                                 const TiltSettings& settings, std::int64_t until_ns) {
+                                 const TiltSettings& settings, std::int64_t until_ns, int repeats) {
   std::uint32_t kept = whole > 0 ? 1 : 0;  // readings before times went back are of another time base
   while (kept < whole && readings_[count - kept - 1].time_ns < readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) readings_[k] = readings_[count - kept + k];
@@ -88,6 +100,64 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
   max_extrapolation_ns_ = static_cast<std::int64_t>(settings.max_extrapolation_s * 1e9f);
   angle_variance_ = square(settings.angle_sd_rad);
   time_variance_s2_ = square(settings.time_sd_s);
+  most_repeats_ = repeats;
+  fill_repeats();
+}
+
+/// Looks at half of what a track holds, up to the reading that the line has awaited, so that none depends on how many
+/// have come since. Repeats that no other angle has followed yet may be those of a servo that has stopped, unless there
+/// have been as many before.
+template <Limits limits>
+void TiltSnapshot<limits>::fill_repeats() {
+  int before = std::max(0, awaited_ - limits.tilt_samples / 2), at = other_angle(before);
+  while (at < awaited_) {
+    const int next = other_angle(at), repeats = next - at - 1;
+    if (repeats > 0 && moves(before, at)) {
+      if (next == awaited_) {
+        if (repeats <= most_repeats_) fill(at, next, slope_rad_s(reading(before), reading(at)));
+      } else if (moves(at, next) && goes_on(before, at, next)) {
+        fill(at, next, slope_rad_s(reading(at), reading(next)));
+        most_repeats_ = std::max(most_repeats_, repeats);
+      }
+    }
+    before = at;
+    at = next;
+  }
+}
+
+/// The first reading after one whose angle is another; awaited_ if there is none.
+template <Limits limits>
+int TiltSnapshot<limits>::other_angle(int after) const {
+  int k = after + 1;
+  while (k < awaited_ && reading(k).angle_rad == reading(after).angle_rad) ++k;
+  return k;
+}
+
+/// By more than a step of the servo's resolution, if its error is a step's alone? Not across a gap.
+template <Limits limits>
+bool TiltSnapshot<limits>::moves(int from, int to) const {
+  return reading(to).time_ns - reading(from).time_ns <= max_gap_ns_ &&
+         square(reading(to).angle_rad - reading(from).angle_rad) > 12.0f * angle_variance_;
+}
+
+/// Has the servo not stood from `at` to the last repeat? Then its way to `next` is nearer to what the rate before makes
+/// of all that time than to what it makes of the rest.
+template <Limits limits>
+bool TiltSnapshot<limits>::goes_on(int before, int at, int next) const {
+  const std::int64_t all_ns = reading(next).time_ns - reading(at).time_ns;
+  const std::int64_t left_ns = reading(next).time_ns - reading(next - 1).time_ns;
+  const float by_rad = reading(next).angle_rad - reading(at).angle_rad;
+  const float half_rad = slope_rad_s(reading(before), reading(at)) * 0.5f * seconds(all_ns + left_ns);
+  return half_rad < 0.0f ? by_rad < half_rad : by_rad > half_rad;
+}
+
+/// Puts the repeats of `at` before `next` on a line.
+template <Limits limits>
+void TiltSnapshot<limits>::fill(int at, int next, float rate_rad_s) {
+  for (int k = at + 1; k < next; ++k) {
+    TiltReading& repeat = readings_[static_cast<std::size_t>(k)];
+    repeat.angle_rad += seconds(repeat.time_ns - reading(at).time_ns) * rate_rad_s;
+  }
 }
 
 template <Limits limits>

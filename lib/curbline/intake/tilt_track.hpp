@@ -39,8 +39,9 @@ class TiltTrack {
   bool push(const TiltReading& reading);
 
   /// Copies the readings, except those that the writer may have replaced meanwhile. `offset_s` is added to
-  /// TiltSettings::latency_s; `until_ns` is the time of the line's last beam. O(tilt_samples).
-  void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) const;
+  /// TiltSettings::latency_s; `until_ns` is the time of the line's last beam, `repeats` the last snapshot's
+  /// most_repeats(). O(tilt_samples).
+  void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns, int repeats = 0) const;
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
@@ -77,7 +78,7 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
 }
 
 template <Limits limits>
-void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) const {
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns, int repeats) const {
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
@@ -95,7 +96,7 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std:
   const std::uint32_t room = capacity - count;
   const std::uint32_t lost = added > room ? added - room : 0;
   const std::uint32_t whole = lost < count ? count - lost : 0;
-  out.begin(count, whole, before, settings_, until_ns);
+  out.begin(count, whole, before, settings_, until_ns, repeats);
 }
 
 }  // namespace curbline
