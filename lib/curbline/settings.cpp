@@ -82,6 +82,7 @@ Bad first_bad(const TiltSettings& t) {
 Bad first_bad(const PoseSettings& p) {
   if (!deviation_m(p.height_sd_m)) return "pose.height_sd_m";
   if (!deviation_rad(p.attitude_sd_rad)) return "pose.attitude_sd_rad";
+  if (!within(p.lean_sd_rad, 0.0f, 0.05f)) return "pose.lean_sd_rad";
   return within(p.max_extrapolation_s, 0.0f, 10.0f) ? nullptr : "pose.max_extrapolation_s";
 }
 

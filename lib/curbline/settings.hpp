@@ -77,10 +77,12 @@ struct TiltSettings {
 /// The robot's pose, T_map_base. A robot that stands gives none. One that drives must state both deviations: with 0
 /// every rounding of a pose is a jump, and a step of its localisation cannot be told from a curb that it climbs.
 struct PoseSettings {
-  bool still = true;                 ///< true: no poses will come, base and map frame are one
-  float height_sd_m = 0.0f;          ///< of each pose's z, independent of the next one's: jitter, not drift. [0, 10];
-                                     ///< standing, how much the robot sways
-  float attitude_sd_rad = 0.0f;      ///< of roll and pitch, [0, 1]; standing, the same
+  bool still = true;             ///< true: no poses will come, base and map frame are one
+  float height_sd_m = 0.0f;      ///< of each pose's z, independent of the next one's: jitter, not drift. [0, 10];
+                                 ///< standing, how much the robot sways
+  float attitude_sd_rad = 0.0f;  ///< of roll and pitch, [0, 1]; standing, the same
+  float lean_sd_rad = 0.005f;    ///< of the laser's pitch against the poses, [0, 0.05]: mount, zero of the attitude,
+                                 ///< z that drifts with the way. 0: it is not estimated
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 

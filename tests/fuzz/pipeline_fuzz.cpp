@@ -80,6 +80,7 @@ Settings some_settings(Numbers& numbers) {
 
   numbers.change(s.pose.height_sd_m, 0.0f, 10.0f);
   numbers.change(s.pose.attitude_sd_rad, 0.0f, 1.0f);
+  numbers.change(s.pose.lean_sd_rad, 0.0f, 0.05f);
   numbers.change(s.pose.max_extrapolation_s, 0.0f, 10.0f);
 
   numbers.change(s.segmentation.cell.degrees, 1e-3f, 1e6f);

@@ -444,6 +444,33 @@ TEST_CASE("dem: a latency found to be greater corrects heights, those of this sw
   CHECK(height_m(3) == Approx(0.1 + 0.030).margin(1e-5));
 }
 
+TEST_CASE("dem: a lean corrects heights by how far ahead a cell's points lay when they were seen, in the mean") {
+  Map dem = make_map(moving());
+  dem.look_from(-1.0f, 0.05f, {0.0f, 1.0f});
+  for (int k = 0; k < 3; ++k) REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
+  dem.look_from(-0.5f, 0.05f, {1.0f, 0.0f});  // the laser points along y
+  REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
+  REQUIRE(dem.add(at(0.05, 0.35, 0.1)));
+  const int both = slot_at(dem, 0.05f, 0.05f), second = slot_at(dem, 0.05f, 0.35f);
+  CHECK(dem.ahead_m(0.05f, 0.35f) == Approx(0.3));
+  CHECK(dem.farther_m(both, 0.05f, 0.05f) == Approx(0.0 - 0.75 * 1.05).margin(2e-3));
+  CHECK(dem.farther_m(second, 0.05f, 0.35f) == Approx(0.0).margin(2e-3));
+  dem.lean(0.01f);
+  CHECK(dem.cell(both).height_m == Approx(0.1 - 0.01 * 0.75 * 1.05).margin(2e-5));
+  CHECK(dem.cell(second).height_m == Approx(0.1 - 0.003).margin(2e-5));
+}
+
+TEST_CASE("dem: a cell that has left the window knows nothing of how far ahead it lay") {
+  Map dem = make_map(moving());
+  dem.look_from(-3.0f, 0.05f);
+  REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
+  dem.follow(standing_at(50.0f, 0.0f), [](int) {});
+  dem.follow(standing_at(0.0f, 0.0f), [](int) {});
+  dem.look_from(-1.0f, 0.05f);
+  REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
+  CHECK(dem.farther_m(slot_at(dem, 0.05f, 0.05f), 0.05f, 0.05f) == Approx(0.0).margin(2e-3));
+}
+
 TEST_CASE("dem: a cell that no sweep has seen for long is of an earlier one, however many have been") {
   Map dem = make_map(moving());
   REQUIRE(dem.add(at(0.05, 0.05)));

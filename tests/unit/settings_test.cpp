@@ -53,7 +53,7 @@ TEST_CASE("settings: the bounds themselves are good") {
   low.tilt.latency_s = -10.0f;
   low.tilt.latency_sd_s = low.tilt.angle_sd_rad = low.tilt.time_sd_s = low.tilt.max_extrapolation_s = 0.0f;
   low.tilt.roll_sd_rad = low.tilt.pitch_sd_rad = 0.0f;
-  low.pose.height_sd_m = low.pose.attitude_sd_rad = low.pose.max_extrapolation_s = 0.0f;
+  low.pose.height_sd_m = low.pose.attitude_sd_rad = low.pose.lean_sd_rad = low.pose.max_extrapolation_s = 0.0f;
   low.segmentation.cell = {1e-3f, 1e-10f};
   low.segmentation.link_reach = low.labels.link_reach = low.curbs.link_reach = 1;
   low.planes.prior = {1e-10f, 0.0f, 1.0f, PlanePrior::least_common_share, 0.0f};
@@ -77,6 +77,7 @@ TEST_CASE("settings: the bounds themselves are good") {
   high.tilt.roll_sd_rad = high.tilt.pitch_sd_rad = 1.0f;
   high.pose.height_sd_m = high.pose.max_extrapolation_s = 10.0f;
   high.pose.attitude_sd_rad = 1.0f;
+  high.pose.lean_sd_rad = 0.05f;
   high.segmentation.cell = {1e6f, 100.0f};
   high.segmentation.link_reach = high.labels.link_reach = high.curbs.link_reach = 15;
   high.planes.prior = {100.0f, 100.0f, 1e6f, 1.0f, 10.0f};
@@ -154,6 +155,7 @@ TEST_CASE("settings: a bad pose is named") {
   refuses(bad, "pose.height_sd_m", [](Settings& s) -> float& { return s.pose.height_sd_m; }, {-0.1f, nan, infinity});
   refuses(bad, "pose.attitude_sd_rad", [](Settings& s) -> float& { return s.pose.attitude_sd_rad; },
           {-0.1f, nan, infinity});
+  refuses(bad, "pose.lean_sd_rad", [](Settings& s) -> float& { return s.pose.lean_sd_rad; }, {-0.1f, 0.06f, nan});
   refuses(bad, "pose.max_extrapolation_s", [](Settings& s) -> float& { return s.pose.max_extrapolation_s; },
           {-0.1f, 10.1f, nan});
 }

@@ -103,11 +103,12 @@ struct Sweeps {
       const Turn turn = latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
       turned = turned || turn == Turn::new_sweep;
       const float map_growth = -growth * (drives ? 1.0f + advance : 1.0f);
+      const float farther_m = drives ? -range_m * advance : 0.0f;
       const float above_m = -growth * (lag_s - latency.offset_s()) + map_growth * (map_lag_s - map_offset_s) +
-                            (drives ? mount_rad * range_m * advance : 0.0f);
+                            (lean_rad - latency.lean_rad()) * farther_m;
       for (int point = 0; point < 20 && turned; ++point) {
         const float by_chance_m = point_sd_m * static_cast<float>(noise.normal());
-        latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, growth, map_growth});
+        latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, growth, map_growth, farther_m});
       }
       map_offset_s += latency.end_line(rate).earlier_s;
     }
@@ -117,7 +118,7 @@ struct Sweeps {
   }
 
   bool drives;
-  float mount_rad = 0.0f;  ///< unknown lean of the mount: ground farther away seems higher, or lower
+  float lean_rad = 0.0f;  ///< unknown lean of the mount: ground farther away seems higher, or lower
   TiltLatency latency;
   test::Noise noise{3};
   int sweeps = 0;
@@ -167,11 +168,42 @@ TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
 
 TEST_CASE("tilt latency: a mount that leans by a milliradian is none of the servo's latency") {
   Sweeps drive(true);
-  drive.mount_rad = GENERATE(-0.001f, 0.001f);
+  drive.lean_rad = GENERATE(-0.001f, 0.001f);
   for (int k = 0; k < 20; ++k) {
     drive.sweep(0.006f);
     if (k > 4) CHECK(drive.latency.usual().offset_s == Approx(0.006f).margin(0.001));
   }
+}
+
+TEST_CASE(
+    "tilt latency: on a drive a laser that leans by half a degree is found, and none of it is the servo's latency") {
+  Sweeps drive(true);
+  drive.lean_rad = GENERATE(-0.009f, 0.009f);
+  for (int k = 0; k < 20; ++k) {
+    drive.sweep(0.006f);
+    if (k < 3) continue;
+    CHECK(drive.latency.lean_rad() == Approx(drive.lean_rad).margin(0.002));
+    CHECK(drive.latency.usual().offset_s == Approx(0.006f).margin(0.001));
+  }
+  CHECK(drive.latency.steps() == 0);
+}
+
+TEST_CASE("tilt latency: a lean that may be chance is not taken off") {
+  const bool drives = GENERATE(false, true);
+  Sweeps robot(drives);
+  for (int k = 0; k < 100; ++k) robot.sweep(0.006f);
+  CHECK(robot.latency.lean_rad() == 0.0f);
+}
+
+TEST_CASE("tilt latency: a lean that is taken off leaves offsets within five standard deviations") {
+  Sweeps drive(true);
+  for (int k = 0; k < 100; ++k) {
+    drive.lean_rad += 0.002f;
+    drive.sweep(0.0f);
+    CHECK(std::abs(drive.latency.offset_s()) <= 0.05f);
+  }
+  CHECK(drive.latency.lean_rad() > 0.01f);
+  CHECK(drive.latency.lean_rad() <= 0.025f);
 }
 
 TEST_CASE("tilt latency: how late a servo is in all is told as well as its deviation says") {

@@ -88,6 +88,7 @@ nlohmann::json summary_of(const Replay& replay) {
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
           {"tilt_latency_offset_s", late.offset_s},
+          {"lean_rad", latency.lean_rad()},
           {"tilt_latency_sd_s", late.sd_s},
           {"latency_steps", latency.steps()},
           {"beams_without_tilt", c.beams_without_tilt},

@@ -46,6 +46,7 @@ void read_pose(TomlTable table, PoseSettings& pose) {
   table.read("still", pose.still);
   table.read("height_sd_m", pose.height_sd_m, {0.0, 1.0});
   table.read("attitude_sd_rad", pose.attitude_sd_rad, {0.0, 0.1});
+  table.read("lean_sd_rad", pose.lean_sd_rad, {0.0, 0.05});
   table.read("max_extrapolation_s", pose.max_extrapolation_s, {1e-4, 10.0});
   table.done();
 }

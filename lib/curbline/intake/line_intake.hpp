@@ -66,6 +66,7 @@ class LineIntake {
 
   bool follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem, TiltSnapshot<limits>& tilt);
   void follow_poses(std::int64_t line_ns, const Pose& pose, bool jumping, Dem<limits>& dem);
+  void lean(const TiltLatency::Correction& by, Dem<limits>& dem, ProjectedLine<limits>& line);
   /// Does the robot climb, with a localisation that may step meanwhile?
   bool climbs() const { return pose_track_.climbs() && pose_offset_.localisation_steps(); }
 
@@ -169,7 +170,16 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   map.follow_latency(work.projected, motion, pose_offset_, tilt_latency_);
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
   if (correction.any()) dem.delay(correction.this_sweep_s, correction.earlier_s);
+  if (correction.lean_rad != 0.0f) lean(correction, dem, work.projected);
   return true;
+}
+
+/// The laser's lean is taken off the map, the line in hand and those to come.
+template <Limits limits>
+void LineIntake<limits>::lean(const TiltLatency::Correction& by, Dem<limits>& dem, ProjectedLine<limits>& line) {
+  dem.lean(by.lean_rad);
+  for (Point& p : line.points()) p.z_m += p.growth_m_s * by.this_sweep_s - by.lean_rad * dem.ahead_m(p.x_m, p.y_m);
+  line_projection_.lean(tilt_latency_.lean_rad());
 }
 
 }  // namespace curbline

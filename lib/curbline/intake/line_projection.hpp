@@ -83,6 +83,9 @@ class LineProjection {
   void project(const ScanLine& line, TiltSnapshot<limits>& tilt, const LineMotion& motion, const Bounds& bounds,
                Counters& counters, ProjectedLine<limits>& out);
 
+  /// From now on the laser looks farther down than tilt readings say.
+  void lean(float by_rad) { lean_rad_ = by_rad; }
+
   const LaserSettings& laser() const { return laser_; }
   const TiltSettings& tilt() const { return tilt_; }
   const PoseSettings& pose() const { return pose_; }
@@ -117,6 +120,7 @@ class LineProjection {
   LaserSettings laser_{};
   TiltSettings tilt_{};
   PoseSettings pose_{};
+  float lean_rad_ = 0.0f;
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
   Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(),
@@ -130,6 +134,7 @@ void LineProjection<limits>::init(const Settings& settings) {
   laser_ = settings.laser;
   tilt_ = settings.tilt;
   pose_ = settings.pose;
+  lean_rad_ = 0.0f;
   beam_interval_ns_ = laser_.beam_interval_ns();
   T_base_tilt_ = make_transform(tilt_.T_base_tilt);
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
@@ -168,7 +173,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     }
     counters.beams_extrapolated += angle.source == TiltAngle::Source::extrapolated;
 
-    const SinCos s = near.at(angle.angle_rad);
+    const SinCos s = near.at(angle.angle_rad + lean_rad_);
     const Eigen::Vector3f x = tilted(s, laser_x_), y = tilted(s, laser_y_);  // the laser's axes
     const SinCos& bearing = bearing_[i];
     const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;

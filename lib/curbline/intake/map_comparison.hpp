@@ -109,7 +109,8 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
     const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
     const float doubt_m2 = offset.doubt_m2(p.x_m, p.y_m);
     latency.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
-                     ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s});
+                     ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s,
+                     dem_.farther_m(slot, p.x_m, p.y_m)});
   }
 }
 

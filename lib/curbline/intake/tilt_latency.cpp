@@ -34,6 +34,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
   angle_variance_ += square(pose.attitude_sd_rad);
   height_variance_m2_ = square(pose.height_sd_m);
   covariance_[constant][constant] = prior_variance_s2_;
+  lean_.init(pose.lean_sd_rad);
   turn_driving();
 }
 
@@ -74,12 +75,16 @@ void TiltLatency::turn_driving() {
   p[now][now] = p[constant][constant] + square(sweep_share) * prior_variance_s2_;
   p[constant][now] = p[now][constant] = p[constant][constant];
   p[now][earlier] = p[earlier][now] = p[constant][earlier];
+  by_lean_s_rad_[earlier] = by_lean_s_rad_[now];
+  by_lean_s_rad_[now] = by_lean_s_rad_[constant];
+  lean_.begin_sweep();
 }
 
 void TiltLatency::Sums::add(const Sighting& seen) {
   const float weight = seen.growth_m_s / seen.variance_m2;
   precision += weight * seen.growth_m_s;
   mapped += weight * seen.map_growth_m_s;
+  farther += weight * seen.farther_m;
   weighted -= weight * seen.above_m;
   growth += seen.growth_m_s;
   common_m2 += seen.common_variance_m2;
@@ -89,6 +94,7 @@ void TiltLatency::Sums::add(const Sighting& seen) {
 void TiltLatency::Sums::add(const Sums& other) {
   precision += other.precision;
   mapped += other.mapped;
+  farther += other.farther;
   weighted += other.weighted;
   growth += other.growth;
   common_m2 += other.common_m2;
@@ -99,8 +105,10 @@ void TiltLatency::Sums::add(const Sums& other) {
 void TiltLatency::compare(const Sighting& seen) {
   const float g = seen.growth_m_s, m = seen.map_growth_m_s;
   if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
-  const float variance_m2 = seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m);
-  const float above_m2 = square(seen.above_m);
+  const float by_lean_m = seen.farther_m - g * by_lean_s_rad_[now] + m * by_lean_s_rad_[earlier];
+  const float variance_m2 =
+      seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m) + lean_.variance(by_lean_m);
+  const float above_m2 = square(seen.above_m - lean_.mean(by_lean_m));
   if (above_m2 <= gate * variance_m2) {
     seen_.add(seen);
     return;
@@ -128,7 +136,8 @@ TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
 TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
   const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
   const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
-  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision};
+  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision,
+          sums.farther / sums.precision};
 }
 
 /// Kalman update by one observation of this sweep's offset less a multiple of the ground's; false if it disagrees with
@@ -137,20 +146,37 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   std::array<float, states> cross{};  // covariance of each state and the observation
   for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
   const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  if (!(square(seen.missing_s) <= gate * variance_s2)) return false;  // NaN too
+  const float by_lean = by_lean_s_rad_[now] - seen.mapped_share * by_lean_s_rad_[earlier] - seen.farther_share;
+  const float off_s2 = square(seen.missing_s - lean_.mean(by_lean));
+  if (!(off_s2 <= gate * (variance_s2 + lean_.variance(by_lean)))) return false;  // NaN too
+  lean_.observe(by_lean, seen.missing_s, variance_s2);
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
   offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
   for (std::size_t a = 0; a < states; ++a) {
     const bool open = !known(static_cast<State>(a));
+    by_lean_s_rad_[a] -= cross[a] / variance_s2 * by_lean;
     for (std::size_t b = 0; b < states; ++b) covariance_[a][b] -= cross[a] * cross[b] / variance_s2;
     const float least_s2 = least_share * prior_variance_s2_;
     if (open && covariance_[a][a] < least_s2) covariance_[a][a] = least_s2;
   }
-  correction = {offset_s_ - before_s, cross[earlier] * weight};
+  correction = {offset_s_ - before_s, cross[earlier] * weight, 0.0f};
+  take_off_lean(correction);
   mended_s_ += correction.earlier_s;
   other_.offset_s += correction.earlier_s;
   return true;
+}
+
+/// With it go the parts of the offsets that it had bent.
+void TiltLatency::take_off_lean(Correction& correction) {
+  correction.lean_rad = lean_.take_off();
+  if (correction.lean_rad == 0.0f) return;
+  const auto bent_s = [&](State state) { return by_lean_s_rad_[state] * correction.lean_rad; };
+  const float before_s = offset_s_;
+  constant_s_ = std::clamp(constant_s_ + bent_s(constant), -largest_offset_s_, largest_offset_s_);
+  offset_s_ = std::clamp(offset_s_ + bent_s(now), -largest_offset_s_, largest_offset_s_);
+  correction.this_sweep_s += offset_s_ - before_s;
+  correction.earlier_s += bent_s(earlier);
 }
 
 /// A line that disagrees with the estimate. A step moves every state that is not known exactly: ground that is the
@@ -164,6 +190,7 @@ void TiltLatency::suspect(const Observation& seen) {
   if (lines_suspected_ < lines_of_a_step) return;
   lines_suspected_ = 0;
   ++steps_;
+  lean_.forget();
   std::array<bool, states> open{};
   for (const State state : {constant, now, earlier}) open[state] = !known(state);
   for (std::size_t a = 0; a < states; ++a) {

@@ -8,7 +8,8 @@
 //     direction.
 //   - A robot that drives leaves its datum behind. The ground before is always that of the last sweep, and every
 //     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
-//     upward and downward sweeps would come to agree on tilted ground.
+//     upward and downward sweeps would come to agree on tilted ground. The laser's lean (laser_lean.hpp) is estimated
+//     beside them.
 // A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the estimate:
 // after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning. Cost: 30
 // operations a point, and a pass over the window for each line that corrects the map.
@@ -18,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/intake/laser_lean.hpp"
 #include "curbline/intake/sweep_turns.hpp"
 #include "curbline/settings.hpp"
 
@@ -38,12 +40,13 @@ class TiltLatency {
     float common_variance_m2;  ///< the part shared with the line's other points: by the ground's slope
     float growth_m_s;          ///< of its height with a second of latency
     float map_growth_m_s;      ///< of the ground's
+    float farther_m = 0.0f;    ///< how much farther ahead it lies than when that ground was seen
   };
   void compare(const Sighting& seen);
 
-  /// By how much the latency is greater than that with which heights were mapped.
+  /// By how much the latency is greater than that with which heights were mapped, and the lean.
   struct Correction {
-    float this_sweep_s = 0.0f, earlier_s = 0.0f;
+    float this_sweep_s = 0.0f, earlier_s = 0.0f, lean_rad = 0.0f;
     bool any() const { return this_sweep_s != 0.0f || earlier_s != 0.0f; }
   };
   /// The line ends: its points together are one observation. Returns the correction of the map.
@@ -65,6 +68,9 @@ class TiltLatency {
   float own_variance_m2(float growth_m_s, float map_growth_m_s) const {
     return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
   }
+
+  /// By how much the laser looks farther down than mount and poses say, as taken off: 0 until it is known.
+  float lean_rad() const { return lean_.taken_off_rad(); }
 
   /// Of this sweep: the offset to add to TiltSettings::latency_s, and its standard deviation.
   float offset_s() const { return offset_s_; }
@@ -91,11 +97,12 @@ class TiltLatency {
   struct Observation {
     float missing_s;  ///< what this sweep's offset lacks, less mapped_share times what the ground's lacks
     float variance_s2;
-    float mapped_share;
+    float mapped_share, farther_share;  ///< and this share times the lean
   };
   /// Sightings of a line.
   struct Sums {
-    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
+    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, farther = 0.0f;
+    float growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
     void add(const Sighting& seen);
     void add(const Sums& other);
   };
@@ -105,6 +112,7 @@ class TiltLatency {
   void take_up_other_direction();
   Observation observation(const Sums& sums, float tilt_rate_rad_s) const;
   bool update(const Observation& seen, Correction& correction);
+  void take_off_lean(Correction& correction);
   void suspect(const Observation& seen);
   bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
@@ -117,7 +125,9 @@ class TiltLatency {
 
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
   std::array<std::array<float, states>, states> covariance_{};
-  Known other_{};  ///< of the last sweep, of the other direction; driving, only its offset
+  LaserLean lean_{};
+  std::array<float, states> by_lean_s_rad_{};  ///< what each offset lacks for a radian of lean that is left
+  Known other_{};                              ///< of the last sweep, of the other direction; driving, only its offset
 
   Sums seen_{};              ///< of the current line: points that agree with the estimate ...
   Sums stepped_{};           ///< ... and those that would only after a step

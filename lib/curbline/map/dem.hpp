@@ -52,6 +52,8 @@ class Dem : public Window<limits> {
   /// Corrects heights for a latency that is greater than assumed, by this_sweep_s for cells seen in this sweep, by
   /// earlier_s for the others. Cells do not count as touched: neighbours move alike.
   void delay(float this_sweep_s, float earlier_s);
+  /// Corrects them for a laser that looks farther down than assumed, by how far ahead cells lay when they were seen.
+  void lean(float by_rad);
 
   // Its cells.
 
@@ -169,9 +171,11 @@ class Dem : public Window<limits> {
   /// Cells seen from now on are marked. A pass over the window.
   void begin_marking() { clear_all(marked_bit); }
   bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
-  /// Where the laser is from now on, in the map frame.
-  void look_from(float x_m, float y_m) {
-    laser_way_.look_from({x_m, y_m});
+  /// Where the laser is from now on, in the map frame, and where its mount points.
+  void look_from(float x_m, float y_m, const SinCos& ahead = {0.0f, 1.0f}) {
+    laser_ = {x_m, y_m};
+    ahead_is_ = ahead;
+    laser_way_.look_from(laser_);
     flags_ = static_cast<std::uint8_t>(laser_way_.newest() * a_place + seen_bits);
   }
   /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved, at the height of now.
@@ -184,11 +188,19 @@ class Dem : public Window<limits> {
     view.y_m = from.y_m - origin_y_m();
     return view;
   }
+  /// How far ahead of the laser a place in the map frame lies.
+  float ahead_m(float x_m, float y_m) const {
+    return (x_m - laser_.x_m) * ahead_is_.cos + (y_m - laser_.y_m) * ahead_is_.sin;
+  }
+  /// How much farther ahead than the points of this cell, in the mean, when they were seen.
+  float farther_m(int slot, float x_m, float y_m) const {
+    return ahead_m(x_m, y_m) - static_cast<float>(ahead_[slot]) * (1.0f / mean_scale);
+  }
   /// Has the laser moved? If not, all cells were seen from one place.
   bool seen_from_several() const { return laser_way_.moved(); }
 
   /// Mean growth of its points' heights with the tilt's latency.
-  float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / growth_scale); }
+  float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / mean_scale); }
 
  private:
   /// Share that the earlier sweeps of a cell with several surfaces keep when a new sweep sees it. After a few sweeps a
@@ -199,7 +211,8 @@ class Dem : public Window<limits> {
   /// part of their errors: 512 that share a half leave 1 in 500 to know. A change is known after as many points,
   /// however long the robot has stood there.
   static constexpr float most_points = 512.0f;
-  static constexpr int growth_scale = 1024;
+  static constexpr int mean_scale = 1024;
+  static constexpr float most_mean = most_growth_m_s;  ///< m/s, and m: a little less than 2^15 / mean_scale
   /// Of a point: beyond these, float would lose it beside the others, or the others beside it.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
   static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_place = 8;
@@ -218,7 +231,8 @@ class Dem : public Window<limits> {
     auto& distances = distances_[slot];
     distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
   }
-  void add_growth(int s, const Point& point, float weight);
+  static void follow_mean(std::int16_t& mean, float value, float share, float lot);
+  void add_means(int s, const Point& point, float weight);
   void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
@@ -229,11 +243,14 @@ class Dem : public Window<limits> {
   /// Three bits, and above them the number of the place on the laser's way from which the cell was last seen.
   PerCell<std::uint8_t, limits> seen_{};
   std::uint8_t flags_ = seen_bits;              ///< of a cell seen now
-  PerCell<std::int16_t, limits> growth_{};      ///< in 1 / growth_scale m/s
+  PerCell<std::int16_t, limits> growth_{};      ///< mean of its points, in 1 / mean_scale m/s
+  PerCell<std::int16_t, limits> ahead_{};       ///< the same of ahead_m(), in 1 / mean_scale m
   PerCell<std::uint16_t, limits> distances_{};  ///< from a valid cell to the next valid ones, four bits a direction
   float line_m2_ = 0.0f;  ///< CommonNoise::line_m2(). Placed behind the cells: before them it costs the worst line
                           ///< of a Cortex-R5F 9,000 instructions (tools/budget)
   bool any_touched_ = false;
+  LaserWay::Position laser_{};
+  SinCos ahead_is_{0.0f, 1.0f};
 };
 
 template <Limits limits>
@@ -247,6 +264,9 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   flags_ = seen_bits;
   laser_way_.init(std::max(this->length_m(0), this->length_m(1)));
   growth_.fill(0);
+  ahead_.fill(0);
+  laser_ = {};
+  ahead_is_ = {0.0f, 1.0f};
   distances_.fill(0);
   any_touched_ = false;
 }
@@ -300,7 +320,7 @@ void Dem<limits>::leave(int i, int j) {
     if (g > 0) set_distance(this->slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
   }
   cells_[s] = Cell{};
-  growth_[s] = 0;
+  growth_[s] = ahead_[s] = 0;
   distances_[s] = 0;
   seen_[s] = flags_;
   any_touched_ = true;
@@ -333,7 +353,7 @@ bool Dem<limits>::add(const Point& point) {
   if (mapped_before(s) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * cell_x_m() - point.shift_x_m,
                 (place.v - static_cast<float>(j) - 0.5f) * cell_y_m() - point.shift_y_m, point.z_m, weight);
-  add_growth(s, point, weight);
+  add_means(s, point, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
   seen_[s] = flags_;
   any_touched_ = true;
@@ -344,18 +364,31 @@ bool Dem<limits>::add(const Point& point) {
 /// rounded stochastically: up as often as its fraction says, with the last bits of the point's height for random
 /// numbers.
 template <Limits limits>
-void Dem<limits>::add_growth(int s, const Point& point, float weight) {
-  const float before = static_cast<float>(growth_[s]);
-  const float now = before + weight / cells_[s].weight * (point.growth_m_s * growth_scale - before);
+void Dem<limits>::add_means(int s, const Point& point, float weight) {
+  const float share = weight / cells_[s].weight;
   const float lot = static_cast<float>((std::bit_cast<std::uint32_t>(point.z_m) * 2654435769u) >> 8) * 0x1p-24f;
-  if (now > -most_growth_m_s * growth_scale && now < most_growth_m_s * growth_scale)
-    growth_[s] = static_cast<std::int16_t>(floor_to_int(now + lot));
+  follow_mean(growth_[s], point.growth_m_s, share, lot);
+  follow_mean(ahead_[s], ahead_m(point.x_m, point.y_m), share, lot);
+}
+
+template <Limits limits>
+void Dem<limits>::follow_mean(std::int16_t& mean, float value, float share, float lot) {
+  const float before = static_cast<float>(mean);
+  const float now = before + share * (value * mean_scale - before);
+  if (now > -most_mean * mean_scale && now < most_mean * mean_scale)
+    mean = static_cast<std::int16_t>(floor_to_int(now + lot));
 }
 
 template <Limits limits>
 void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
   for_each_valid(
       [&](int, int, int s) { cells_[s].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s); });
+}
+
+template <Limits limits>
+void Dem<limits>::lean(float by_rad) {
+  for_each_valid(
+      [&](int, int, int s) { cells_[s].height_m -= by_rad * static_cast<float>(ahead_[s]) * (1.0f / mean_scale); });
 }
 
 }  // namespace curbline
