@@ -460,6 +460,7 @@ TEST_CASE("program: replay sums up in one JSON object") {
   CHECK(summary.at("points").get<int>() > 0);
   CHECK(summary.at("outside").get<int>() > 0);
   CHECK(summary.at("latency_steps") == 0);
+  CHECK(summary.at("lean_rad") == 0);
 }
 
 /// A run of replay that must exit with 0, and its summary.
