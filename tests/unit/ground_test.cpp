@@ -710,7 +710,7 @@ TEST_CASE("strip: an edge blurs the cells that it crosses and those of the spot 
   const float spot = 0.01f * (1.1f * 1.1f + 1.4f * 1.4f) / (1.1f * 0.1f);
   const auto cells = [&](float askew, float divergence_rad = 0.01f, float laser_z_m = 1.1f) {
     const Viewpoint view{.x_m = -0.3f, .z_m = laser_z_m, .end_x_m = 8.0f, .divergence_rad = divergence_rad};
-    return strip.blurred_cells(view, {view.x_m, view.z_m, 0.1f, view.end_x_m}, askew, 0.0f);
+    return strip.blurred_cells({view, view.x_m, 0.1f, view.end_x_m, 0.0f}, askew);
   };
   CHECK(cells(0.0f) == Approx(1.0f + spot));
   CHECK(cells(0.0f, 0.015f) == Approx(1.0f + 1.5f * spot));

@@ -20,15 +20,18 @@ namespace curbline {
 
 /// How the laser sees a row or column.
 struct Sight {
-  float eye_m, eye_z_m;  ///< the laser's coordinate along it, from the window's lowest corner, and its height
-  float cell_m;          ///< length of a cell
-  float end_m;           ///< Viewpoint::end_x_m, or end_y_m
+  const Viewpoint& view;
+  float eye_m;    ///< the laser's coordinate along it, from the window's lowest corner
+  float cell_m;   ///< length of a cell
+  float end_m;    ///< Viewpoint::end_x_m, or end_y_m
+  float aside_m;  ///< its middle, from the laser
 
-  /// Along x (axis 0) or y (1).
+  /// Along x (axis 0) or y (1); `line` numbers the columns, or rows. The viewpoint must outlive it.
   template <Limits limits>
-  static Sight along(std::size_t axis, const Dem<limits>& dem, const Viewpoint& view) {
-    return axis == 0 ? Sight{view.x_m, view.z_m, dem.cell_x_m(), view.end_x_m}
-                     : Sight{view.y_m, view.z_m, dem.cell_y_m(), view.end_y_m};
+  static Sight along(std::size_t axis, int line, const Dem<limits>& dem, const Viewpoint& view) {
+    const float middle = static_cast<float>(line) + 0.5f;
+    return axis == 0 ? Sight{view, view.x_m, dem.cell_x_m(), view.end_x_m, middle * dem.cell_y_m() - view.y_m}
+                     : Sight{view, view.y_m, dem.cell_y_m(), view.end_y_m, middle * dem.cell_x_m() - view.x_m};
   }
 
   bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
@@ -42,10 +45,10 @@ struct Sight {
     return end_m > 0.0f && away_m > 0.0f && away_m < from_end_m ? from_end_m : away_m;
   }
   /// The same for an edge at an angle to the grid: as if the laser were where the edge's parallel through it crosses
-  /// the row or column, which is `aside_m` from the laser.
-  Sight across(float askew, float aside_m) const { return {eye_m - aside_m * askew, eye_z_m, cell_m, end_m}; }
+  /// the row or column.
+  Sight across(float askew) const { return {view, eye_m - aside_m * askew, cell_m, end_m, aside_m}; }
   /// The same for a laser that stands where cells were last seen from.
-  Sight standing() const { return {eye_m, eye_z_m, cell_m, 0.0f}; }
+  Sight standing() const { return {view, eye_m, cell_m, 0.0f, aside_m}; }
 };
 
 /// Tangent of the angle between an axis and the normal of a strip, (pxx, pxy) or (pxy, pyy).
@@ -135,23 +138,22 @@ struct Strip {
     const bool ahead = sight.ahead(run.first);
     const float near_m = ahead ? before.last_height_m : next.first_height_m;
     const float drop_m = ahead ? near_m - next.first_height_m : near_m - before.last_height_m;
-    const float above_m = sight.eye_z_m - near_m, away_m = sight.away_m(run.first, run.last);
+    const float above_m = sight.view.z_m - near_m, away_m = sight.away_m(run.first, run.last);
     if (!(above_m > 0.0f) || !(away_m > 0.0f)) return std::nullopt;
     const float of_rays_m = static_cast<float>(run.length() - 1) * sight.cell_m * above_m / away_m;
     const float own_m = ahead ? run.first_height_m - run.last_height_m : run.last_height_m - run.first_height_m;
     if (!(of_rays_m <= drop_m)) return std::nullopt;
     return Fall{own_m, of_rays_m};
   }
-  /// Number of cells that hold something of both sides of an edge here, when they were last seen from `view`, to which
-  /// `sight` belongs: one, as many more as an edge at an angle to the grid crosses on a row (one if that is 45 degrees;
-  /// beyond, it lies along the row), and the length of the laser's spot on the ground. `aside_m`: distance of the row
-  /// or column from the laser.
-  float blurred_cells(const Viewpoint& view, const Sight& sight, float askew, float aside_m) const {
-    const float above_m = sight.eye_z_m - run.first_height_m, away_m = sight.standing().away_m(run.first, run.last);
+  /// Number of cells that hold something of both sides of an edge here, when they were last seen like this: one, as
+  /// many more as an edge at an angle to the grid crosses on a row (one if that is 45 degrees; beyond, it lies along
+  /// the row), and the length of the laser's spot on the ground.
+  float blurred_cells(const Sight& sight, float askew) const {
+    const float above_m = sight.view.z_m - run.first_height_m, away_m = sight.standing().away_m(run.first, run.last);
     if (!(above_m > 0.0f)) return 0.0f;
-    const float range_m2 = above_m * above_m + away_m * away_m + aside_m * aside_m;
+    const float range_m2 = above_m * above_m + away_m * away_m + sight.aside_m * sight.aside_m;
     const float crossed = std::min(1.0f, magnitude(askew));
-    return 1.0f + crossed + view.spot_m(range_m2, above_m) / sight.cell_m;
+    return 1.0f + crossed + sight.view.spot_m(range_m2, above_m) / sight.cell_m;
   }
 
  private:

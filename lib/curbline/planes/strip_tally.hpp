@@ -33,8 +33,8 @@ struct Shadowed {
 };
 
 struct StripTally {
-  /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a 10 mrad beam's spot
-  /// on the ground 6 m away, seen from 1.2 m above it.
+  /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a 10 mrad beam's
+  /// spot on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
   static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
   static constexpr int sparse_gap = 5;   ///< cells: scan lines on the ground are up to that far apart
@@ -132,15 +132,12 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool carries_step = rises && strip.between(widest_gap);
       if (carries_step || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
-        const Sight along = Sight::along(axis, dem, from), aside = Sight::along(1 - axis, dem, from);
-        const float aside_m = (static_cast<float>(line) + 0.5f) * aside.cell_m - aside.eye_m;
         const float tangent = askew(planes[run.label], axis);
-        const Sight across = along.across(tangent, aside_m);
+        const Sight across = Sight::along(axis, line, dem, from).across(tangent);
         if (carries_step) {
           if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
         }
-        if (drops[run.label] && !strip.stands())
-          tally.blurred_cells[axis] += strip.blurred_cells(from, across, tangent, aside_m);
+        if (drops[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent);
       }
       if (run.length() > StripTally::longest_strip) return;
       const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
