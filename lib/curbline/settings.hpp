@@ -9,6 +9,7 @@
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/point.hpp"
 #include "curbline/status.hpp"
 
 namespace curbline {
@@ -40,7 +41,7 @@ struct LaserSettings {
   float max_range_m = 60.0f;                ///< readings at or above mean no return; (min_range_m, 1e6]
   float range_sd_m = 0.01f;                 ///< standard deviation of a range, [0, 10]
   float bearing_sd_rad = 0.0005f;           ///< of a bearing, [0, 1]
-  float beam_divergence_rad = 0.01f;        ///< full angle, [0, 1]; data sheets state 5 to 15 mrad
+  float beam_divergence_rad = usual_divergence_rad;  ///< full angle, 10 mrad unless set, [0, 1]
 
   /// From one beam to the next, in whole nanoseconds.
   std::int64_t beam_interval_ns() const { return static_cast<std::int64_t>(beam_interval_s * 1e9f + 0.5f); }
