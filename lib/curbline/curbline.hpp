@@ -39,6 +39,8 @@
 #include "curbline/map/cell.hpp"                // normal-inverse-gamma posterior of a cell
 #include "curbline/map/laser_way.hpp"           // from where a driving laser has seen the cells
 #include "curbline/map/window.hpp"              // where cells lie, in the map and in memory
+#include "curbline/map/next_cells.hpp"          // how far it is to the next ones
+#include "curbline/map/last_seen.hpp"           // when and from where they were seen
 #include "curbline/map/dem.hpp"                 // what is in them
 #include "curbline/map/level_cell.hpp"          // what their spread tells of a slope
 

@@ -1,6 +1,6 @@
 // The elevation map: the contents of the cells of the rolling window (window.hpp). For each cell its heights
-// (cell.hpp), its neighbours, when and from where it was last seen, and how its height depends on the tilt's latency.
-// Cells that leave the window are cleared.
+// (cell.hpp), its neighbours (next_cells.hpp), when and from where it was last seen (last_seen.hpp), and how its height
+// depends on the tilt's latency. Cells that leave the window are cleared.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,8 @@
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
 #include "curbline/map/laser_way.hpp"
+#include "curbline/map/last_seen.hpp"
+#include "curbline/map/next_cells.hpp"
 #include "curbline/map/window.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
@@ -99,10 +101,7 @@ class Dem : public Window<limits> {
   }
   /// Distance in cells from a valid cell to the next valid one in a direction; 0 if there is none within `reach` cells,
   /// at most max_link_reach. O(1).
-  int next_valid(int slot, int direction, int reach) const {
-    const int g = distances_[slot] >> (4 * direction) & 15;
-    return g <= reach ? g : 0;
-  }
+  int next_valid(int slot, int direction, int reach) const { return next_.distance(slot, direction, reach); }
   /// The nearest valid unmarked cell on the row and column of a place inside the window, at most `reach` away.
   Place nearest_unmarked(const Place& place, int reach) const;
 
@@ -149,40 +148,30 @@ class Dem : public Window<limits> {
   // When and from where a cell was last seen.
 
   /// Has a cell changed since clear_touched(): by a point, or by being cleared?
-  bool touched(int slot) const { return (seen_[slot] & touched_bit) != 0; }
+  bool touched(int slot) const { return last_seen_.touched(slot); }
   /// Has any cell of a block changed? `first`: the slot of its first cell.
-  bool block_touched(int first) const {
-    int seen = 0;
-    for (int i = 0; i < block_side; ++i) {
-      for (int j = 0; j < block_side; ++j) seen |= seen_[this->slot_in_block(first, block_side * i + j)];
-    }
-    return (seen & touched_bit) != 0;
-  }
-  void clear_touched() {
-    if (any_touched_) clear_all(touched_bit);
-    any_touched_ = false;
-  }
-  bool any_touched() const { return any_touched_; }
+  bool block_touched(int first) const { return last_seen_.block_touched(first); }
+  void clear_touched() { last_seen_.clear_touched(); }
+  bool any_touched() const { return last_seen_.any_touched(); }
 
   /// A new sweep begins. A pass over the window.
-  void begin_sweep() { clear_all(sweep_bit); }
+  void begin_sweep() { last_seen_.begin_sweep(); }
   /// Was the cell seen by an earlier sweep, and not yet by this one?
-  bool mapped_before(int slot) const { return cell(slot).valid() && (seen_[slot] & sweep_bit) == 0; }
+  bool mapped_before(int slot) const { return cell(slot).valid() && !last_seen_.in_this_sweep(slot); }
   /// Cells seen from now on are marked. A pass over the window.
-  void begin_marking() { clear_all(marked_bit); }
-  bool marked(int slot) const { return (seen_[slot] & marked_bit) != 0; }
+  void begin_marking() { last_seen_.begin_marking(); }
+  bool marked(int slot) const { return last_seen_.marked(slot); }
   /// Where the laser is from now on, in the map frame, and where its mount points.
   void look_from(float x_m, float y_m, const SinCos& ahead = {0.0f, 1.0f}) {
     laser_ = {x_m, y_m};
     ahead_is_ = ahead;
-    laser_way_.look_from(laser_);
-    flags_ = static_cast<std::uint8_t>(laser_way_.newest() * a_place + seen_bits);
+    last_seen_.look_from(x_m, y_m);
   }
   /// From where a cell was last seen: `now`, with the laser's earlier place if it has moved, at the height of now.
   // Not inlined: it is called for edges only.
   [[gnu::noinline]] Viewpoint seen_from(int slot, const Viewpoint& now) const {
     if (!seen_from_several()) return now;
-    const LaserWay::Position& from = laser_way_.at(seen_[slot] / a_place);
+    const LaserWay::Position& from = last_seen_.from(slot);
     Viewpoint view = now;
     view.x_m = from.x_m - origin_x_m();
     view.y_m = from.y_m - origin_y_m();
@@ -197,7 +186,7 @@ class Dem : public Window<limits> {
     return ahead_m(x_m, y_m) - static_cast<float>(ahead_[slot]) * (1.0f / mean_scale);
   }
   /// Has the laser moved? If not, all cells were seen from one place.
-  bool seen_from_several() const { return laser_way_.moved(); }
+  bool seen_from_several() const { return last_seen_.from_several(); }
 
   /// Mean growth of its points' heights with the tilt's latency.
   float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / mean_scale); }
@@ -215,40 +204,25 @@ class Dem : public Window<limits> {
   static constexpr float most_mean = most_growth_m_s;  ///< m/s, and m: a little less than 2^15 / mean_scale
   /// Of a point: beyond these, float would lose it beside the others, or the others beside it.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
-  static constexpr std::uint8_t touched_bit = 1, marked_bit = 2, sweep_bit = 4, a_place = 8;
-  static constexpr std::uint8_t seen_bits = touched_bit | marked_bit | sweep_bit;
-  static_assert(LaserWay::numbers * a_place == 256, "one byte holds the bits and a number");
   /// By two standard deviations beyond slope and noise?
   static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
     const float freedom = cell.points - 1.0f;  // of the noise's scatter, chi^2
     const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / noise_m2 - freedom;
     return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
   }
-  void clear_all(std::uint8_t bit) {
-    for (std::uint8_t& seen : seen_) seen &= static_cast<std::uint8_t>(~bit);
-  }
-  void set_distance(int slot, int direction, int distance) {
-    auto& distances = distances_[slot];
-    distances = static_cast<std::uint16_t>((distances & ~(15 << (4 * direction))) | distance << (4 * direction));
-  }
   static void follow_mean(std::int16_t& mean, float value, float share, float lot);
   void add_means(int s, const Point& point, float weight);
-  void meet_neighbours(int i, int j);
   void leave(int i, int j);
 
   PlanePrior prior_{};
   float common_m2_ = 0.0f;
   PerCell<Cell, limits> cells_{};
-  LaserWay laser_way_{};
-  /// Three bits, and above them the number of the place on the laser's way from which the cell was last seen.
-  PerCell<std::uint8_t, limits> seen_{};
-  std::uint8_t flags_ = seen_bits;              ///< of a cell seen now
-  PerCell<std::int16_t, limits> growth_{};      ///< mean of its points, in 1 / mean_scale m/s
-  PerCell<std::int16_t, limits> ahead_{};       ///< the same of ahead_m(), in 1 / mean_scale m
-  PerCell<std::uint16_t, limits> distances_{};  ///< from a valid cell to the next valid ones, four bits a direction
+  LastSeen<limits> last_seen_{};
+  PerCell<std::int16_t, limits> growth_{};  ///< mean of its points, in 1 / mean_scale m/s
+  PerCell<std::int16_t, limits> ahead_{};   ///< the same of ahead_m(), in 1 / mean_scale m
+  NextCells<limits> next_{};
   float line_m2_ = 0.0f;  ///< CommonNoise::line_m2(). Placed behind the cells: before them it costs the worst line
                           ///< of a Cortex-R5F 9,000 instructions (tools/budget)
-  bool any_touched_ = false;
   LaserWay::Position laser_{};
   SinCos ahead_is_{0.0f, 1.0f};
 };
@@ -260,15 +234,12 @@ void Dem<limits>::init(const WindowSettings& settings, const PlanePrior& prior) 
   common_m2_ = prior.common_m2();
   line_m2_ = 0.0f;
   cells_.fill(Cell{});
-  seen_.fill(0);
-  flags_ = seen_bits;
-  laser_way_.init(std::max(this->length_m(0), this->length_m(1)));
+  last_seen_.init(std::max(this->length_m(0), this->length_m(1)));
   growth_.fill(0);
   ahead_.fill(0);
   laser_ = {};
   ahead_is_ = {0.0f, 1.0f};
-  distances_.fill(0);
-  any_touched_ = false;
+  next_.init();
 }
 
 template <Limits limits>
@@ -290,40 +261,13 @@ void Dem<limits>::follow(const Transform& T_map_base, Left&& left) {
   this->move(to);
 }
 
-/// Links a cell that has just become valid with the next ones on its row and column.
-template <Limits limits>
-void Dem<limits>::meet_neighbours(int i, int j) {
-  const int s = this->slot(i, j);
-  for (int d = 0; d < directions; ++d) {
-    const auto n = static_cast<std::size_t>(d);
-    int a = i, b = j;
-    for (int g = 1; g <= max_link_reach; ++g) {
-      a += step_i[n];
-      b += step_j[n];
-      if (!this->contains(a, b)) break;
-      const int other = this->slot(a, b);
-      if (!cell(other).valid()) continue;
-      set_distance(s, d, g);
-      set_distance(other, d ^ 1, g);
-      break;
-    }
-  }
-}
-
-/// Clears a cell. What lies beyond it leaves too, so that its neighbours have none in that direction any more.
 template <Limits limits>
 void Dem<limits>::leave(int i, int j) {
   const int s = this->slot(i, j);
-  for (int d = 0; d < directions; ++d) {
-    const auto n = static_cast<std::size_t>(d);
-    const int g = next_valid(s, d, max_link_reach);
-    if (g > 0) set_distance(this->slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
-  }
+  next_.leave(*this, i, j);
   cells_[s] = Cell{};
   growth_[s] = ahead_[s] = 0;
-  distances_[s] = 0;
-  seen_[s] = flags_;
-  any_touched_ = true;
+  last_seen_.touch(s);
 }
 
 template <Limits limits>
@@ -349,14 +293,13 @@ bool Dem<limits>::add(const Point& point) {
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
   const int s = this->slot(i, j);
-  if (!cells_[s].valid()) meet_neighbours(i, j);
+  if (!cells_[s].valid()) next_.enter(*this, i, j, [this](int other) { return cell(other).valid(); });
   if (mapped_before(s) && several_surfaces(cells_[s])) cells_[s].fade(memory);
   cells_[s].add((place.u - static_cast<float>(i) - 0.5f) * cell_x_m() - point.shift_x_m,
                 (place.v - static_cast<float>(j) - 0.5f) * cell_y_m() - point.shift_y_m, point.z_m, weight);
   add_means(s, point, weight);
   if (cells_[s].points > most_points) cells_[s].fade(most_points / cells_[s].points);
-  seen_[s] = flags_;
-  any_touched_ = true;
+  last_seen_.touch(s);
   return true;
 }
 
