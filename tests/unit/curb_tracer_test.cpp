@@ -650,6 +650,21 @@ TEST_CASE("curb tracer: where a slope leads from plane to plane a step's height 
   CHECK(deviation_m(0.4) > 0.02f);  // all but a cell of it may be ground
 }
 
+TEST_CASE("curb tracer: the wider the laser's spot, the less of a slope behind a step may be ground") {
+  const auto deviation_m = [](float divergence_rad) {
+    Stages<> stages(small_settings());
+    stages.view = {-0.3f, 1.2f, 1.1f, 8.0f, 8.0f};
+    fill(stages.dem, [](double x, double) { return x < 1.1 ? 0.0 : -0.064 * std::min(1.0, (x - 1.1) / 0.4); });
+    stages.settle();  // to the same planes
+    stages.view.divergence_rad = divergence_rad;
+    stages.trace(-0.3f, 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    return stages.tracer.curbs()[0].height_sd_m;
+  };
+  CHECK(deviation_m(0.0f) > 1.1f * deviation_m(0.01f));
+  CHECK(deviation_m(0.01f) > 1.1f * deviation_m(0.02f));
+}
+
 TEST_CASE("curb tracer: a step that grows along its piece is as uncertain as it grows, if the localisation steps") {
   const auto deviation_m = [](double growth, bool steps) {
     const auto stages = traced([=](double x, double y) { return x < 1.4 ? 0.0 : 0.12 + growth * (y - 1.2); });
