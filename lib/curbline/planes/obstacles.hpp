@@ -104,22 +104,20 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
 
 template <Limits limits>
 void Obstacles<limits>::add_tops() {
-  PlaneFlags level{}, asked{};  // level and raised; and no larger than a wall may be
-  const float longest_m = dem_.length_m(0) + dem_.length_m(1);
+  PlaneFlags level{};  // and raised
   const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
   bool any = false;
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     level[l] =
         planes_[l].alive() && !is_[l] && !planes_[l].steeper_than_ramp() && planes_[l].above_m(*ground_) > usual_step_m;
-    asked[l] = level[l] && cells_[l] * cell_m2 < shoulders_m * longest_m;
-    any = any || asked[l];
+    any = any || level[l];
   }
   if (!any) return;
-  const Extents extents = extents_of(asked);
+  const Extents extents = extents_of(level);
   PlaneFlags top{};
   for (std::size_t l = 0; l < top.size(); ++l) {
     const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
-    top[l] = asked[l] && (small || extents[l].narrow(cells_[l]));
+    top[l] = level[l] && (small || extents[l].narrow(cells_[l]));
   }
   take_ways_from(top, neighbours(level));
   for (std::size_t l = 0; l < top.size(); ++l) {
