@@ -11,7 +11,7 @@
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
-//   - a wake: a narrow ridge on a plane, seen less than half as often as that, with an obstacle higher than a curb
+//   - a wake: a narrow strip within a plane, seen less than half as often as that, with an obstacle higher than a curb
 //     between it and the laser: readings that mix the edge of a post with the ground beyond.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their

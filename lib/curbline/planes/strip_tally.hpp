@@ -1,6 +1,6 @@
 // Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
 // lie in strips that carry a step, in the shadow of one, beside a high obstacle or behind one, or where an edge is
-// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip that stands on one plane.
+// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip within one plane that is seen less than it.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ struct StripTally {
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
-  std::array<float, 2> wake_cells{};     ///< in strips that stand on one plane, hidden behind an obstacle
+  std::array<float, 2> wake_cells{};     ///< in strips within one plane, hidden behind an obstacle
 
   /// Adds a strip between two others. Its cells' spread beyond noise is that beyond the spread of the quieter plane
   /// beside it.
@@ -144,8 +144,8 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
       if (after_high || before_high) tally.fringe_cells[axis] += cells;
       const int middle = (run.first + run.last) / 2;
-      if (strip.between(StripTally::sparse_gap) && before.label == next.label && strip.stands() &&
-          strip.half_hidden() && obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
+      if (strip.between(StripTally::sparse_gap) && before.label == next.label && strip.half_hidden() &&
+          obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
         tally.wake_cells[axis] += cells;
       }
       if (strip.alone(StripTally::sparse_gap)) {
