@@ -376,6 +376,9 @@ TEST_CASE("border finder: a bank that leads to ground out of reach is no brink")
   for (const double slope : {-0.4, -0.5, -0.7}) {
     CHECK(Street{.slope = slope, .from = 0.6, .to = 9.0, .top = 1.6, .laser_x_m = -2.0f}.one_sided().empty());
   }
+  for (const double slope : {-0.4, -0.5, -0.6}) {  // all of it in view
+    CHECK(Street{.slope = slope, .from = 0.6, .to = 9.0, .top = 1.3, .laser_x_m = -0.5f}.one_sided().empty());
+  }
 }
 
 // The face of a step up that leans against the grid by 1 in 20: from the step along a row, away from the laser, cells

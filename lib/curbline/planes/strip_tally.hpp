@@ -1,6 +1,6 @@
 // Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
 // lie in strips that carry a step, in the shadow of one, beside a high obstacle or behind one, or where an edge is
-// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip within one plane that is seen less than it.
+// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip within a plane that is seen more.
 #pragma once
 
 #include <algorithm>
