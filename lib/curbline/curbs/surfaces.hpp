@@ -68,7 +68,7 @@ std::size_t Surfaces<limits>::follow(const CurbStages<limits>& stages, Work& wor
   return kept;
 }
 
-/// Sums over cells that hold their plane alone, and lie on it: anything else in them would pass for a bend.
+/// Sums over cells that hold their plane alone: anything else in them would pass for a bend.
 template <Limits limits>
 void Surfaces<limits>::look_at(const CurbStages<limits>& stages, Work& work) {
   const Dem<limits>& dem = stages.dem;
@@ -79,7 +79,7 @@ void Surfaces<limits>::look_at(const CurbStages<limits>& stages, Work& work) {
       if (label == no_label) return;
       const Plane& plane = stages.mixture.plane(label);
       const Cell& cell = dem.cell(s);
-      if (!stages.holds_alone(s, label, dem.slope_m2(plane)) || !stages.lies_on(i, j, cell, plane)) return;
+      if (!stages.holds_alone(s, label, dem.slope_m2(plane))) return;
       work[label].add(dem.centroid_x_m(i, cell) - plane.x_m, dem.centroid_y_m(j, cell) - plane.y_m,
                       dem.above_m(i, j, cell, plane));
     });
