@@ -401,6 +401,41 @@ TEST_CASE("curb tracer: a curb's face is looked through, the full step and the w
   CHECK(curb.kind == CurbKind::step_up);
 }
 
+/// A road, a pavement of 12 cm, and a dropped part of 6 cm that begins with a row of cells between them. In that row
+/// points are added then: half of them spread_m higher, half lower.
+std::unique_ptr<Stages<>> with_row_between(double spread_m) {
+  auto stages = std::make_unique<Stages<>>(small_settings());
+  fill(stages->dem, [](double x, double y) { return x < 1.0 ? 0.0 : x < 1.1 || y > 1.4 ? 0.06 : 0.12; });
+  stages->settle();
+  for (int j = 0; j < 24; ++j) {
+    CHECK(stages->label_at(10, j) == stages->label_at(20, 20));
+    for (int k = 0; k < 200; ++k) {
+      const double z = 0.06 + (k % 2 == 0 ? spread_m : -spread_m);
+      stages->dem.add({1.05f, 0.1f * static_cast<float>(j) + 0.05f, static_cast<float>(z), 1e-4f});
+    }
+  }
+  stages->trace();
+  return stages;
+}
+
+TEST_CASE("curb tracer: an edge is as high as its planes are apart, though its cells bear a third plane's label") {
+  const auto heights_m = [](const Stages<>& stages) {
+    std::vector<float> found;
+    for (const Curb& c : stages.tracer.curbs()) {
+      if (is_step(c) && c.y0_m + c.y1_m < 2.0f) found.push_back(c.height_m);
+    }
+    return found;
+  };
+  SECTION("readings of both sides are an edge") {
+    const auto found = heights_m(*with_row_between(0.06));
+    REQUIRE(found.size() == 1);
+    CHECK(found[0] == Approx(0.12f).margin(0.002));
+  }
+  SECTION("readings at one height are a strip of that plane") {
+    for (const float height_m : heights_m(*with_row_between(0.03))) CHECK(height_m == Approx(0.06f).margin(0.002));
+  }
+}
+
 /// A step of 12 cm at x = 1.4 m; over the last 0.2 m before it the road falls by depth_m.
 auto with_gutter(double depth_m) {
   return [depth_m](double x, double) { return x > 1.4 ? 0.12 : x > 1.2 ? -depth_m * (x - 1.2) / 0.2 : 0.0; };

@@ -28,9 +28,15 @@ struct CurbStages {
     const Label label = field.label(slot);
     return label != no_label && mixture.on_ground(slot) && mixture.plane(label).alive() && !mixture.may_be_veil(label);
   }
-  /// Does it also lie on that plane? Only such cells are the sides of borders; others are looked through.
+  /// Does it also lie on that plane, and is it not an edge of two others, whose mean height happens to be that of the
+  /// plane? Only such cells are the sides of borders; others are looked through.
   bool shows_ground(int i, int j, int slot) const {
-    return bears_ground(slot) && lies_on(i, j, dem.cell(slot), mixture.plane(field.label(slot)));
+    if (!bears_ground(slot)) return false;
+    const Cell& cell = dem.cell(slot);
+    const Plane& plane = mixture.plane(field.label(slot));
+    if (!lies_on(i, j, cell, plane)) return false;
+    if (!dem.mixed(cell, dem.slope_m2(plane), plane.rough_m2)) return true;
+    return !spreads_between_others(i, j, slot, 1, 0) && !spreads_between_others(i, j, slot, 0, 1);
   }
   /// May a cell without ground, or off its plane, be a mixture of two sides: of a veil, of a region too small for a
   /// plane, or of a plane that may be a veil?
@@ -45,6 +51,19 @@ struct CurbStages {
     const Cell& cell = dem.cell(slot);
     return cell.valid() && field.label(slot) == label && mixture.region_label(slot) != no_label &&
            mixture.on_ground(slot) && !dem.mixed(cell, slope_m2);
+  }
+  /// Do the heights of a cell, the middle one of three along (di, dj), spread as on an edge of the planes of the
+  /// others: is their variance nearer to that of two levels with this mean than to none?
+  bool spreads_between_others(int i, int j, int slot, int di, int dj) const {
+    if (!dem.contains(i - di, j - dj) || !dem.contains(i + di, j + dj)) return false;
+    const int before = dem.slot(i - di, j - dj), after = dem.slot(i + di, j + dj);
+    if (!bears_ground(before) || !bears_ground(after)) return false;
+    const Label own = field.label(slot), first = field.label(before), second = field.label(after);
+    if (first == own || second == own) return false;
+    const Cell& cell = dem.cell(slot);
+    const float two_levels_m2 =
+        -dem.above_m(i, j, cell, mixture.plane(first)) * dem.above_m(i, j, cell, mixture.plane(second));
+    return two_levels_m2 > 0.0f && 2.0f * dem.spread_m2(cell) > two_levels_m2 * cell.weight;
   }
   /// Is a cell on a plane, within three standard deviations?
   [[gnu::noinline]] bool lies_on(int i, int j, const Cell& cell, const Plane& plane) const {  // as CellLine::slot()
