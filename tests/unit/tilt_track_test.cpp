@@ -171,6 +171,20 @@ TEST_CASE("tilt track: where repeats have been seen the newest angle may be one"
   CHECK(told_mrad({0, 5, 10, 10, 20, 25, 25}) == std::vector<float>{0, 5, 10, 15, 20, 25, 30});
 }
 
+TEST_CASE("tilt track: a repeat is not put where a rate between stamps a moment apart would have it, nor far beyond") {
+  const auto track = std::make_unique<TiltTrack<Limits{}>>();
+  track->init(TiltSettings{});
+  track->push({t0, 0.0f});
+  track->push({t0 + 198 * ms / 10, 0.010f});  // waited on the bus for the next one
+  track->push({t0 + 20 * ms, 0.015f});
+  track->push({t0 + 30 * ms, 0.015f});
+  TiltSnapshot<Limits{}> told;
+  track->snapshot(told, 0.0f, t0 + 29 * ms, 1);
+  CHECK(told.at(t0 + 29 * ms).angle_rad == Approx(0.015f));
+  const std::vector<float> stops{0, 20, 40, 40, 40, 40, 40, 40, 40};  // 60 ms: max_extrapolation_s is 50
+  CHECK(told_mrad(stops, 9) == stops);
+}
+
 TEST_CASE("tilt track: how many readings have come after a line does not decide what is a repeat") {
   const std::vector<float> angles{0, 5, 10, 10, 20, 25, 30, 30, 40, 45, 50};
   const std::int64_t last_beam = t0 + 65 * ms;  // awaits the repeat at 70 ms

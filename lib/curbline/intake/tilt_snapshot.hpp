@@ -64,6 +64,7 @@ class TiltSnapshot {
   void fill_repeats();
   int other_angle(int after) const;
   bool moves(int from, int to) const;
+  bool tells(int before, int at, int next) const;
   bool goes_on(int before, int at, int next) const;
   void fill(int at, int next, float rate_rad_s);
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
@@ -109,12 +110,14 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
 /// have been as many before.
 template <Limits limits>
 void TiltSnapshot<limits>::fill_repeats() {
-  int before = std::max(0, awaited_ - limits.tilt_samples / 2), at = other_angle(before);
+  const int first = std::max(0, awaited_ - limits.tilt_samples / 2);  // which may itself be a repeat
+  int before = first, at = other_angle(before);
   while (at < awaited_) {
     const int next = other_angle(at), repeats = next - at - 1;
     if (repeats > 0 && moves(before, at)) {
       if (next == awaited_) {
-        if (repeats <= most_repeats_) fill(at, next, slope_rad_s(reading(before), reading(at)));
+        if (repeats <= most_repeats_ && before > first && tells(before, at, next))
+          fill(at, next, slope_rad_s(reading(before), reading(at)));
       } else if (moves(at, next) && goes_on(before, at, next)) {
         fill(at, next, slope_rad_s(reading(at), reading(next)));
         most_repeats_ = std::max(most_repeats_, repeats);
@@ -138,6 +141,14 @@ template <Limits limits>
 bool TiltSnapshot<limits>::moves(int from, int to) const {
   return reading(to).time_ns - reading(from).time_ns <= max_gap_ns_ &&
          square(reading(to).angle_rad - reading(from).angle_rad) > 12.0f * angle_variance_;
+}
+
+/// May the rate from `before` to `at` be used up to the last repeat? As far as beyond() goes, and not if both stamps
+/// lie close together (extrapolation.hpp).
+template <Limits limits>
+bool TiltSnapshot<limits>::tells(int before, int at, int next) const {
+  const std::int64_t beyond_ns = reading(next - 1).time_ns - reading(at).time_ns;
+  return beyond_ns <= max_extrapolation_ns_ && reading(at).time_ns - reading(before).time_ns >= beyond_ns / 4;
 }
 
 /// Has the servo not stood from `at` to the last repeat? Then its way to `next` is nearer to what the rate before makes
