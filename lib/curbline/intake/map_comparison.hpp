@@ -31,8 +31,8 @@ class MapComparison {
   JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,
                       const PoseOffset& offset) const;
 
-  /// Gives `latency` the points on ground seen by an earlier sweep, and not yet by this one. What covers it is none: in a
-  /// cell of a hedge's side one line is all that has been seen, and the next one meets it at another height.
+  /// Gives `latency` the points on ground seen by an earlier sweep, and not yet by this one. What covers it is none: in
+  /// a cell of a hedge's side one line is all that has been seen, and the next one meets it at another height.
   void follow_latency(const ProjectedLine<limits>& line, const LineMotion& motion, const PoseOffset& offset,
                       TiltLatency& latency) const;
 

@@ -136,11 +136,12 @@ int TiltSnapshot<limits>::other_angle(int after) const {
   return k;
 }
 
-/// By more than a step of the servo's resolution, if its error is a step's alone? Not across a gap.
+/// By a tenth more than a step of the servo's resolution, if its error is a step's alone (as deviations are stated,
+/// rounded)? Not across a gap.
 template <Limits limits>
 bool TiltSnapshot<limits>::moves(int from, int to) const {
   return reading(to).time_ns - reading(from).time_ns <= max_gap_ns_ &&
-         square(reading(to).angle_rad - reading(from).angle_rad) > 12.0f * angle_variance_;
+         square(reading(to).angle_rad - reading(from).angle_rad) > 14.5f * angle_variance_;
 }
 
 /// May the rate from `before` to `at` be used up to the last repeat? As far as beyond() goes, and not if both stamps
