@@ -161,7 +161,8 @@ class Pipeline {
   bool planes_next_ = true;                               ///< which half of the inference is due
   bool unrefined_ = false;                                ///< planes were fitted since settle()
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
-  SinCos mount_yaw_{0.0f, 1.0f};
+  Eigen::Vector3f tilt_axis_ = Eigen::Vector3f::UnitY();  ///< in the base frame: a greater tilt lowers what lies to the
+                                                          ///< right of it, looking along it from above
   Counters counters_{};
   LineIntake<limits> line_intake_{};
   Dem<limits> dem_{};
@@ -185,7 +186,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   planes_next_ = true;
   unrefined_ = false;
   p_map_tilt_ = p_base_tilt();
-  mount_yaw_ = sin_cos(settings_.tilt.T_base_tilt.yaw_rad);
+  tilt_axis_ = make_transform(settings_.tilt.T_base_tilt).rotation.col(1);
   line_intake_.init(settings);
   dem_.init(settings.window, prior);
   segmentation_.init(settings.segmentation, prior);
@@ -270,10 +271,8 @@ void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
-  const SinCos of_base = heading(T_map_base);
-  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y(),
-                 {of_base.sin * mount_yaw_.cos + of_base.cos * mount_yaw_.sin,
-                  of_base.cos * mount_yaw_.cos - of_base.sin * mount_yaw_.sin});
+  const Eigen::Vector3f axis = rotated(T_map_base.rotation, tilt_axis_);
+  dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y(), {-axis.x(), axis.y()});
 }
 
 template <Limits limits>

@@ -83,7 +83,9 @@ struct PoseSettings {
                                  ///< standing, how much the robot sways
   float attitude_sd_rad = 0.0f;  ///< of roll and pitch, [0, 1]; standing, the same
   float lean_sd_rad = 0.005f;    ///< of the laser's pitch against the poses, [0, 0.05]: mount, zero of the attitude,
-                                 ///< z that drifts with the way. 0: it is not estimated
+                                 ///< z that drifts with the way. 0: it is not estimated, as is
+                                 ///< best of a laser that looks more to the side than ahead: there all but the
+                                 ///< servo's own zero comes out too large
   float max_extrapolation_s = 0.1f;  ///< [0, 10]: lines further from the nearest pose are dropped
 };
 

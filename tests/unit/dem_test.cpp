@@ -460,6 +460,16 @@ TEST_CASE("dem: a lean corrects heights by how far ahead a cell's points lay whe
   CHECK(dem.cell(second).height_m == Approx(0.1 - 0.003).margin(2e-5));
 }
 
+TEST_CASE("dem: ground farther ahead than 30 m counts as there, for a lean as for what it is compared with") {
+  Map dem = make_map(moving());
+  dem.look_from(-100.0f, 0.05f);
+  REQUIRE(dem.add(at(0.05, 0.05, 0.1)));
+  const int slot = slot_at(dem, 0.05f, 0.05f);
+  CHECK(dem.farther_m(slot, 0.05f, 0.05f) == Approx(0.0).margin(2e-3));
+  dem.look_from(-20.0f, 0.05f);
+  CHECK(dem.farther_m(slot, 0.05f, 0.05f) == Approx(20.05 - 30.0).margin(2e-3));
+}
+
 TEST_CASE("dem: a cell that has left the window knows nothing of how far ahead it lay") {
   Map dem = make_map(moving());
   dem.look_from(-3.0f, 0.05f);

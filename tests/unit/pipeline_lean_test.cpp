@@ -10,7 +10,6 @@
 namespace curbline {
 namespace {
 
-using test::add_tilts;
 using test::FullPipeline;
 using test::NoddingLaser;
 using test::started;
@@ -27,24 +26,30 @@ Pose pose_at(const Place& place, double time_s) {
 }
 
 /// A mount half a metre ahead of the base that is pitched down by lean_rad more than it says.
-std::unique_ptr<FullPipeline> leaning(float lean_rad, bool fixed_window = false) {
+Settings leaning_settings(float lean_rad) {
   Settings settings = NoddingLaser::settings();
   settings.pose.still = false;
-  settings.window.fixed = fixed_window;
   settings.tilt.T_base_tilt.x_m = 0.5f;
   settings.tilt.T_base_tilt.pitch_rad = -lean_rad;
+  return settings;
+}
+
+std::unique_ptr<FullPipeline> leaning(float lean_rad, bool fixed_window = false) {
+  Settings settings = leaning_settings(lean_rad);
+  settings.window.fixed = fixed_window;
   return started(settings);
 }
 
-/// Fifty seconds over level ground. way(time) is the robot's place. Returns the number of lines with a step in view in
-/// the second half.
+/// Fifty seconds over level ground. way(time) is the robot's place; readings are tilt_sign times the tilt. Returns the
+/// number of lines with a step in view in the second half.
 template <typename Way>
-int drive(FullPipeline& pipeline, Way&& way) {
+int drive(FullPipeline& pipeline, Way&& way, double tilt_sign = 1.0) {
   NoddingLaser laser;
   int with_steps = 0;
   for (int line = 0; line < 2000; ++line) {
     const double t = NoddingLaser::line_time_s(line);
-    add_tilts(pipeline, line);
+    for (const double tilt_s : {t, t + 0.01, t + 0.02, t + 0.03})
+      pipeline.add_tilt({NoddingLaser::ns(tilt_s), static_cast<float>(tilt_sign * NoddingLaser::tilt_rad(tilt_s))});
     for (const double pose_s : {t, t + 0.02}) pipeline.add_pose(pose_at(way(pose_s), pose_s));
     pipeline.take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, [](double) { return 0.0; })});
     const auto is_step = [](const Curb& c) { return c.kind != CurbKind::crease && c.kind != CurbKind::ramp_edge; };
@@ -89,6 +94,17 @@ TEST_CASE("pipeline: to and fro in a window that stays, a laser that leans by ha
   const auto pipeline = leaning(0.009f, true);
   drive(*pipeline, [](double t) { return along(std::abs(3.0 - std::fmod(0.3 * t + 3.0, 6.0)), 0.0); });
   CHECK(pipeline->tilt_latency().lean_rad() == Approx(0.009).margin(0.0015));
+  CHECK(off_level_m(*pipeline) < 0.004);
+}
+
+TEST_CASE("pipeline: a laser that hangs upside down, so that a greater tilt looks up, is found to lean, too") {
+  const float lean_rad = GENERATE(-0.009f, 0.009f);
+  Settings settings = leaning_settings(lean_rad);
+  settings.tilt.T_base_tilt.roll_rad = pi;
+  const auto pipeline = started(settings);
+  CHECK(drive(
+            *pipeline, [](double t) { return along(0.3 * t, 1.0); }, -1.0) == 0);
+  CHECK(pipeline->tilt_latency().lean_rad() == Approx(-lean_rad).margin(0.0015));
   CHECK(off_level_m(*pipeline) < 0.004);
 }
 

@@ -69,7 +69,8 @@ class TiltLatency {
     return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
   }
 
-  /// By how much the laser looks farther down than mount and poses say, as taken off: 0 until it is known.
+  /// By how much the laser looks farther down than mount and poses say, as taken off: 0 until it is known. Of a mount
+  /// in which a greater tilt looks up, less far down.
   float lean_rad() const { return lean_.taken_off_rad(); }
 
   /// Of this sweep: the offset to add to TiltSettings::latency_s, and its standard deviation.

@@ -161,7 +161,8 @@ class Dem : public Window<limits> {
   /// Cells seen from now on are marked. A pass over the window.
   void begin_marking() { last_seen_.begin_marking(); }
   bool marked(int slot) const { return last_seen_.marked(slot); }
-  /// Where the laser is from now on, in the map frame, and where its mount points.
+  /// Where the laser is from now on, in the map frame, and what is ahead: the horizontal part of the tilt axis, turned
+  /// to its right.
   void look_from(float x_m, float y_m, const SinCos& ahead = {0.0f, 1.0f}) {
     laser_ = {x_m, y_m};
     ahead_is_ = ahead;
@@ -177,9 +178,11 @@ class Dem : public Window<limits> {
     view.y_m = from.y_m - origin_y_m();
     return view;
   }
-  /// How far ahead of the laser a place in the map frame lies.
+  /// How far ahead of the tilt axis a place in the map frame lies: by how much a radian more of tilt lowers it. What
+  /// lies beyond 30 m counts as there.
   float ahead_m(float x_m, float y_m) const {
-    return (x_m - laser_.x_m) * ahead_is_.cos + (y_m - laser_.y_m) * ahead_is_.sin;
+    const float ahead_m = (x_m - laser_.x_m) * ahead_is_.cos + (y_m - laser_.y_m) * ahead_is_.sin;
+    return std::clamp(ahead_m, -farthest_ahead_m, farthest_ahead_m);
   }
   /// How much farther ahead than the points of this cell, in the mean, when they were seen.
   float farther_m(int slot, float x_m, float y_m) const {
@@ -202,6 +205,7 @@ class Dem : public Window<limits> {
   static constexpr float most_points = 512.0f;
   static constexpr int mean_scale = 1024;
   static constexpr float most_mean = most_growth_m_s;  ///< m/s, and m: a little less than 2^15 / mean_scale
+  static constexpr float farthest_ahead_m = 30.0f;
   /// Of a point: beyond these, float would lose it beside the others, or the others beside it.
   static constexpr float least_weight = 1e-9f, most_weight = 1e9f;
   /// By two standard deviations beyond slope and noise?
