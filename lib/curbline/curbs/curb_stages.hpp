@@ -30,7 +30,7 @@ struct CurbStages {
   }
   /// Does it also lie on that plane, and is it not an edge of two others, whose mean height happens to be that of the
   /// plane? Only such cells are the sides of borders; others are looked through.
-  bool shows_ground(int i, int j, int slot) const {
+  [[gnu::noinline]] bool shows_ground(int i, int j, int slot) const {
     if (!bears_ground(slot)) return false;
     const Cell& cell = dem.cell(slot);
     const Plane& plane = mixture.plane(field.label(slot));
@@ -54,7 +54,8 @@ struct CurbStages {
   }
   /// Do the heights of a cell, the middle one of three along (di, dj), spread as on an edge of the planes of the
   /// others: is their variance nearer to that of two levels with this mean than to none?
-  bool spreads_between_others(int i, int j, int slot, int di, int dj) const {
+  // Not inlined: it is called for few cells, from places that would each hold it twice.
+  [[gnu::noinline]] bool spreads_between_others(int i, int j, int slot, int di, int dj) const {
     if (!dem.contains(i - di, j - dj) || !dem.contains(i + di, j + dj)) return false;
     const int before = dem.slot(i - di, j - dj), after = dem.slot(i + di, j + dj);
     if (!bears_ground(before) || !bears_ground(after)) return false;
