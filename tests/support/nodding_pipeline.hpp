@@ -18,12 +18,18 @@ inline std::unique_ptr<FullPipeline> started(const Settings& settings = NoddingL
   return pipeline;
 }
 
-/// Tilt readings at 100 Hz up to `line` and one beyond its end, each delayed by lag_s(its time).
-template <typename Lag>
-void add_tilts(FullPipeline& pipeline, int line, Lag&& lag_s) {
+/// Tilt readings at 100 Hz up to `line` and one beyond its end, of angle_rad(their time).
+template <typename Angle>
+void add_angles(FullPipeline& pipeline, int line, Angle&& angle_rad) {
   const double end = NoddingLaser::line_time_s(line) + 0.03;
   for (double t = end - NoddingLaser::line_s + 0.005; t <= end + 1e-9; t += 0.01)
-    pipeline.add_tilt({NoddingLaser::ns(t), static_cast<float>(NoddingLaser::tilt_rad(t - lag_s(t)))});
+    pipeline.add_tilt({NoddingLaser::ns(t), static_cast<float>(angle_rad(t))});
+}
+
+/// Each delayed by lag_s(its time).
+template <typename Lag>
+void add_tilts(FullPipeline& pipeline, int line, Lag&& lag_s) {
+  add_angles(pipeline, line, [&](double t) { return NoddingLaser::tilt_rad(t - lag_s(t)); });
 }
 inline void add_tilts(FullPipeline& pipeline, int line) {
   add_tilts(pipeline, line, [](double) { return 0.0; });

@@ -10,6 +10,7 @@
 namespace curbline {
 namespace {
 
+using test::add_angles;
 using test::FullPipeline;
 using test::NoddingLaser;
 using test::started;
@@ -48,8 +49,7 @@ int drive(FullPipeline& pipeline, Way&& way, double tilt_sign = 1.0) {
   int with_steps = 0;
   for (int line = 0; line < 2000; ++line) {
     const double t = NoddingLaser::line_time_s(line);
-    for (const double tilt_s : {t, t + 0.01, t + 0.02, t + 0.03})
-      pipeline.add_tilt({NoddingLaser::ns(tilt_s), static_cast<float>(tilt_sign * NoddingLaser::tilt_rad(tilt_s))});
+    add_angles(pipeline, line, [tilt_sign](double tilt_s) { return tilt_sign * NoddingLaser::tilt_rad(tilt_s); });
     for (const double pose_s : {t, t + 0.02}) pipeline.add_pose(pose_at(way(pose_s), pose_s));
     pipeline.take({NoddingLaser::ns(t), laser.ranges({1e4, 0.12}, line, [](double) { return 0.0; })});
     const auto is_step = [](const Curb& c) { return c.kind != CurbKind::crease && c.kind != CurbKind::ramp_edge; };
