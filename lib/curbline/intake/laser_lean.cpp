@@ -18,8 +18,8 @@ void LaserLean::init(float sd_rad) {
   largest_rad_ = 5.0f * sd_rad;
 }
 
-/// By chance three standard deviations are rare. Once a lean has been found so there is one, and one standard deviation
-/// of what is left is as likely its rest as not.
+/// Few lasers lean: the first deviation must not be one of chance, or of a step of the latency. Once there has been a
+/// lean, one standard deviation of what is left is as likely its rest as not.
 void LaserLean::begin_sweep() {
   due_ = square(found_rad_) > (taken_off_rad_ == 0.0f ? gate : 1.0f) * variance_;
   variance_ = std::min(variance_ + square(sweep_share) * prior_variance_, prior_variance_);

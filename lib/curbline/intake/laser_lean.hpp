@@ -12,8 +12,8 @@ class LaserLean {
  public:
   /// sd_rad: before any observation; 0 if it is not estimated.
   void init(float sd_rad);
-  /// A sweep begins. Other wheels, load or drift: the lean may have changed by a fifth of the prior's deviation. One
-  /// that has been found with three standard deviations is due.
+  /// A sweep begins. Other wheels, load or drift: the lean may have changed by a fifth of the prior's deviation. The
+  /// first one is due when found with three standard deviations, what is left of it with one.
   void begin_sweep();
   /// Begins again, but for what has been taken off.
   void forget();
