@@ -14,14 +14,6 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-/// The part of a curb that lies in a grid, at least one cell from its edge: a curb has ground on both sides, and is
-/// lost when one side is.
-Share inside_of(const Grid& grid, const MapCurb& c) {
-  Bounds box = grid.bounds();
-  box = {box.x0 + grid.dx_m, box.y0 + grid.dy_m, box.x1 - grid.dx_m, box.y1 - grid.dy_m};
-  return share_in(box, {c.x0_m, c.y0_m}, {c.x1_m, c.y1_m});
-}
-
 /// A time in the logs that belong to live scan lines; nothing if there are none, or CAN is live too.
 std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
   if (logs.can.starts_with("can:")) return std::nullopt;
@@ -56,7 +48,7 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
 Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
-    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)) {
+    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), left_behind_(pipeline_->grid()) {
   check_logs(robot, logs.can, logs.poses);
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
@@ -67,7 +59,6 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
   if (!robot.pose.still) poses_.emplace(logs.poses);
   scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
-  grid_before_ = pipeline_->grid();
 }
 
 bool Replay::step(std::vector<Point>* points) {
@@ -81,7 +72,7 @@ bool Replay::step(std::vector<Point>* points) {
   feed_tilt(last_beam_ns +
             static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
   feed_poses(last_beam_ns);
-  curbs_before_ = pipeline_->map_curbs();
+  const std::vector<MapCurb> last_found = pipeline_->map_curbs();
   const ScanLine line{line_.time_ns, line_.ranges_m};
   const auto start = std::chrono::steady_clock::now();
   status_ = points == nullptr ? pipeline_->take(line) : pipeline_->take(line, *points);
@@ -89,7 +80,7 @@ bool Replay::step(std::vector<Point>* points) {
   ++lines_;
   lines_taken_ += status_ == Status::ok;
   if (status_ != Status::ok) refused_ = status_;
-  keep_leaving_curbs();
+  left_behind_.follow(pipeline_->grid(), last_found);
   return true;
 }
 
@@ -169,23 +160,6 @@ void Replay::check_poses() {
   while (poses_ && refused_ == Status::no_pose && poses_->next()) continue;
 }
 
-/// Keeps the part of each curb that the window has just left. The pipeline may still have parts that were left before;
-/// those have been kept already.
-void Replay::keep_leaving_curbs() {
-  const Grid grid = pipeline_->grid();
-  if (grid.x0_m == grid_before_.x0_m && grid.y0_m == grid_before_.y0_m) return;
-  const auto keep = [&](const MapCurb& curb, double from, double to) {
-    const bool worth_a_row = (to - from) * std::hypot(curb.x1_m - curb.x0_m, curb.y1_m - curb.y0_m) > 0.25 * grid.dx_m;
-    if (worth_a_row) left_behind_.push_back(part_of(curb, {from, to}));
-  };
-  for (const MapCurb& curb : curbs_before_) {
-    const Share before = inside_of(grid_before_, curb), now = inside_of(grid, curb);
-    keep(curb, before.from, now.any() ? std::min(before.to, now.from) : before.to);
-    if (now.any()) keep(curb, std::max(before.from, now.to), before.to);
-  }
-  grid_before_ = grid;
-}
-
 std::string Replay::remarks() const {
   std::string text = can_ ? can_->remarks() : std::string();
   const auto add_line = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
@@ -230,7 +204,7 @@ void Replay::check_complete() const {
 }
 
 std::vector<MapCurb> Replay::all_curbs() const {
-  std::vector<MapCurb> all = left_behind_;
+  std::vector<MapCurb> all = left_behind_.curbs();
   const std::vector<MapCurb> now = pipeline_->map_curbs();
   all.insert(all.end(), now.begin(), now.end());
   return all;

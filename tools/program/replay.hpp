@@ -11,6 +11,7 @@
 
 #include "curbline/can/tilt_decoder.hpp"
 #include "formats/trajectory.hpp"
+#include "map/left_behind.hpp"
 #include "program/scan_source.hpp"
 #include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
@@ -62,7 +63,6 @@ class Replay {
   bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
   void check_poses();
-  void keep_leaving_curbs();
 
   Robot robot_;
   ReplayLogs logs_;
@@ -78,8 +78,7 @@ class Replay {
   double take_s_ = 0;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
-  Grid grid_before_;
-  std::vector<MapCurb> curbs_before_, left_behind_;
+  LeftBehind left_behind_;
 };
 
 }  // namespace curbline::tools
