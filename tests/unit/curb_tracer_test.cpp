@@ -700,6 +700,37 @@ TEST_CASE("curb tracer: the wider the laser's spot, the less of a slope behind a
   CHECK(deviation_m(0.01f) > 1.1f * deviation_m(0.02f));
 }
 
+//  road / flank     seen from above: the crease between a pavement and the flank of its dropped curb runs out at the
+//      /___         curb, just where the laser's sight begins; a cell from the curb it is all pavement
+//     /\  pavement
+TEST_CASE(
+    "curb tracer: a step beside a flank's tip is less certain by what it would be lower if the flank reached it") {
+  const auto into_m = [](double x, double y) { return 0.74 * (x - 1.2) - 0.67 * (y - 1.2); };
+  const auto along_m = [](double x, double y) { return 0.67 * (x - 1.2) + 0.74 * (y - 1.2); };
+  for (double tip_m = -1.2; tip_m < 0.0; tip_m += 0.02) {
+    INFO("tip at " << tip_m);
+    const auto step_m = [=](double into, double along) {
+      return std::clamp(0.13 - 0.2 * (0.87 * (along - tip_m) - 0.49 * into), 0.0, 0.13);
+    };
+    const auto height_m = [=](double x, double y) {
+      return into_m(x, y) < 0.0 ? 0.0 : step_m(into_m(x, y), along_m(x, y));
+    };
+    Stages<> stages(small_settings());
+    Noise noise;
+    for (const Point& p : test::sample({0.0, 2.4, 0.0, 2.4}, 0.01, 0.002, noise, height_m)) {
+      if (p.x_m > 1.15 + 0.67 * tip_m) stages.dem.add(p);
+    }
+    stages.dem.set_common(1e-6f, 0.0f);
+    stages.settle();
+    stages.trace(0.0f, 1.2f);
+    for (const Curb& curb : stages.tracer.curbs()) {
+      const double x_m = 0.5 * (curb.x0_m + curb.x1_m), y_m = 0.5 * (curb.y0_m + curb.y1_m);
+      if (!is_step(curb) || std::abs(into_m(x_m, y_m)) > 0.05) continue;
+      CHECK(std::abs(curb.height_m) == Approx(step_m(0.0, along_m(x_m, y_m))).margin(3 * curb.height_sd_m));
+    }
+  }
+}
+
 TEST_CASE("curb tracer: a step that grows along its piece is as uncertain as it grows, if the localisation steps") {
   const auto deviation_m = [](double growth, bool steps) {
     const auto stages = traced([=](double x, double y) { return x < 1.4 ? 0.0 : 0.12 + growth * (y - 1.2); });

@@ -71,6 +71,8 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
   step.refine(part, is_step(curb));
+  if (is_step(curb) && at.first) step.doubt_end(Piece::End::first);
+  if (is_step(curb) && at.last) step.doubt_end(Piece::End::second);
   if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.

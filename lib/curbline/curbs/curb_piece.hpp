@@ -67,6 +67,9 @@ struct CurbPiece {
   /// middle of the widest gap that a chain bridges, and by at most a quarter of the length, where the variance of its
   /// position has doubled.
   void go_on(const Stages& stages, End end);
+  /// Beyond an end of its chain another plane may take the place of a side's. By how much lower the step would be, in
+  /// square, if that plane reached the piece's middle; 0 if labels tell it from the side's.
+  [[gnu::noinline]] float lower_m2(const Stages& stages, End end, bool high_is_upper) const;
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
   /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
@@ -84,8 +87,13 @@ struct CurbPiece {
   void take_means(const Part& part);
   void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
   void take_widths(const Dem<limits>& dem, const Part& part);
-  enum class Side : std::uint8_t { unseen, own, other };
-  static Side side(const Stages& stages, float x_m, float y_m, Label own);
+  static Label ground_at(const Stages& stages, float x_m, float y_m);
+  /// From an end on: a cell along the line, and as far aside, toward the high-numbered plane, as cells are of one side.
+  struct Beyond {
+    float x_m, y_m, step_x, step_y, high_x, high_y;
+    float cells;  ///< length of the piece
+  };
+  Beyond beyond(const Stages& stages, End end) const;
 };
 
 template <Limits limits>
@@ -162,41 +170,69 @@ void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
   }
 }
 
-/// What one side of a line shows at a place; its plane should be `own`.
+/// Label of the ground at a place; no_label where none is seen.
 template <Limits limits>
-auto CurbPiece<limits>::side(const Stages& stages, float x_m, float y_m, Label own) -> Side {
+Label CurbPiece<limits>::ground_at(const Stages& stages, float x_m, float y_m) {
   const Dem<limits>& dem = stages.dem;
   const int slot = dem.slot_within(x_m, y_m);
-  if (slot < 0 || !dem.cell(slot).valid() || !stages.mixture.on_ground(slot)) return Side::unseen;
-  const Label label = stages.field.label(slot);
-  return label == own ? Side::own : label == no_label ? Side::unseen : Side::other;
+  return slot >= 0 && dem.cell(slot).valid() && stages.mixture.on_ground(slot) ? stages.field.label(slot) : no_label;
+}
+
+template <Limits limits>
+auto CurbPiece<limits>::beyond(const Stages& stages, End end) const -> Beyond {
+  const bool second = end == End::second;
+  const float dx_m = second ? line.x1_m - line.x0_m : line.x0_m - line.x1_m;
+  const float dy_m = second ? line.y1_m - line.y0_m : line.y0_m - line.y1_m;
+  const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.pitch_m();
+  const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
+  const float aside_m = std::max(stages.pitch_m(), half_gap_m);
+  const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
+  const float each = cells > 0.0f ? 1.0f / cells : 0.0f;
+  return {second ? line.x1_m : line.x0_m, second ? line.y1_m : line.y0_m, dx_m * each, dy_m * each,
+          line.normal_x * to_high_m,      line.normal_y * to_high_m,      cells};
 }
 
 template <Limits limits>
 void CurbPiece<limits>::go_on(const Stages& stages, End end) {
-  const bool from_second = end == End::first;
-  const float from_x = from_second ? line.x1_m : line.x0_m, from_y = from_second ? line.y1_m : line.y0_m;
-  float& end_x = from_second ? line.x0_m : line.x1_m;
-  float& end_y = from_second ? line.y0_m : line.y1_m;
-  const float dx_m = end_x - from_x, dy_m = end_y - from_y;
-  const float length_m = square_root(dx_m * dx_m + dy_m * dy_m);
-  if (!(length_m > 0.0f)) return;
-  const float pitch_m = 0.5f * (stages.dem.cell_x_m() + stages.dem.cell_y_m());
-  const float step_x = dx_m * pitch_m / length_m, step_y = dy_m * pitch_m / length_m;
-  const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
-  const float aside_m = std::max(pitch_m, half_gap_m);
-  const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
-  const float high_x = line.normal_x * to_high_m, high_y = line.normal_y * to_high_m;
-  const float most = 0.25f * length_m / pitch_m;
+  const Beyond from = beyond(stages, end);
+  float& end_x = end == End::first ? line.x0_m : line.x1_m;
+  float& end_y = end == End::first ? line.y0_m : line.y1_m;
+  const float most = 0.25f * from.cells;
   for (int k = 1; 2 * k <= stages.settings.link_reach && static_cast<float>(k) <= most; ++k) {
-    const float middle_x = end_x + 0.5f * step_x, middle_y = end_y + 0.5f * step_y;
-    const Side high = side(stages, middle_x + high_x, middle_y + high_y, first.high);
-    const Side low = side(stages, middle_x - high_x, middle_y - high_y, first.low);
-    if (high == Side::other || low == Side::other || (high == Side::unseen && low == Side::unseen)) return;
-    if (!planes.even(end_x + step_x - from_x, end_y + step_y - from_y)) return;
-    end_x += step_x;
-    end_y += step_y;
+    const float middle_x = end_x + 0.5f * from.step_x, middle_y = end_y + 0.5f * from.step_y;
+    const Label high = ground_at(stages, middle_x + from.high_x, middle_y + from.high_y);
+    const Label low = ground_at(stages, middle_x - from.high_x, middle_y - from.high_y);
+    const bool high_unseen = high == no_label, low_unseen = low == no_label;
+    if ((high != first.high && !high_unseen) || (low != first.low && !low_unseen) || (high_unseen && low_unseen))
+      return;
+    const float along = from.cells + static_cast<float>(k);
+    if (!planes.even(along * from.step_x, along * from.step_y)) return;
+    end_x += from.step_x;
+    end_y += from.step_y;
   }
+}
+
+/// Labels tell two planes apart that differ, over all borders, by three standard deviations.
+template <Limits limits>
+float CurbPiece<limits>::lower_m2(const Stages& stages, End end, bool high_is_upper) const {
+  const Beyond from = beyond(stages, end);
+  float most_m2 = 0.0f;
+  for (const bool high : {false, true}) {
+    const Plane& own = high ? planes.high : planes.low;
+    for (const float cells : {0.5f, 1.5f}) {
+      const float aside = high ? 1.0f : -1.0f;
+      const Label label = ground_at(stages, from.x_m + cells * from.step_x + aside * from.high_x,
+                                    from.y_m + cells * from.step_y + aside * from.high_y);
+      if (label == no_label || label == first.low || label == first.high) continue;
+      const Plane& other = stages.mixture.plane(label);
+      if (!other.alive()) continue;
+      const float rise_m = other.height_m(middle_x_m(), middle_y_m()) - own.height_m(middle_x_m(), middle_y_m());
+      const float lower_m = high == high_is_upper ? -rise_m : rise_m;
+      const bool alike = square(lower_m) * borders <= gate * (own.variance_m2 + other.variance_m2);
+      if (lower_m > 0.0f && alike) most_m2 = std::max(most_m2, square(lower_m));
+    }
+  }
+  return most_m2;
 }
 
 }  // namespace curbline

@@ -40,6 +40,10 @@ class StepHeight {
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
   /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
   void refine(const Part& part, bool is_step);
+  /// Adds that of an end of a chain, beyond which the ground may be another plane's.
+  void doubt_end(typename Piece::End end) {
+    if (!piece_.one_sided()) variance_m2_ += (1.0f / 3) * piece_.lower_m2(stages_, end, high_is_upper());
+  }
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
