@@ -32,7 +32,7 @@ FoundBorders found_borders(Stages<small_limits>& stages) {
   for (int b = 0; b < borders.size(); ++b) {
     if (borders.chained(b)) continue;
     const int length = borders.chain(stages.dem, b, settings.link_reach);
-    for (int k = 0; k < length; ++k) ++(borders.at(k).high == no_label ? found.one_sided : found.between_planes);
+    for (int k = 0; k < length; ++k) ++(borders.at(k).other == no_label ? found.one_sided : found.between_planes);
   }
   return found;
 }
@@ -443,7 +443,7 @@ TEST_CASE("borders: one that lies before the window or beyond it is found from i
       Borders<small_limits>::Border border{};
       border.x_m = y < 0.1f ? x : x < 0.0f ? 0.02f : 2.38f;
       border.y_m = y;
-      border.high = 1;
+      border.other = 1;
       REQUIRE(borders.add(stages.dem, border));
     }
     CHECK(borders.chain(stages.dem, 0, 5) == 2);
@@ -657,8 +657,8 @@ TEST_CASE("borders: a chain goes on to the next border within reach, of the same
       Borders<small_limits>::Border border{};
       border.x_m = static_cast<float>(x);
       border.y_m = static_cast<float>(y);
-      border.low = of_others && borders.size() == 1 ? 1 : 0;
-      border.high = 2;
+      border.one = of_others && borders.size() == 1 ? 1 : 0;
+      border.other = 2;
       REQUIRE(borders.add(stages.dem, border));
     }
     return borders.chain(stages.dem, 0, 5);

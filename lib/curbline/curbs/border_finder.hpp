@@ -87,20 +87,20 @@ void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first().label < gap.second().label;
-  const LabelledCell& low = rising ? gap.first() : gap.second();
-  const LabelledCell& high = rising ? gap.second() : gap.first();
+  const LabelledCell& one = rising ? gap.first() : gap.second();
+  const LabelledCell& other = rising ? gap.second() : gap.first();
   const auto [along_m, open, empty, sloped] = gap.middle();
   Border border = Borders<limits>::on(gap.line(), along_m);
   border.probability = 1.0f - gap.same_plane();
   border.half_gap_m = 0.5f * static_cast<float>(gap.length()) * gap.line().pitch_m();
-  border.low = low.label;
-  border.high = high.label;
+  border.one = one.label;
+  border.other = other.label;
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
   border.sloped_cells = sloped;
   border.open = open;
   border.empty = static_cast<std::uint8_t>(std::min(empty, 255));
-  border.beside_low = beside(gap.line(), along_m, -border.sign, low.label);
-  border.beside_high = beside(gap.line(), along_m, border.sign, high.label);
+  border.beside_one = beside(gap.line(), along_m, -border.sign, one.label);
+  border.beside_other = beside(gap.line(), along_m, border.sign, other.label);
   return border;
 }
 

@@ -22,15 +22,15 @@ class Borders {
   using Index = std::uint16_t;
 
   struct Border {
-    float x_m, y_m;                  ///< in the window's frame
-    float probability;               ///< that the cells on both sides belong to different planes
-    float half_gap_m;                ///< half the distance between the cells of both planes
-    float drop_m;                    ///< of a brink: down to the lowest visible behind it; else 0
-    float sloped_cells;              ///< length of the slope from plane to plane that the cells in between show
-    Beside beside_low, beside_high;  ///< on the sides of `low` and `high`
-    Label low, high;   ///< the planes, low < high by number; high is no_label at the end of a face and at a brink
+    float x_m, y_m;                   ///< in the window's frame
+    float probability;                ///< that the cells on both sides belong to different planes
+    float half_gap_m;                 ///< half the distance between the cells of both planes
+    float drop_m;                     ///< of a brink: down to the lowest visible behind it; else 0
+    float sloped_cells;               ///< length of the slope from plane to plane that the cells in between show
+    Beside beside_one, beside_other;  ///< on the sides of `one` and `other`
+    Label one, other;  ///< the planes, one < other by number; other is no_label at the end of a face and at a brink
     std::int8_t axis;  ///< 0: found along x, 1: along y
-    std::int8_t sign;  ///< +1 if `high` is in the positive direction of the axis
+    std::int8_t sign;  ///< +1 if `other` is in the positive direction of the axis
     bool open : 1;     ///< the edge may be anywhere in the gap: an obstacle stands there, or hides it
     bool chained : 1;
     std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
@@ -40,7 +40,7 @@ class Borders {
     float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
     /// The direction (grid.hpp) toward the side of one of its planes.
     std::size_t toward(Label label) const {
-      return static_cast<std::size_t>(direction(axis, label == high ? sign : -sign));
+      return static_cast<std::size_t>(direction(axis, label == other ? sign : -sign));
     }
   };
 
@@ -171,7 +171,7 @@ auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int re
     for (int j = first_j; j <= last_j; ++j) {
       for (Index b = in_cell_[dem.slot(i, j)]; b != none; b = border_[b].next_in_cell) {
         const Border& border = border_[b];
-        if (border.chained || border.low != from.low || border.high != from.high) continue;
+        if (border.chained || border.one != from.one || border.other != from.other) continue;
         const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;
         const float m2 = dx * dx + dy * dy;
         if (m2 < best_m2) {

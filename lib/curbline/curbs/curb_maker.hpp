@@ -73,7 +73,7 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   step.refine(part, is_step(curb));
   if (is_step(curb) && at.first) step.doubt_end(Piece::End::first);
   if (is_step(curb) && at.last) step.doubt_end(Piece::End::second);
-  if (is_step(curb)) curb.height_m = piece.low_is_near ? step.height_m() : -step.height_m();
+  if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.
   if (curb.height_m > stages_.settings.max_step_m) {
@@ -94,8 +94,8 @@ std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
 template <Limits limits>
 Curb CurbMaker<limits>::without_height(const Piece& piece) {
   Curb curb;
-  curb.near_label = piece.low_is_near ? piece.first.low : piece.first.high;
-  curb.far_label = piece.low_is_near ? piece.first.high : piece.first.low;
+  curb.near_label = piece.one_is_near ? piece.first.one : piece.first.other;
+  curb.far_label = piece.one_is_near ? piece.first.other : piece.first.one;
   curb.probability = std::min(1.0f, piece.probability);  // a mean, rounded
   return curb;
 }
@@ -104,7 +104,7 @@ Curb CurbMaker<limits>::without_height(const Piece& piece) {
 template <Limits limits>
 float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2) {
   if (!is_step(curb) || piece.one_sided()) return piece.borders_variance_m2;
-  const float cell_variance_m2 = 0.5f * (piece.planes.low.fit_variance_m2 + piece.planes.high.fit_variance_m2);
+  const float cell_variance_m2 = 0.5f * (piece.planes.one.fit_variance_m2 + piece.planes.other.fit_variance_m2);
   return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
 }
 
@@ -116,7 +116,7 @@ void CurbMaker<limits>::set_ends(const Piece& piece, Curb& curb) const {
   curb.y0_m = y_m + piece.line.y0_m;
   curb.x1_m = x_m + piece.line.x1_m;
   curb.y1_m = y_m + piece.line.y1_m;
-  if (piece.low_is_right == piece.low_is_near) return;
+  if (piece.one_is_right == piece.one_is_near) return;
   std::swap(curb.x0_m, curb.x1_m);
   std::swap(curb.y0_m, curb.y1_m);
 }

@@ -35,25 +35,25 @@ struct CurbPiece {
   float drop_m = 0.0f;           ///< of a brink
   float sloped_cells = 0.0f;     ///< of a border
   float probability = 0.0f, half_gap_m = 0.0f;
-  Beside beside_low{}, beside_high{};  ///< sums
-  float borders;                       ///< their number
-  float observations;                  ///< the number that they weigh as, Borders::Part
-  float place_variance_m2 = 0.0f;      ///< of a border, across the line
-  float borders_variance_m2 = 0.0f;    ///< of the line's middle, across it, if each border is anywhere in its gap
-  float told_variance_m2 = 0.0f;       ///< the same for a step, which the cells of the gap locate
-  float gap_m = 0.0f, cell_m = 0.0f;   ///< across it: distance of the cells' centres, size of a cell
-  bool low_is_near = false;            ///< the robot is on the side of the low-numbered plane
-  bool low_is_right = false;           ///< of the line, from its first end to its second
+  Beside beside_one{}, beside_other{};  ///< sums
+  float borders;                        ///< their number
+  float observations;                   ///< the number that they weigh as, Borders::Part
+  float place_variance_m2 = 0.0f;       ///< of a border, across the line
+  float borders_variance_m2 = 0.0f;     ///< of the line's middle, across it, if each border is anywhere in its gap
+  float told_variance_m2 = 0.0f;        ///< the same for a step, which the cells of the gap locate
+  float gap_m = 0.0f, cell_m = 0.0f;    ///< across it: distance of the cells' centres, size of a cell
+  bool one_is_near = false;             ///< the robot is on the side of plane `one`
+  bool one_is_right = false;            ///< of the line, from its first end to its second
 
   /// Fits the line to the borders and computes the means.
   CurbPiece(const Stages& stages, const Part& part);
 
   static PlanePair planes_of(const Stages& stages, const Border& border) {
-    const Label beyond = border.high == no_label ? border.low : border.high;
-    return {stages.mixture.plane(border.low), stages.mixture.plane(beyond)};
+    const Label beyond = border.other == no_label ? border.one : border.other;
+    return {stages.mixture.plane(border.one), stages.mixture.plane(beyond)};
   }
-  /// Is no ground in view on the other side of `low`?
-  bool one_sided() const { return first.high == no_label; }
+  /// Is no ground in view on the other side of `one`?
+  bool one_sided() const { return first.other == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
   float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
   /// Change of its height from end to end, by its planes.
@@ -69,7 +69,7 @@ struct CurbPiece {
   void go_on(const Stages& stages, End end);
   /// Beyond an end of its chain another plane may take the place of a side's. By how much lower the step would be, in
   /// square, if that plane reached the piece's middle; 0 if labels tell it from the side's.
-  [[gnu::noinline]] float lower_m2(const Stages& stages, End end, bool high_is_upper) const;
+  [[gnu::noinline]] float lower_m2(const Stages& stages, End end, bool other_is_upper) const;
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
   /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
@@ -88,9 +88,9 @@ struct CurbPiece {
   void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
   void take_widths(const Dem<limits>& dem, const Part& part);
   static Label ground_at(const Stages& stages, float x_m, float y_m);
-  /// From an end on: a cell along the line, and as far aside, toward the high-numbered plane, as cells are of one side.
+  /// From an end on: a cell along the line, and the way from the line to cells of `other`.
   struct Beyond {
-    float x_m, y_m, step_x, step_y, high_x, high_y;
+    float x_m, y_m, step_x, step_y, other_x, other_y;
     float cells;  ///< length of the piece
   };
   Beyond beyond(const Stages& stages, End end) const;
@@ -109,13 +109,13 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   y_m = fit.y_m();
   const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
   line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
-  float toward_x = 0.0f, toward_y = 0.0f;  // the high-numbered plane, from the other
+  float toward_x = 0.0f, toward_y = 0.0f;  // plane `other`, from `one`
   for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
   // For a single border, or two at one place, where surfaces meet at an unseen cell.
   if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
   for (const Border& border : part) line.reach(border.x_m, border.y_m, half_cell_m);  // the last need not be outermost
-  low_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
-  low_is_near = one_sided() || low_is_right == has_right(stages.view);
+  one_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
+  one_is_near = one_sided() || one_is_right == has_right(stages.view);
   take_means(part);
   take_variances(dem, part, fit);
   take_widths(dem, part);
@@ -129,8 +129,8 @@ void CurbPiece<limits>::take_means(const Part& part) {
     sloped_cells += each * border.sloped_cells;
     probability += each * border.probability;
     half_gap_m += each * border.half_gap_m;
-    beside_low.add(border.beside_low);
-    beside_high.add(border.beside_high);
+    beside_one.add(border.beside_one);
+    beside_other.add(border.beside_other);
   }
 }
 
@@ -186,10 +186,10 @@ auto CurbPiece<limits>::beyond(const Stages& stages, End end) const -> Beyond {
   const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.pitch_m();
   const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
   const float aside_m = std::max(stages.pitch_m(), half_gap_m);
-  const float to_high_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
+  const float to_other_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
   const float each = cells > 0.0f ? 1.0f / cells : 0.0f;
   return {second ? line.x1_m : line.x0_m, second ? line.y1_m : line.y0_m, dx_m * each, dy_m * each,
-          line.normal_x * to_high_m,      line.normal_y * to_high_m,      cells};
+          line.normal_x * to_other_m,     line.normal_y * to_other_m,     cells};
 }
 
 template <Limits limits>
@@ -200,10 +200,10 @@ void CurbPiece<limits>::go_on(const Stages& stages, End end) {
   const float most = 0.25f * from.cells;
   for (int k = 1; 2 * k <= stages.settings.link_reach && static_cast<float>(k) <= most; ++k) {
     const float middle_x = end_x + 0.5f * from.step_x, middle_y = end_y + 0.5f * from.step_y;
-    const Label high = ground_at(stages, middle_x + from.high_x, middle_y + from.high_y);
-    const Label low = ground_at(stages, middle_x - from.high_x, middle_y - from.high_y);
-    const bool high_unseen = high == no_label, low_unseen = low == no_label;
-    if ((high != first.high && !high_unseen) || (low != first.low && !low_unseen) || (high_unseen && low_unseen))
+    const Label other = ground_at(stages, middle_x + from.other_x, middle_y + from.other_y);
+    const Label one = ground_at(stages, middle_x - from.other_x, middle_y - from.other_y);
+    const bool other_unseen = other == no_label, one_unseen = one == no_label;
+    if ((other != first.other && !other_unseen) || (one != first.one && !one_unseen) || (other_unseen && one_unseen))
       return;
     const float along = from.cells + static_cast<float>(k);
     if (!planes.even(along * from.step_x, along * from.step_y)) return;
@@ -214,21 +214,21 @@ void CurbPiece<limits>::go_on(const Stages& stages, End end) {
 
 /// Labels tell two planes apart that differ, over all borders, by three standard deviations.
 template <Limits limits>
-float CurbPiece<limits>::lower_m2(const Stages& stages, End end, bool high_is_upper) const {
+float CurbPiece<limits>::lower_m2(const Stages& stages, End end, bool other_is_upper) const {
   const Beyond from = beyond(stages, end);
   float most_m2 = 0.0f;
-  for (const bool high : {false, true}) {
-    const Plane& own = high ? planes.high : planes.low;
+  for (const bool other : {false, true}) {
+    const Plane& own = other ? planes.other : planes.one;
     for (const float cells : {0.5f, 1.5f}) {
-      const float aside = high ? 1.0f : -1.0f;
-      const Label label = ground_at(stages, from.x_m + cells * from.step_x + aside * from.high_x,
-                                    from.y_m + cells * from.step_y + aside * from.high_y);
-      if (label == no_label || label == first.low || label == first.high) continue;
-      const Plane& other = stages.mixture.plane(label);
-      if (!other.alive()) continue;
-      const float rise_m = other.height_m(middle_x_m(), middle_y_m()) - own.height_m(middle_x_m(), middle_y_m());
-      const float lower_m = high == high_is_upper ? -rise_m : rise_m;
-      const bool alike = square(lower_m) * borders <= gate * (own.variance_m2 + other.variance_m2);
+      const float aside = other ? 1.0f : -1.0f;
+      const Label label = ground_at(stages, from.x_m + cells * from.step_x + aside * from.other_x,
+                                    from.y_m + cells * from.step_y + aside * from.other_y);
+      if (label == no_label || label == first.one || label == first.other) continue;
+      const Plane& third = stages.mixture.plane(label);
+      if (!third.alive()) continue;
+      const float rise_m = third.height_m(middle_x_m(), middle_y_m()) - own.height_m(middle_x_m(), middle_y_m());
+      const float lower_m = other == other_is_upper ? -rise_m : rise_m;
+      const bool alike = square(lower_m) * borders <= gate * (own.variance_m2 + third.variance_m2);
       if (lower_m > 0.0f && alike) most_m2 = std::max(most_m2, square(lower_m));
     }
   }

@@ -132,14 +132,14 @@ bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge
   return seen_over_edge(first_of_veil) && !seen_over_edge(ground);
 }
 
-/// A border behind the last cell of a plane, with no_label for `high`, on the unseen side.
+/// A border behind the last cell of a plane, with no_label for `other`, on the unseen side.
 template <Limits limits>
 auto GroundEnds<limits>::border_behind(const Line& line, int last, int toward, float along_m) const -> Border {
   const Label label = stages_.field.label(line.slot(last));
   Border border = Borders<limits>::on(line, along_m);
   border.probability = stages_.field.belief(line.dem, line.row(last), line.col(last)).of(label);
-  border.low = label;
-  border.high = no_label;
+  border.one = label;
+  border.other = no_label;
   border.sign = static_cast<std::int8_t>(toward);
   return border;
 }

@@ -11,7 +11,7 @@ namespace curbline {
 
 /// The step at a border of two planes, by what was measured of it.
 struct MeasuredStep {
-  float height_m, height_sd_m;  ///< PlanePair::high above low at the border
+  float height_m, height_sd_m;  ///< of PlanePair::other above PlanePair::one, at the border
   float half_gap_m;             ///< between the cells of the one and the other
   float place_variance_m2;      ///< of where the border lies, across it
   float texture_m2;             ///< of the ground, PlanePrior::texture_m2
@@ -19,7 +19,7 @@ struct MeasuredStep {
 
 /// With no ground in view beyond a border, the near plane stands for both: no step but the drop, no slope of its own.
 struct PlanePair {
-  const Plane &low, &high;  ///< by number
+  const Plane &one, &other;  ///< of the lower number, and of the higher
 
   /// Does the step between them keep its height over (dx, dy)? From one end of a piece to the other it may change by
   /// no more than the repeatability of a range-finder.
@@ -29,11 +29,11 @@ struct PlanePair {
   }
   /// By how much that height changes.
   float change_m(float dx_m, float dy_m) const {
-    return (high.slope_x - low.slope_x) * dx_m + (high.slope_y - low.slope_y) * dy_m;
+    return (other.slope_x - one.slope_x) * dx_m + (other.slope_y - one.slope_y) * dy_m;
   }
   /// Difference of their slopes across a line: change of the step's height with the line's position.
   float slope_across(const LineFit::Segment& line) const {
-    return (high.slope_x - low.slope_x) * line.normal_x + (high.slope_y - low.slope_y) * line.normal_y;
+    return (other.slope_x - one.slope_x) * line.normal_x + (other.slope_y - one.slope_y) * line.normal_y;
   }
   /// A border is a crease, not a step, if the planes' difference in height there is within its uncertainty (95 %): that
   /// of the planes, of the cells that define the border, at least the ground's texture, and of the border's position

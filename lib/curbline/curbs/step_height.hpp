@@ -30,9 +30,9 @@ class StepHeight {
 
   /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
   StepHeight(const CurbStages<limits>& stages, Piece& piece) : stages_(stages), piece_(piece) {
-    const auto [low, high] = piece.planes;
+    const auto [one, other] = piece.planes;
     const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
-    height_m_ = high.height_m(x_m, y_m) - low.height_m(x_m, y_m) - piece.drop_m;
+    height_m_ = other.height_m(x_m, y_m) - one.height_m(x_m, y_m) - piece.drop_m;
   }
 
   /// For PlanePair::kind(), to decide whether it is a step.
@@ -42,19 +42,19 @@ class StepHeight {
   void refine(const Part& part, bool is_step);
   /// Adds that of an end of a chain, beyond which the ground may be another plane's.
   void doubt_end(typename Piece::End end) {
-    if (!piece_.one_sided()) variance_m2_ += (1.0f / 3) * piece_.lower_m2(stages_, end, high_is_upper());
+    if (!piece_.one_sided()) variance_m2_ += (1.0f / 3) * piece_.lower_m2(stages_, end, other_is_upper());
   }
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
-  /// Of the high-numbered plane above the low-numbered one (PlanePair).
+  /// Of PlanePair::other above PlanePair::one.
   float height_m() const { return height_m_; }
   float variance_m2() const { return variance_m2_; }
   /// Width of its shadow; 0 if it casts none.
   float shadow_m() const { return shadow_m_; }
 
  private:
-  bool high_is_upper() const { return height_m_ > 0.0f; }
+  bool other_is_upper() const { return height_m_ > 0.0f; }
   Viewpoint lower_seen_from(const Part& part) const;
   void leave_shadow(const Viewpoint& view);
   int cell_beside(const Border& border, Label own) const;
@@ -63,7 +63,7 @@ class StepHeight {
   void follow_ground(const Part& part);
   void follow_ground_beside();
   struct Deviations {
-    Deviation low, high;
+    Deviation one, other;
   };
   // Not inlined: three times inlined it takes 320 bytes of flash more.
   [[gnu::noinline]] Deviations deviations() const;
@@ -78,9 +78,9 @@ class StepHeight {
 template <Limits limits>
 MeasuredStep StepHeight<limits>::measured() const {
   const Deviations sides = deviations();
-  const float too_far_m2 = sides.low.too_far_m2(piece_.borders) + sides.high.too_far_m2(piece_.borders);
-  const auto [low, high] = piece_.planes;
-  const float sd_m = square_root(piece_.variance_m2(low) + piece_.variance_m2(high) + too_far_m2);
+  const float too_far_m2 = sides.one.too_far_m2(piece_.borders) + sides.other.too_far_m2(piece_.borders);
+  const auto [one, other] = piece_.planes;
+  const float sd_m = square_root(piece_.variance_m2(one) + piece_.variance_m2(other) + too_far_m2);
   return {height_m_, sd_m, piece_.half_gap_m, piece_.place_variance_m2, stages_.dem.prior().texture_m2};
 }
 
@@ -94,17 +94,18 @@ void StepHeight<limits>::refine(const Part& part, bool is_step) {
     ground_share = ground_share_of_slope(view);
     leave_shadow(view);
   }
-  const auto [low, high] = piece_.planes;
+  const auto [one, other] = piece_.planes;
   // A plane's error is common to the whole piece: it does not average out. Behind a brink up to as much again as is
   // visible may be hidden, uniformly.
-  variance_m2_ = plane_variance_m2(low) + plane_variance_m2(high) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
+  variance_m2_ =
+      plane_variance_m2(one) + plane_variance_m2(other) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
   if (is_step && !one_sided) follow_ground(part);
   if (is_step) {
     follow_ground_beside();
     variance_m2_ += square(ground_share * height_m_) * (1.0f / 3);
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
-  variance_m2_ += (low.rough_m2 + high.rough_m2) * (1.0f / 3);
+  variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
 }
 
 /// Where slopes differ, the height is as uncertain as the piece's position. If the localisation steps, both sides may
@@ -120,7 +121,7 @@ template <Limits limits>
 Viewpoint StepHeight<limits>::lower_seen_from(const Part& part) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
-  const Label lower = high_is_upper() ? piece_.first.low : piece_.first.high;
+  const Label lower = other_is_upper() ? piece_.first.one : piece_.first.other;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
     const int slot = cell_beside(border, lower);
@@ -158,7 +159,7 @@ int StepHeight<limits>::cell_beside(const Border& border, Label own) const {
 /// share that this is of the step.
 template <Limits limits>
 float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
-  const Plane& lower = high_is_upper() ? piece_.planes.low : piece_.planes.high;
+  const Plane& lower = other_is_upper() ? piece_.planes.one : piece_.planes.other;
   const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
   if (!(above_m > 0.0f)) return 0.0f;
   const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
@@ -170,16 +171,16 @@ float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
 /// distance of its planes at the edge, to which the line moves.
 template <Limits limits>
 void StepHeight<limits>::leave_shadow(const Viewpoint& view) {
-  const bool upper_is_right = high_is_upper() != piece_.low_is_right;
+  const bool upper_is_right = other_is_upper() != piece_.one_is_right;
   if (piece_.has_right(view) != upper_is_right) return;
-  const auto [low, high] = piece_.planes;
-  const Plane &above = high_is_upper() ? high : low, &below = high_is_upper() ? low : high;
+  const auto [one, other] = piece_.planes;
+  const Plane &above = other_is_upper() ? other : one, &below = other_is_upper() ? one : other;
   const float above_m = view.z_m - above.height_m(piece_.x_m, piece_.y_m);
   const float x_m = piece_.line.x0_m, y_m = piece_.line.y0_m;
   shadow_m_ = move_before_shadow(piece_.line, view, {magnitude(height_m_), above_m, piece_.gap_m + piece_.cell_m});
   const float dx_m = piece_.line.x0_m - x_m, dy_m = piece_.line.y0_m - y_m;
   const float rise_m = carried_m(above, dx_m, dy_m) - carried_m(below, dx_m, dy_m);
-  height_m_ += high_is_upper() ? rise_m : -rise_m;
+  height_m_ += other_is_upper() ? rise_m : -rise_m;
 }
 
 /// Rise of a plane extrapolated to an unseen place: less than its slope says, by the square of the distance relative to
@@ -225,13 +226,13 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
 template <Limits limits>
 void StepHeight<limits>::follow_ground(const Part& part) {
   const Deviations beside = deviations();
-  for (const bool high : {false, true}) {
-    if ((high ? beside.high : beside.low).found()) continue;
-    const Plane& plane = high ? piece_.planes.high : piece_.planes.low;
-    const GroundAlong ground = ground_along(part, high ? piece_.first.high : piece_.first.low);
-    height_m_ += high ? ground.above_m : -ground.above_m;
+  for (const bool other : {false, true}) {
+    if ((other ? beside.other : beside.one).found()) continue;
+    const Plane& plane = other ? piece_.planes.other : piece_.planes.one;
+    const GroundAlong ground = ground_along(part, other ? piece_.first.other : piece_.first.one);
+    height_m_ += other ? ground.above_m : -ground.above_m;
     variance_m2_ += ground.share * (ground.variance_m2 - plane_variance_m2(plane));
-    Beside& told = high ? piece_.beside_high : piece_.beside_low;
+    Beside& told = other ? piece_.beside_other : piece_.beside_one;
     told.off_m -= told.borders * ground.above_m;
   }
 }
@@ -241,8 +242,8 @@ void StepHeight<limits>::follow_ground(const Part& part) {
 template <Limits limits>
 void StepHeight<limits>::follow_ground_beside() {
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
-  const auto [low, high] = deviations();
-  for (const Deviation& side : {low, high}) {
+  const auto [one, other] = deviations();
+  for (const Deviation& side : {one, other}) {
     if (side.found()) height_m_ += toward * side.away_m;
     variance_m2_ += side.height_variance_m2();
   }
@@ -255,8 +256,8 @@ auto StepHeight<limits>::deviations() const -> Deviations {
   const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
   const float beyond_cells = -0.5f * up * shadow_m_ / piece_.cell_m;
   const float common_m2 = stages_.dem.common_m2();
-  return {deviation(piece_.beside_low, piece_.planes.low, -up, -beyond_cells, common_m2),
-          deviation(piece_.beside_high, piece_.planes.high, up, beyond_cells, common_m2)};
+  return {deviation(piece_.beside_one, piece_.planes.one, -up, -beyond_cells, common_m2),
+          deviation(piece_.beside_other, piece_.planes.other, up, beyond_cells, common_m2)};
 }
 
 /// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it
