@@ -107,7 +107,7 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   for (const Border& border : part) fit.add(border.x_m, border.y_m, border.weight() * part.share(border));
   x_m = fit.x_m();
   y_m = fit.y_m();
-  const float half_cell_m = 0.25f * (dem.cell_x_m() + dem.cell_y_m());
+  const float half_cell_m = 0.5f * stages.pitch_m();
   line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
   float toward_x = 0.0f, toward_y = 0.0f;  // plane `other`, from `one`
   for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
