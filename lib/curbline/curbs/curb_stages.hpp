@@ -37,7 +37,7 @@ struct CurbStages {
     const Cell& cell = dem.cell(slot);
     const Plane& plane = mixture.plane(field.label(slot));
     if (!lies_on(i, j, cell, plane)) return false;
-    if (dem.spread_m2(cell) <= 0.0f || !dem.mixed(cell, dem.slope_m2(plane), plane.rough_m2)) return true;
+    if (!dem.mixed(cell, dem.slope_m2(plane), plane.rough_m2)) return true;
     return !spreads_between_others(i, j, slot, 1, 0) && !spreads_between_others(i, j, slot, 0, 1);
   }
   /// May a cell without ground, or off its plane, be a mixture of two sides: of a veil, of a region too small for a

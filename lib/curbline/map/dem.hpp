@@ -211,8 +211,8 @@ class Dem : public Window<limits> {
   /// By two standard deviations beyond slope and noise?
   static bool spreads(const Cell& cell, float slope_m2, float noise_m2) {
     const float freedom = cell.points - 1.0f;  // of the noise's scatter, chi^2
-    const float beyond = (cell.scatter_m2 - slope_m2 * cell.weight) / noise_m2 - freedom;
-    return beyond > 0.0f && beyond * beyond > 4.0f * 2.0f * freedom;
+    const float beyond_m2 = cell.scatter_m2 - slope_m2 * cell.weight - noise_m2 * freedom;
+    return beyond_m2 > 0.0f && square(beyond_m2) > 4.0f * 2.0f * freedom * square(noise_m2);
   }
   static void follow_mean(std::int16_t& mean, float value, float share, float lot);
   void add_means(int s, const Point& point, float weight);
