@@ -26,6 +26,7 @@
 #include "curbline/intake/tilt_track.hpp"       // its readings over time, from an interrupt
 #include "curbline/intake/tilt_snapshot.hpp"    // the tilt at each beam
 #include "curbline/intake/sweep_turns.hpp"      // where the servo reverses
+#include "curbline/sweeps.hpp"                  // what differs from sweep to sweep
 #include "curbline/intake/tilt_latency.hpp"     // how late its readings are, estimated on line
 #include "curbline/pose.hpp"                    // in: a pose of the robot
 #include "curbline/intake/pose_track.hpp"       // poses over time, where they jump and step

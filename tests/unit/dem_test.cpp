@@ -431,17 +431,70 @@ TEST_CASE("dem: a latency found to be greater corrects heights, those of this sw
     REQUIRE(dem.add(point));
   };
   const auto height_m = [&](int i) { return dem.cell(dem.slot(i, 8)).height_m; };
-  add(0.05, 2.0f);
-  add(0.15, -1.0f);
-  add(0.15, 0.5f);  // seen twice: their mean growth counts
-  add(0.25, 0.0f);
+  add(0.05, 0.10f);
+  add(0.15, 0.36f);
+  add(0.15, 0.24f);  // seen twice: their mean growth counts
   dem.begin_sweep();
-  add(0.35, 3.0f);
-  dem.delay(0.010f, 0.004f);
-  CHECK(height_m(0) == Approx(0.1 + 0.008).margin(1e-5));
-  CHECK(height_m(1) == Approx(0.1 - 0.001).margin(1e-5));
-  CHECK(height_m(2) == 0.1f);
-  CHECK(height_m(3) == Approx(0.1 + 0.030).margin(1e-5));
+  add(0.25, -0.50f);
+  dem.delay({0.010f, 0.004f, 0.0f}, {-2.0f, 0.5f});
+  CHECK(height_m(0) == Approx(0.1 + 0.004 * 0.1).margin(1e-5));
+  CHECK(height_m(1) == Approx(0.1 + 0.004 * 0.3).margin(1e-5));
+  CHECK(height_m(2) == Approx(0.1 - 0.010 * 0.5).margin(1e-5));
+}
+
+TEST_CASE("dem: where growths of upward and downward sweeps cancel, each latency corrects by those of its direction") {
+  constexpr float rate_rad_s = 0.5f;
+  Map dem = make_map(moving());
+  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
+  const auto add = [&](float rate) {
+    Point point = at(0.05, 0.05, 0.1);
+    point.growth_m_s = -rate * 2.0f;
+    REQUIRE(dem.add(point));
+  };
+  const int slot = slot_at(dem, 0.05f, 0.05f);
+  for (int point = 0; point < 3; ++point) add(-rate_rad_s);
+  dem.begin_sweep();
+  add(rate_rad_s);
+  CHECK(dem.growth_m_s(slot) == Approx(0.5).margin(1e-3));
+  CHECK(dem.growths_m_s(slot, {-rate_rad_s, 0.5f}).before == Approx(-0.25).margin(1e-3));
+  CHECK(dem.growths_m_s(slot, {-rate_rad_s, 0.5f}).last == Approx(0.75).margin(1e-3));
+  dem.delay({0.1f, -0.004f, 0.004f}, {-rate_rad_s, 0.5f});
+  CHECK(dem.cell(slot).height_m == Approx(0.1 - 0.004).margin(1e-5));
+  dem.begin_sweep();  // upward again
+  dem.delay({0.1f, 0.004f, -0.004f}, {rate_rad_s, 0.5f});
+  CHECK(dem.cell(slot).height_m == Approx(0.1 - 0.008).margin(1e-5));
+}
+
+TEST_CASE("dem: growths are divided between upward and downward sweeps, however much faster one of them is") {
+  constexpr float down_rad_s = 0.25f, up_rad_s = -0.75f;
+  Map dem = make_map(moving());
+  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
+  const auto add = [&](float rate) {
+    Point point = at(0.05, 0.05, 0.1);
+    point.growth_m_s = -rate * 2.0f;
+    REQUIRE(dem.add(point));
+  };
+  for (int point = 0; point < 3; ++point) add(down_rad_s);
+  add(up_rad_s);
+  const BySweep growth_m_s = dem.growths_m_s(slot_at(dem, 0.05f, 0.05f), {up_rad_s, 0.25f});
+  CHECK(growth_m_s.now + growth_m_s.before == Approx(0.75 * -0.5).margin(1e-3));
+  CHECK(growth_m_s.last == Approx(0.25 * 1.5).margin(1e-3));
+}
+
+TEST_CASE("dem: of ground that was seen upward and downward for long, a new sweep's latency moves what it saw itself") {
+  constexpr float rate_rad_s = 0.5f;
+  Map dem = make_map(moving());
+  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
+  const auto add = [&](float rate) {
+    Point point = at(0.05, 0.05, 0.1);
+    point.growth_m_s = -rate * 2.0f;
+    REQUIRE(dem.add(point));
+  };
+  for (const float rate : {1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f}) add(rate * rate_rad_s);
+  dem.begin_sweep();
+  add(rate_rad_s);
+  dem.delay({0.009f, 0.0f, 0.0f}, {-rate_rad_s, 0.5f});
+  CHECK(dem.cell(slot_at(dem, 0.05f, 0.05f)).height_m == Approx(0.1 - 0.001).margin(1e-4));
 }
 
 TEST_CASE("dem: a lean corrects heights by how far ahead a cell's points lay when they were seen, in the mean") {

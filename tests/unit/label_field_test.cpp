@@ -325,14 +325,14 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   CHECK(bounded->counters.cells_deferred == deferred);
 }
 
-TEST_CASE("label field: a budget that is not given grows with the window, three messages for four cells") {
+TEST_CASE("label field: a budget that is not given grows with the window, five messages for eight cells") {
   const int rows = GENERATE(12, 24);
   Settings settings = small_settings(rows, 24);
   settings.labels.max_messages.reset();
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   stages->infer();
-  CHECK(stages->counters.messages == 3u * static_cast<unsigned>(rows) * 24u / 4u);
+  CHECK(stages->counters.messages == 5u * static_cast<unsigned>(rows) * 24u / 8u);
 }
 
 int cells_without_label(const Stages<>& stages) {

@@ -44,7 +44,9 @@ void sweep(TiltLatency& latency, bool downward, float lag_s, test::Noise& noise,
     for (int point = 0; point < 20; ++point) {
       const float other = point % 5 == 0 ? outliers_m : 0.0f;
       latency.compare({-growth * missing_s + point_sd_m * static_cast<float>(noise.normal()) + other,
-                       point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
+                       point_sd_m * point_sd_m,
+                       0.0f,
+                       {growth}});
     }
     latency.end_line(rate);
   }
@@ -66,7 +68,7 @@ TEST_CASE("tilt latency: a line leaves open what the mean of its points does, an
   latency.begin_line(0.2f, rate_rad_s, next_reading());
   for (const float angle_rad : {1.2f, 1.175f}) latency.begin_line(angle_rad, -rate_rad_s, next_reading());
   const float growth = rate_rad_s * range_m;
-  for (int k = 0; k < points; ++k) latency.compare({0.0f, point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
+  for (int k = 0; k < points; ++k) latency.compare({0.0f, point_sd_m * point_sd_m, 0.0f, {growth}});
   latency.end_line(-rate_rad_s);
   const double of_mean_s = point_sd_m / growth / std::sqrt(points);
   const double of_line_s2 = of_mean_s * of_mean_s + 0.001 * 0.001 + std::pow(0.0005 / 0.5, 2), prior_s2 = 0.01 * 0.01;
@@ -108,9 +110,9 @@ struct Sweeps {
                             (lean_rad - latency.lean_rad()) * farther_m;
       for (int point = 0; point < 20 && turned; ++point) {
         const float by_chance_m = point_sd_m * static_cast<float>(noise.normal());
-        latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, growth, map_growth, farther_m});
+        latency.compare({above_m + by_chance_m, point_sd_m * point_sd_m, 0.0f, {growth, -map_growth}, farther_m});
       }
-      map_offset_s += latency.end_line(rate).earlier_s;
+      map_offset_s += latency.end_line(rate).later_s.last;
     }
     ground_before_s = map_offset_s;
     map_lag_s = lag_s;
@@ -148,6 +150,34 @@ TEST_CASE("tilt latency: on a drive many sweeps know it better than one, and wha
     CHECK(drive.latency.offset_s() == Approx(0.006f).margin(0.0025));
   }
   CHECK(drive.latency.sd_s() < of_two_s);
+}
+
+TEST_CASE("tilt latency: on a drive ground that both directions have seen is about as uncertain as that of the last") {
+  Sweeps drive(true);
+  for (int k = 0; k < 6; ++k) drive.sweep(0.006f);
+  const float of_last_m2 = drive.latency.height_variance_m2({0.0f, 1.0f, 0.0f});
+  CHECK(drive.latency.height_variance_m2({0.0f, 0.5f, -0.5f}) > 0.4f * of_last_m2);
+  CHECK(drive.latency.height_variance_m2({0.0f, 0.5f, 0.5f}) < 0.4f * of_last_m2);  // as if both were equally late
+}
+
+TEST_CASE("tilt latency: how fast the last two sweeps were, upward and downward ones each") {
+  TiltLatency latency = started();
+  const auto sweep_at = [&](float rate) {  // over 0.75 rad; the turn takes a line more to tell
+    const float first_rad = rate > 0.0f ? 0.2f : 0.95f, step_rad = 0.025f * rate;
+    for (int line = 0; static_cast<float>(line) * std::abs(step_rad) < 0.74f; ++line)
+      latency.begin_line(first_rad + step_rad * static_cast<float>(line), rate, next_reading());
+  };
+  sweep_at(1.0f);
+  CHECK(latency.sweep_rates().last_rad_s == -1.0f);  // as if there had been one
+  CHECK(latency.sweep_rates().this_share == 0.5f);
+  sweep_at(-3.0f);
+  CHECK(latency.sweep_rates().last_rad_s == Approx(1.0).margin(0.2));
+  CHECK(latency.sweep_rates().this_share == 0.5f);
+  sweep_at(1.0f);
+  CHECK(latency.sweep_rates().last_rad_s == Approx(-3.0).margin(0.5));
+  CHECK(latency.sweep_rates().this_share == Approx(0.25).margin(0.02));
+  sweep_at(-3.0f);
+  CHECK(latency.sweep_rates().this_share == Approx(0.75).margin(0.02));
 }
 
 TEST_CASE("tilt latency: on a drive it follows from sweep to sweep") {
@@ -268,7 +298,7 @@ TEST_CASE("tilt latency: what lies off the ground, each line by another height, 
   const float before_s = robot.latency.offset_s(), sd_s = robot.latency.sd_s();
   for (int line = 0; line < 200; ++line) {
     const float above_m = line % 2 == 0 ? 0.04f : -0.04f;
-    for (int point = 0; point < 20; ++point) robot.latency.compare({above_m, 1e-4f, 0.0f, 1.0f, -1.0f});
+    for (int point = 0; point < 20; ++point) robot.latency.compare({above_m, 1e-4f, 0.0f, {1.0f, 1.0f}});
     robot.latency.end_line(rate_rad_s);
   }
   CHECK(robot.latency.steps() == 0);
@@ -282,7 +312,7 @@ TEST_CASE("tilt latency: ground of which the slope is not known says little") {
   latency.begin_line(0.2f, rate_rad_s, next_reading());
   latency.begin_line(1.2f, -rate_rad_s, next_reading());
   const float rise_m = 0.05f * slope_sd;  // all points lie five centimetres beyond the ground's middle
-  for (int point = 0; point < 100; ++point) latency.compare({rise_m, 1e-4f, rise_m * rise_m, -0.05f, 0.0f});
+  for (int point = 0; point < 100; ++point) latency.compare({rise_m, 1e-4f, rise_m * rise_m, {-0.05f}});
   latency.end_line(-rate_rad_s);
   CHECK(latency.offset_s() == Approx(0.0f).margin(0.006));
   if (slope_sd > 0.0f) CHECK(latency.sd_s() > 0.009f);
@@ -297,7 +327,7 @@ TEST_CASE("tilt latency: another surface in a fifth of the points does not move 
 
 TEST_CASE("tilt latency: a line that disagrees by more than latency can explain is left out") {
   TiltLatency latency = started();
-  for (int point = 0; point < 100; ++point) latency.compare({0.03f, 1e-4f, 0.0f, 0.05f, 0.0f});  // 0.6 s
+  for (int point = 0; point < 100; ++point) latency.compare({0.03f, 1e-4f, 0.0f, {0.05f}});  // 0.6 s
   latency.end_line(rate_rad_s);
   CHECK(latency.offset_s() == 0.0f);
   CHECK(latency.sd_s() == Approx(0.01f));
@@ -313,7 +343,7 @@ TEST_CASE("tilt latency: it stays within five standard deviations, whatever is s
 
 TEST_CASE("tilt latency: a line whose growths cancel each other tells nothing") {
   TiltLatency latency = started();
-  for (const float growth : {1.0f, -1.0f}) latency.compare({0.01f * growth, 1e-4f, 0.0f, growth, 0.0f});
+  for (const float growth : {1.0f, -1.0f}) latency.compare({0.01f * growth, 1e-4f, 0.0f, {growth}});
   latency.end_line(rate_rad_s);
   CHECK(latency.offset_s() == 0.0f);
   CHECK(latency.sd_s() == Approx(0.01f));
@@ -325,7 +355,7 @@ TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
   sweep(latency, true, 0.005f, noise);
   const float before_s = latency.offset_s();
   for (const float growth : {190.0f, -190.0f, std::numeric_limits<float>::quiet_NaN()}) {
-    latency.compare({0.01f, point_sd_m * point_sd_m, 0.0f, growth, 0.0f});
+    latency.compare({0.01f, point_sd_m * point_sd_m, 0.0f, {growth}});
     latency.end_line(rate_rad_s);
     CHECK(latency.offset_s() == before_s);
   }

@@ -46,9 +46,9 @@ class MapComparison {
   struct Ground {
     float above_m, variance_m2;  ///< the point's height above it; variance of the ground's own height ...
     float rise_variance_m2;      ///< ... and by the plane's slope, from the cell's centroid to the point
-    float growth_m_s;
+    BySweep growth_m_s;          ///< of above_m, with the latency of each sweep
   };
-  bool ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const;
+  bool ground_at(const Point& p, const Place& place, const Place& of, const SweepRates& rates, Ground& out) const;
 
   const Dem<limits>& dem_;
   const PlaneMixture<limits>& mixture_;
@@ -85,15 +85,12 @@ void MapComparison<limits>::compare(const ProjectedLine<limits>& line, const Til
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside()) continue;
     const Place near = dem_.nearest_unmarked(place, reach);
-    if (!near.inside() || !ground_at(p, place, near, ground)) {
+    if (!near.inside() || !ground_at(p, place, near, latency.sweep_rates(), ground)) {
       offset.pass();
       continue;
     }
-    const float latency_m2 = dem_.mapped_before(dem_.slot(near.i, near.j))
-                                 ? latency.earlier_variance_m2(p.growth_m_s, ground.growth_m_s)
-                                 : latency.own_variance_m2(p.growth_m_s, ground.growth_m_s);
-    offset.compare(
-        {p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2, ground.rise_variance_m2 + latency_m2});
+    offset.compare({p.x_m, p.y_m, ground.above_m, p.variance_m2 + ground.variance_m2,
+                    ground.rise_variance_m2 + latency.height_variance_m2(ground.growth_m_s)});
   }
 }
 
@@ -105,18 +102,21 @@ void MapComparison<limits>::follow_latency(const ProjectedLine<limits>& line, co
     const Place place = dem_.place_at(p.place_x_m(), p.place_y_m());
     if (!place.inside()) continue;
     const int slot = dem_.slot(place.i, place.j);
-    if (!dem_.mapped_before(slot) || mixture_.covered(slot) || !ground_at(p, place, place, ground)) continue;
+    if (!dem_.mapped_before(slot) || mixture_.covered(slot) ||
+        !ground_at(p, place, place, latency.sweep_rates(), ground))
+      continue;
     const float blur_m2 = motion.still ? 0.0f : motion.blur_m2(p.x_m, p.y_m);  // the points of the line share it
     const float doubt_m2 = offset.doubt_m2(p.x_m, p.y_m);
     latency.compare({ground.above_m, p.variance_m2 - blur_m2 + ground.variance_m2,
-                     ground.rise_variance_m2 + blur_m2 + doubt_m2, p.growth_m_s, ground.growth_m_s,
+                     ground.rise_variance_m2 + blur_m2 + doubt_m2, ground.growth_m_s,
                      dem_.farther_m(slot, p.x_m, p.y_m)});
   }
 }
 
 /// From the cell's centroid along the slope of its plane; false if it has no plane, or more than one surface.
 template <Limits limits>
-bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const Place& of, Ground& out) const {
+bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const Place& of, const SweepRates& rates,
+                                      Ground& out) const {
   const int slot = dem_.slot(of.i, of.j);
   const Label label = field_.label(slot);
   if (label == no_label) return false;
@@ -128,7 +128,8 @@ bool MapComparison<limits>::ground_at(const Point& p, const Place& place, const 
   out.above_m = p.z_m - cell.height_m - (plane.slope_x * dx + plane.slope_y * dy);
   out.variance_m2 = dem_.prior().texture_m2 + dem_.height_variance_m2(cell);
   out.rise_variance_m2 = plane.rise_variance_m2(dx, dy);
-  out.growth_m_s = dem_.growth_m_s(slot);
+  const BySweep of_ground = dem_.growths_m_s(slot, rates);
+  out.growth_m_s = {p.growth_m_s - of_ground.now, -of_ground.last, -of_ground.before};
   return true;
 }
 

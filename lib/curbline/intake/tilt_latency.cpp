@@ -40,6 +40,7 @@ void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
 
 TiltLatency::Turn TiltLatency::begin_line(float angle_rad, float rate_rad_s, std::uint32_t reading) {
   const Turn turn = turns_.follow(angle_rad, rate_rad_s, reading);
+  follow_rate(turn, rate_rad_s);
   if (turn != Turn::none && !drives_) take_up_other_direction();
   if (turn != Turn::new_sweep) return turn;
   if (drives_) {
@@ -51,49 +52,66 @@ TiltLatency::Turn TiltLatency::begin_line(float angle_rad, float rate_rad_s, std
   return turn;
 }
 
+void TiltLatency::follow_rate(Turn turn, float rate_rad_s) {
+  if (turn == Turn::new_sweep) {
+    const float mean_rad_s = rate_sum_rad_s_ / lines_, before_rad_s = turned_ ? sweep_rates_.last_rad_s : -mean_rad_s;
+    const bool opposite = before_rad_s * mean_rad_s < 0.0f;  // damaged readings may say otherwise
+    sweep_rates_ = {mean_rad_s, opposite ? before_rad_s / (before_rad_s - mean_rad_s) : 0.5f};
+    rate_sum_rad_s_ = lines_ = 0.0f;
+  }
+  if (!turned_ && turn == Turn::none) sweep_rates_.last_rad_s = -rate_rad_s;
+  rate_sum_rad_s_ += rate_rad_s;
+  lines_ += 1.0f;
+}
+
 void TiltLatency::take_up_other_direction() {
-  const Known before{offset_s_, covariance_[now][now]};
+  const Known of_last{offset_s_, covariance_[now][now]};
   offset_s_ = other_.offset_s;
   covariance_[now][now] = other_.variance_s2;
-  other_ = before;
+  other_ = of_last;
 }
 
 /// The second sweep is as late as the first; after that the ground is the datum.
 void TiltLatency::turn_standing() {
   auto& p = covariance_;
   p[now][now] = turned_ ? p[now][now] + prior_variance_s2_ : prior_variance_s2_;
-  p[earlier][earlier] = p[now][earlier] = p[earlier][now] = turned_ ? 0.0f : prior_variance_s2_;
+  const float ground_s2 = turned_ ? 0.0f : prior_variance_s2_;
+  for (const State state : {last, before}) p[state][now] = p[now][state] = ground_s2;
+  for (const State state : {last, before}) p[state][last] = p[state][before] = ground_s2;
 }
 
-/// The last sweep's ground becomes the ground before; the new sweep differs from the constant at random.
+/// The sweeps become earlier ones; the new one differs from the constant at random.
 void TiltLatency::turn_driving() {
-  auto& p = covariance_;
-  p[earlier][earlier] = p[now][now];
-  p[constant][earlier] = p[earlier][constant] = p[constant][now];
+  constexpr std::array<State, states> was = {constant, constant, now, last};
+  const auto p = covariance_;
+  const auto by_lean = by_lean_s_rad_;
+  for (std::size_t a = 0; a < states; ++a) {
+    for (std::size_t b = 0; b < states; ++b) covariance_[a][b] = p[was[a]][was[b]];
+    by_lean_s_rad_[a] = by_lean[was[a]];
+  }
+  covariance_[now][now] += square(sweep_share) * prior_variance_s2_;
   other_.offset_s = offset_s_;
   offset_s_ = constant_s_;
-  p[now][now] = p[constant][constant] + square(sweep_share) * prior_variance_s2_;
-  p[constant][now] = p[now][constant] = p[constant][constant];
-  p[now][earlier] = p[earlier][now] = p[constant][earlier];
-  by_lean_s_rad_[earlier] = by_lean_s_rad_[now];
-  by_lean_s_rad_[now] = by_lean_s_rad_[constant];
   lean_.begin_sweep();
 }
 
 void TiltLatency::Sums::add(const Sighting& seen) {
-  const float weight = seen.growth_m_s / seen.variance_m2;
-  precision += weight * seen.growth_m_s;
-  mapped += weight * seen.map_growth_m_s;
+  const auto [g, l, b] = seen.growth_m_s;
+  const float weight = g / seen.variance_m2;
+  precision += weight * g;
+  last += weight * l;
+  before += weight * b;
   farther += weight * seen.farther_m;
   weighted -= weight * seen.above_m;
-  growth += seen.growth_m_s;
+  growth += g;
   common_m2 += seen.common_variance_m2;
   points += 1.0f;
 }
 
 void TiltLatency::Sums::add(const Sums& other) {
   precision += other.precision;
-  mapped += other.mapped;
+  last += other.last;
+  before += other.before;
   farther += other.farther;
   weighted += other.weighted;
   growth += other.growth;
@@ -103,17 +121,18 @@ void TiltLatency::Sums::add(const Sums& other) {
 
 /// A point that not even a step explains is of another surface: the face of a curb, a pedestrian.
 void TiltLatency::compare(const Sighting& seen) {
-  const float g = seen.growth_m_s, m = seen.map_growth_m_s;
+  const auto [g, l, b] = seen.growth_m_s;
   if (!(g > -most_growth_m_s && g < most_growth_m_s)) return;
-  const float by_lean_m = seen.farther_m - g * by_lean_s_rad_[now] + m * by_lean_s_rad_[earlier];
+  const float by_lean_m =
+      seen.farther_m - g * by_lean_s_rad_[now] - l * by_lean_s_rad_[last] - b * by_lean_s_rad_[before];
   const float variance_m2 =
-      seen.variance_m2 + seen.common_variance_m2 + earlier_variance_m2(g, m) + lean_.variance(by_lean_m);
+      seen.variance_m2 + seen.common_variance_m2 + height_variance_m2(seen.growth_m_s) + lean_.variance(by_lean_m);
   const float above_m2 = square(seen.above_m - lean_.mean(by_lean_m));
   if (above_m2 <= gate * variance_m2) {
     seen_.add(seen);
     return;
   }
-  const float by_step_m2 = prior_variance_s2_ * square(known(earlier) ? g : g - m);
+  const float by_step_m2 = prior_variance_s2_ * square(known(last) ? g : g + l + b);
   if (above_m2 <= gate * (variance_m2 + by_step_m2)) stepped_.add(seen);
 }
 
@@ -136,20 +155,20 @@ TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
 TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
   const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
   const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
-  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.mapped / sums.precision,
-          sums.farther / sums.precision};
+  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.last / sums.precision,
+          sums.before / sums.precision, sums.farther / sums.precision};
 }
 
-/// Kalman update by one observation of this sweep's offset less a multiple of the ground's; false if it disagrees with
-/// the estimate.
+/// Kalman update; false if the observation disagrees with the estimate.
 bool TiltLatency::update(const Observation& seen, Correction& correction) {
-  std::array<float, states> cross{};  // covariance of each state and the observation
-  for (std::size_t a = 0; a < states; ++a) cross[a] = covariance_[a][now] - seen.mapped_share * covariance_[a][earlier];
-  const float variance_s2 = cross[now] - seen.mapped_share * cross[earlier] + seen.variance_s2;
-  const float by_lean = by_lean_s_rad_[now] - seen.mapped_share * by_lean_s_rad_[earlier] - seen.farther_share;
+  States cross{};  // covariance of each state and the observation
+  for (std::size_t a = 0; a < states; ++a) cross[a] = seen.sum(covariance_[a]);
+  const float variance_s2 = seen.sum(cross) + seen.variance_s2;
+  const float by_lean = seen.sum(by_lean_s_rad_) - seen.farther_share;
   const float off_s2 = square(seen.missing_s - lean_.mean(by_lean));
   if (!(off_s2 <= gate * (variance_s2 + lean_.variance(by_lean)))) return false;  // NaN too
-  lean_.observe(by_lean, seen.missing_s, variance_s2);
+  // The ground is that of a line or two, which err as much as this one. The offsets are made to fit it all the same.
+  lean_.observe(by_lean, seen.missing_s, variance_s2 + seen.variance_s2);
   const float weight = seen.missing_s / variance_s2, before_s = offset_s_;
   constant_s_ = std::clamp(constant_s_ + cross[constant] * weight, -largest_offset_s_, largest_offset_s_);
   offset_s_ = std::clamp(offset_s_ + cross[now] * weight, -largest_offset_s_, largest_offset_s_);
@@ -160,10 +179,10 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
     const float least_s2 = least_share * prior_variance_s2_;
     if (open && covariance_[a][a] < least_s2) covariance_[a][a] = least_s2;
   }
-  correction = {offset_s_ - before_s, cross[earlier] * weight, 0.0f};
+  correction.later_s = {offset_s_ - before_s, cross[last] * weight, cross[before] * weight};
   take_off_lean(correction);
-  mended_s_ += correction.earlier_s;
-  other_.offset_s += correction.earlier_s;
+  mended_s_ += correction.later_s.last;
+  other_.offset_s += correction.later_s.last;
   return true;
 }
 
@@ -175,8 +194,8 @@ void TiltLatency::take_off_lean(Correction& correction) {
   const float before_s = offset_s_;
   constant_s_ = std::clamp(constant_s_ + bent_s(constant), -largest_offset_s_, largest_offset_s_);
   offset_s_ = std::clamp(offset_s_ + bent_s(now), -largest_offset_s_, largest_offset_s_);
-  correction.this_sweep_s += offset_s_ - before_s;
-  correction.earlier_s += bent_s(earlier);
+  BySweep& later_s = correction.later_s;
+  later_s = {later_s.now + offset_s_ - before_s, later_s.last + bent_s(last), later_s.before + bent_s(before)};
 }
 
 /// A line that disagrees with the estimate. A step moves every state that is not known exactly: ground that is the
@@ -192,7 +211,7 @@ void TiltLatency::suspect(const Observation& seen) {
   ++steps_;
   lean_.forget();
   std::array<bool, states> open{};
-  for (const State state : {constant, now, earlier}) open[state] = !known(state);
+  for (const State state : {constant, now, last, before}) open[state] = !known(state);
   for (std::size_t a = 0; a < states; ++a) {
     for (std::size_t b = 0; b < states; ++b) {
       if (open[a] && open[b]) covariance_[a][b] += prior_variance_s2_;
@@ -217,7 +236,7 @@ TiltLatency::Usual TiltLatency::usual() const {
     return {constant_s_, square_root(p[constant][constant] + std::max(0.0f, off_s2 - 0.5f * by_lot_s2))};
   }
   const float of_this_s2 = p[now][now] + by_lot_s2;
-  const float of_other_s2 = (known(earlier) ? other_.variance_s2 : p[now][now]) + by_lot_s2;
+  const float of_other_s2 = (known(last) ? other_.variance_s2 : p[now][now]) + by_lot_s2;
   const float share = of_other_s2 / (of_this_s2 + of_other_s2);
   return {share * offset_s_ + (1.0f - share) * other_.offset_s, square_root(share * of_this_s2)};
 }

@@ -1,18 +1,22 @@
 // The latency of the tilt readings, estimated on line: a servo's stamps lag or lead the beams by some milliseconds, and
 // not by the same amount in every sweep. Where a sweep sees ground that an earlier one has mapped, its heights deviate
 // from the map's by the errors of both offsets, each times the growth of a height with a second of latency. A Kalman
-// filter estimates the offset of this sweep and that of the ground mapped before; a correction of the latter corrects
-// the map (Correction).
+// filter estimates the offset of this sweep and those of the ground mapped before, by the last two; a correction of
+// these corrects the map (Correction).
 //   - For a robot that stands, the first two sweeps, of opposite direction, are taken to be equally late. Their
 //     ground is the datum of all later ones: each has its own offset, starting from that of the last sweep of its
 //     direction.
-//   - A robot that drives leaves its datum behind. The ground before is always that of the last sweep, and every
+//   - A robot that drives leaves its datum behind. The ground before is always that of the last two sweeps, and every
 //     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
 //     upward and downward sweeps would come to agree on tilted ground. The laser's lean (laser_lean.hpp) is estimated
 //     beside them.
-// A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the estimate:
-// after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning. Cost: 30
-// operations a point, and a pass over the window for each line that corrects the map.
+// In ground that both directions have seen, growths cancel, but errors do not: each sweep was fitted to the ground
+// before it, so that what one lacks the next lacks with the other sign, and both pitch the ground to one side. Hence
+// the ground's growth is kept apart by direction; points of older sweeps count as those of the last one of their
+// direction. (By the mean growth, about 0, pitched ground would be exact, and the next sweep would have to follow it,
+// or lean.) A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the
+// estimate: after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning.
+// Cost: 50 operations a point, and a pass over the window for each line that corrects the map.
 #pragma once
 
 #include <array>
@@ -22,6 +26,7 @@
 #include "curbline/intake/laser_lean.hpp"
 #include "curbline/intake/sweep_turns.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/sweeps.hpp"
 
 namespace curbline {
 
@@ -38,16 +43,16 @@ class TiltLatency {
     float above_m;             ///< its height above that ground
     float variance_m2;         ///< the independent part of its variance
     float common_variance_m2;  ///< the part shared with the line's other points: by the ground's slope
-    float growth_m_s;          ///< of its height with a second of latency
-    float map_growth_m_s;      ///< of the ground's
+    BySweep growth_m_s;        ///< of above_m with the latency of each sweep: the point's, and less the ground's
     float farther_m = 0.0f;    ///< how much farther ahead it lies than when that ground was seen
   };
   void compare(const Sighting& seen);
 
-  /// By how much the latency is greater than that with which heights were mapped, and the lean.
+  /// By how much latencies are greater than those with which heights were mapped, and the lean.
   struct Correction {
-    float this_sweep_s = 0.0f, earlier_s = 0.0f, lean_rad = 0.0f;
-    bool any() const { return this_sweep_s != 0.0f || earlier_s != 0.0f; }
+    BySweep later_s{};
+    float lean_rad = 0.0f;
+    bool any() const { return later_s.now != 0.0f || later_s.last != 0.0f; }
   };
   /// The line ends: its points together are one observation. Returns the correction of the map.
   Correction end_line(float tilt_rate_rad_s);
@@ -55,19 +60,19 @@ class TiltLatency {
   /// How many steps of the latency were found.
   std::uint32_t steps() const { return steps_; }
 
-  /// Sum of Correction::earlier_s over all lines.
+  /// Sum of Correction::later_s.last over all lines.
   float mended_s() const { return mended_s_; }
 
-  /// Variance that the latency's uncertainty adds to the height of a point of this sweep above ground of an earlier
-  /// one; and above ground of this sweep.
-  float earlier_variance_m2(float growth_m_s, float map_growth_m_s) const {
-    const float g = growth_m_s, m = map_growth_m_s;
-    return g * g * covariance_[now][now] - 2.0f * g * m * covariance_[now][earlier] +
-           m * m * covariance_[earlier][earlier];
+  /// Variance of a height, or a difference of two, that grows so with the latency of each sweep.
+  float height_variance_m2(const BySweep& growth_m_s) const {
+    const auto& p = covariance_;
+    const auto [g, l, b] = growth_m_s;
+    return g * (g * p[now][now] + 2.0f * (l * p[now][last] + b * p[now][before])) +
+           l * (l * p[last][last] + 2.0f * b * p[last][before]) + b * b * p[before][before];
   }
-  float own_variance_m2(float growth_m_s, float map_growth_m_s) const {
-    return (growth_m_s - map_growth_m_s) * (growth_m_s - map_growth_m_s) * covariance_[now][now];
-  }
+
+  /// How fast the last two sweeps were; those before the first one, as fast as it.
+  const SweepRates& sweep_rates() const { return sweep_rates_; }
 
   /// By how much the laser looks farther down than mount and poses say, as taken off: 0 until it is known. Of a mount
   /// in which a greater tilt looks up, less far down.
@@ -89,20 +94,24 @@ class TiltLatency {
   float latest_offset_s() const;
 
  private:
-  enum State : std::size_t { constant, now, earlier };  ///< offsets of: all sweeps, this one, the ground before
-  static constexpr std::size_t states = 3;
+  enum State : std::size_t { constant, now, last, before };  ///< offsets of: all sweeps, and BySweep
+  static constexpr std::size_t states = 4;
+  using States = std::array<float, states>;
   struct Known {
     float offset_s = 0.0f, variance_s2 = 0.0f;
   };
 
   struct Observation {
-    float missing_s;  ///< what this sweep's offset lacks, less mapped_share times what the ground's lacks
-    float variance_s2;
-    float mapped_share, farther_share;  ///< and this share times the lean
+    float missing_s, variance_s2;
+    float last_share,
+        before_share;     ///< missing_s is what this sweep's offset lacks, these shares of the last two's ...
+    float farther_share;  ///< ... less this share of the lean
+    /// The sum of what it consists of.
+    float sum(const States& of) const { return of[now] + last_share * of[last] + before_share * of[before]; }
   };
   /// Sightings of a line.
   struct Sums {
-    float precision = 0.0f, weighted = 0.0f, mapped = 0.0f, farther = 0.0f;
+    float precision = 0.0f, weighted = 0.0f, last = 0.0f, before = 0.0f, farther = 0.0f;
     float growth = 0.0f, common_m2 = 0.0f, points = 0.0f;
     void add(const Sighting& seen);
     void add(const Sums& other);
@@ -110,6 +119,7 @@ class TiltLatency {
 
   void turn_standing();
   void turn_driving();
+  void follow_rate(Turn turn, float rate_rad_s);
   void take_up_other_direction();
   Observation observation(const Sums& sums, float tilt_rate_rad_s) const;
   bool update(const Observation& seen, Correction& correction);
@@ -118,17 +128,19 @@ class TiltLatency {
   bool known(State state) const { return covariance_[state][state] == 0.0f; }
 
   bool drives_ = false;
-  bool turned_ = false;  ///< this sweep is not the first
+  bool turned_ = false;                         ///< this sweep is not the first
+  float rate_sum_rad_s_ = 0.0f, lines_ = 0.0f;  ///< sum over the lines of this sweep, and their number
+  SweepRates sweep_rates_{};
   SweepTurns turns_{};
   float prior_variance_s2_ = 0.0f;  ///< of an offset before any observation
   float time_variance_s2_ = 0.0f, angle_variance_ = 0.0f, height_variance_m2_ = 0.0f;
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong
 
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
-  std::array<std::array<float, states>, states> covariance_{};
+  std::array<States, states> covariance_{};
   LaserLean lean_{};
-  std::array<float, states> by_lean_s_rad_{};  ///< what each offset lacks for a radian of lean that is left
-  Known other_{};                              ///< of the last sweep, of the other direction; driving, only its offset
+  States by_lean_s_rad_{};  ///< what each offset lacks for a radian of lean that is left
+  Known other_{};           ///< of the last sweep, of the other direction; driving, only its offset
 
   Sums seen_{};              ///< of the current line: points that agree with the estimate ...
   Sums stepped_{};           ///< ... and those that would only after a step

@@ -144,7 +144,7 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   const int rows = dem.rows();
   const int first = first_row_ < rows ? first_row_ : 0;
   first_row_ = first + 1;
-  const int messages = settings_.max_messages.value_or(3 * rows * dem.cols() / 4);
+  const int messages = settings_.max_messages.value_or(5 * rows * dem.cols() / 8);
   int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {

@@ -21,6 +21,7 @@
 #include "curbline/point.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/sweeps.hpp"
 
 namespace curbline {
 
@@ -51,9 +52,8 @@ class Dem : public Window<limits> {
   /// makes earlier sweeps fade. O(1).
   bool add(const Point& point);
 
-  /// Corrects heights for a latency that is greater than assumed, by this_sweep_s for cells seen in this sweep, by
-  /// earlier_s for the others. Cells do not count as touched: neighbours move alike.
-  void delay(float this_sweep_s, float earlier_s);
+  /// Corrects heights for sweeps that are later than assumed. Cells do not count as touched: neighbours move alike.
+  void delay(const BySweep& later_s, const SweepRates& rates);
   /// Corrects them for a laser that looks farther down than assumed, by how far ahead cells lay when they were seen.
   void lean(float by_rad);
 
@@ -185,14 +185,23 @@ class Dem : public Window<limits> {
     return std::clamp(ahead_m, -farthest_ahead_m, farthest_ahead_m);
   }
   /// How much farther ahead than the points of this cell, in the mean, when they were seen.
-  float farther_m(int slot, float x_m, float y_m) const {
-    return ahead_m(x_m, y_m) - static_cast<float>(ahead_[slot]) * (1.0f / mean_scale);
-  }
+  float farther_m(int slot, float x_m, float y_m) const { return ahead_m(x_m, y_m) - mean_ahead_m(slot); }
   /// Has the laser moved? If not, all cells were seen from one place.
   bool seen_from_several() const { return last_seen_.from_several(); }
 
   /// Mean growth of its points' heights with the tilt's latency.
   float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / mean_scale); }
+  /// Its parts, by points of this sweep, of the last one, and of the one before. A point X ahead grows by -X times the
+  /// tilt's rate, so that mean growth and mean X tell how much of it has cancelled between the directions. Ground that
+  /// this sweep has seen, too, is divided as if what earlier ones saw had cancelled: seen for long, hardly any of it is
+  /// this sweep's.
+  BySweep growths_m_s(int slot, const SweepRates& rates) const {
+    const float all_m_s = growth_m_s(slot), uncancelled_m_s = -rates.last_rad_s * mean_ahead_m(slot);
+    const float this_way_m_s = rates.this_share * (all_m_s - uncancelled_m_s);
+    const bool of_earlier = mapped_before(slot) || all_m_s * uncancelled_m_s > 0.0f;
+    const float now_m_s = of_earlier ? 0.0f : all_m_s;
+    return {now_m_s, all_m_s - this_way_m_s, this_way_m_s - now_m_s};
+  }
 
  private:
   /// Share that the earlier sweeps of a cell with several surfaces keep when a new sweep sees it. After a few sweeps a
@@ -214,6 +223,7 @@ class Dem : public Window<limits> {
     const float beyond_m2 = cell.scatter_m2 - slope_m2 * cell.weight - noise_m2 * freedom;
     return beyond_m2 > 0.0f && square(beyond_m2) > 4.0f * 2.0f * freedom * square(noise_m2);
   }
+  float mean_ahead_m(int slot) const { return static_cast<float>(ahead_[slot]) * (1.0f / mean_scale); }
   static void follow_mean(std::int16_t& mean, float value, float share, float lot);
   void add_means(int s, const Point& point, float weight);
   void leave(int i, int j);
@@ -327,15 +337,16 @@ void Dem<limits>::follow_mean(std::int16_t& mean, float value, float share, floa
 }
 
 template <Limits limits>
-void Dem<limits>::delay(float this_sweep_s, float earlier_s) {
-  for_each_valid(
-      [&](int, int, int s) { cells_[s].height_m += growth_m_s(s) * (mapped_before(s) ? earlier_s : this_sweep_s); });
+void Dem<limits>::delay(const BySweep& later_s, const SweepRates& rates) {
+  for_each_valid([&](int, int, int s) {
+    const BySweep by = growths_m_s(s, rates);
+    cells_[s].height_m += by.now * later_s.now + by.last * later_s.last + by.before * later_s.before;
+  });
 }
 
 template <Limits limits>
 void Dem<limits>::lean(float by_rad) {
-  for_each_valid(
-      [&](int, int, int s) { cells_[s].height_m -= by_rad * static_cast<float>(ahead_[s]) * (1.0f / mean_scale); });
+  for_each_valid([&](int, int, int s) { cells_[s].height_m -= by_rad * mean_ahead_m(s); });
 }
 
 }  // namespace curbline
