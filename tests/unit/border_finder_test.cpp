@@ -648,6 +648,35 @@ TEST_CASE("border finder: readings spread unevenly in a cell still locate its ed
   }
 }
 
+//                     x ______x_________x___
+//                       x
+//                       x  face          x: where scan lines cross it, the same in all cells beside it
+//  ___x_________x_______x
+TEST_CASE("border finder: where few scan lines cross the cells beside a face it lies where it is seen") {
+  constexpr double edge = 1.26, step = 0.12;
+  for (const double line : {0.03, 0.09}) {
+    for (const bool turned : {false, true}) {
+      Stages<small_limits> stages(small_settings());
+      const auto add = [&](double across, double along, double height) {
+        const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
+        stages.dem.add({x, y, static_cast<float>(height), 1e-4f});
+      };
+      for (int j = 0; j < 24; ++j) {
+        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
+          const double along = 0.1 * j + at;
+          for (int i = 0; i < 24; ++i) add(0.1 * i + line, along, 0.1 * i + line < edge ? 0.0 : step);
+          for (const double height : {0.25, 0.5, 0.75}) add(edge, along, height * step);
+        }
+      }
+      stages.settle();
+      stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
+      REQUIRE(stages.tracer.curbs().size() == 1);
+      const Curb& curb = stages.tracer.curbs()[0];
+      CHECK((turned ? curb.y0_m : curb.x0_m) == Approx(edge).margin(0.012));
+    }
+  }
+}
+
 TEST_CASE("borders: a chain goes on to the next border within reach, of the same planes alone") {
   Stages<small_limits> stages(small_settings());
   Borders<small_limits> borders;

@@ -81,6 +81,7 @@ class PlaneGap {
   Sides sides() const {
     return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
   }
+  bool reaches_gap(int along) const;
   bool behind_obstacle(int along) const;
   auto belief(int along) const { return stages_.field.belief(stages_.dem, line_.row(along), line_.col(along)); }
 
@@ -155,7 +156,7 @@ auto PlaneGap<limits>::middle() const -> Middle {
       before += 0.5f;
     } else {
       const float far_share = line_.above_m(along, first) / step_m;
-      before += before_middle({far_share, 0.5f + line_.offset(cell)});
+      before += before_middle({far_share, reaches_gap(along) ? 0.5f : 0.5f + line_.offset(cell)});
       if (along != first_.along && along != second_.along)
         sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
@@ -164,6 +165,15 @@ auto PlaneGap<limits>::middle() const -> Middle {
   if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
   return {(static_cast<float>(first_.along) + before) * cell_m, open, empty, sloped};
+}
+
+/// Is it the cell on a side, and the gap's next cell seen? Then nothing unseen reaches into it: its centroid tells only
+/// where scan lines crossed it, an error that all rows share if lines run along the edge.
+template <Limits limits>
+bool PlaneGap<limits>::reaches_gap(int along) const {
+  if (length() == 1 || (along != first_.along && along != second_.along)) return false;
+  const int s = line_.slot(along == first_.along ? along + 1 : along - 1);
+  return line_.dem.cell(s).valid() && !stages_.mixture.covered(s);
 }
 
 /// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is
