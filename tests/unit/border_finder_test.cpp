@@ -76,8 +76,8 @@ TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no 
 }
 
 /// The only curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up. Between them
-/// there are points only if face_seen.
-Curb curb_of(double drop, double from, double to, bool face_seen) {
+/// there are points only if face_seen; `mixed` readings of both, half as high, lie 3 cm beyond `from`.
+Curb curb_of(double drop, double from, double to, bool face_seen, int mixed = 0) {
   auto stages = std::make_unique<Stages<small_limits>>(small_settings());
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {
@@ -88,6 +88,10 @@ Curb curb_of(double drop, double from, double to, bool face_seen) {
         stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(drop * (1 - fallen)), 1e-4f});
       }
     }
+  }
+  for (int reading = 0; reading < 24 * mixed; ++reading) {
+    const double y = (reading + 0.5) / (10.0 * mixed);
+    stages->dem.add({static_cast<float>(from + 0.03), static_cast<float>(y), static_cast<float>(0.5 * drop), 1e-4f});
   }
   stages->settle();
   stages->trace(0.0f, 1.2f);
@@ -107,6 +111,13 @@ TEST_CASE("border finder: a step down lies before its shadow, wherever cells par
     const Curb curb = curb_of(0.12, edge, edge + 0.12 * edge / 0.88, false);
     CHECK(curb.x0_m == Approx(edge).margin(0.012));
     CHECK(curb.face_width_m < 0.05f);
+  }
+}
+
+TEST_CASE("border finder: readings that mix the edge of a step down with what is behind it are no face") {
+  for (const double edge : {1.26, 2.02}) {
+    for (const int mixed : {2, 4})
+      CHECK(curb_of(0.12, edge, edge + 0.12 * edge / 0.88, false, mixed).x0_m == Approx(edge).margin(0.03));
   }
 }
 
@@ -652,28 +663,46 @@ TEST_CASE("border finder: readings spread unevenly in a cell still locate its ed
 //                       x
 //                       x  face          x: where scan lines cross it, the same in all cells beside it
 //  ___x_________x_______x
-TEST_CASE("border finder: where few scan lines cross the cells beside a face it lies where it is seen") {
-  constexpr double edge = 1.26, step = 0.12;
-  for (const double line : {0.03, 0.09}) {
-    for (const bool turned : {false, true}) {
-      Stages<small_limits> stages(small_settings());
-      const auto add = [&](double across, double along, double height) {
-        const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
-        stages.dem.add({x, y, static_cast<float>(height), 1e-4f});
-      };
-      for (int j = 0; j < 24; ++j) {
-        for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
-          const double along = 0.1 * j + at;
-          for (int i = 0; i < 24; ++i) add(0.1 * i + line, along, 0.1 * i + line < edge ? 0.0 : step);
-          for (const double height : {0.25, 0.5, 0.75}) add(edge, along, height * step);
-        }
+//       empty
+struct Face {
+  static constexpr double edge_m = 1.26, step_m = 0.12;
+  double line_m;  ///< where each cell is crossed
+  int empty;      ///< cells before the one with the face
+};
+
+/// Where the curb is found; `turned`, along x instead of y.
+double found_m(const Face& face, bool turned) {
+  Stages<small_limits> stages(small_settings());
+  const auto add = [&](double across, double along, double height) {
+    const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
+    stages.dem.add({x, y, static_cast<float>(height), 1e-4f});
+  };
+  for (int j = 0; j < 24; ++j) {
+    for (const double at : {0.01, 0.03, 0.05, 0.07, 0.09}) {
+      const double along = 0.1 * j + at;
+      for (int i = 0; i < 24; ++i) {
+        const double across = 0.1 * i + face.line_m;
+        if (i < 12 - face.empty || i >= 12) add(across, along, across < Face::edge_m ? 0.0 : Face::step_m);
       }
-      stages.settle();
-      stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
-      REQUIRE(stages.tracer.curbs().size() == 1);
-      const Curb& curb = stages.tracer.curbs()[0];
-      CHECK((turned ? curb.y0_m : curb.x0_m) == Approx(edge).margin(0.012));
+      for (const double share : {0.25, 0.5, 0.75}) add(Face::edge_m, along, share * Face::step_m);
     }
+  }
+  stages.settle();
+  stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
+  REQUIRE(stages.tracer.curbs().size() == 1);
+  const Curb& curb = stages.tracer.curbs()[0];
+  return static_cast<double>(turned ? curb.y0_m : curb.x0_m);
+}
+
+TEST_CASE("border finder: where few scan lines cross the cells beside a face it lies where it is seen") {
+  for (const double line_m : {0.03, 0.09}) {
+    for (const bool turned : {false, true}) CHECK(found_m({line_m, 0}, turned) == Approx(Face::edge_m).margin(0.012));
+  }
+}
+
+TEST_CASE("border finder: a face lies where it is seen, however many cells before it no scan line has met") {
+  for (const int empty : {1, 2, 3}) {
+    for (const bool turned : {false, true}) CHECK(found_m({0.03, empty}, turned) == Approx(Face::edge_m).margin(0.012));
   }
 }
 

@@ -81,7 +81,13 @@ class PlaneGap {
   Sides sides() const {
     return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
   }
-  bool reaches_gap(int along) const;
+  /// The cells of the gap that hold both heights of a step up, from the first one to the last; without any, the cells
+  /// on both sides.
+  struct Face {
+    int first, last;
+  };
+  Face seen_face(bool second_is_upper) const;
+  bool unseen_reaches(int along, const Face& face) const;
   bool behind_obstacle(int along) const;
   auto belief(int along) const { return stages_.field.belief(stages_.dem, line_.row(along), line_.col(along)); }
 
@@ -141,6 +147,7 @@ auto PlaneGap<limits>::middle() const -> Middle {
   const Plane& second = stages_.mixture.plane(second_.label);
   const float x_m = line_.x_m(halfway_m), y_m = line_.y_m(halfway_m);
   const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
+  const Face face = seen_face(step_m > 0.0f);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f, sloped = 0.0f;
   int empty = 0, last_empty = 0;
@@ -150,15 +157,15 @@ auto PlaneGap<limits>::middle() const -> Middle {
     if (!cell.valid()) {
       ++empty;
       last_empty = along;
-      before += 0.5f;
+      before += along < face.first ? 1.0f : along > face.last ? 0.0f : 0.5f;
     } else if (stages_.mixture.covered(s)) {
       covered += 1.0f;
       before += 0.5f;
     } else {
+      const bool inner = along != first_.along && along != second_.along;
       const float far_share = line_.above_m(along, first) / step_m;
-      before += before_middle({far_share, reaches_gap(along) ? 0.5f : 0.5f + line_.offset(cell)});
-      if (along != first_.along && along != second_.along)
-        sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
+      before += before_middle({far_share, 0.5f + (inner || unseen_reaches(along, face) ? line_.offset(cell) : 0.0f)});
+      if (inner) sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
   const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
@@ -167,13 +174,33 @@ auto PlaneGap<limits>::middle() const -> Middle {
   return {(static_cast<float>(first_.along) + before) * cell_m, open, empty, sloped};
 }
 
-/// Is it the cell on a side, and the gap's next cell seen? Then nothing unseen reaches into it: its centroid tells only
-/// where scan lines crossed it, an error that all rows share if lines run along the edge.
+/// Seen from its upper side, a step hides what is below its edge: empty cells there are no sign of missing scan lines.
 template <Limits limits>
-bool PlaneGap<limits>::reaches_gap(int along) const {
-  if (length() == 1 || (along != first_.along && along != second_.along)) return false;
+auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
+  const LabelledCell& lower = second_is_upper ? first_ : second_;
+  const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
+  const bool second_is_far = line_.away(from, lower.along) > 0;
+  if (second_is_far != second_is_upper) return {first_.along, second_.along};
+  const float slope_m2 = line_.dem.slope_m2(stages_.mixture.plane(first_.label));
+  Face face{first_.along, second_.along};
+  for (int along = first_.along + 1; along < second_.along; ++along) {
+    const int s = line_.slot(along);
+    const Cell& cell = line_.dem.cell(s);
+    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, slope_m2)) continue;
+    if (face.first == first_.along) face.first = along;
+    face.last = along;
+  }
+  return face;
+}
+
+/// May what is not seen of the gap reach into the cell on a side? If not, its centroid tells only where scan lines
+/// crossed it, an error that all rows share if lines run along the edge.
+template <Limits limits>
+bool PlaneGap<limits>::unseen_reaches(int along, const Face& face) const {
+  if (face.first > first_.along) return false;
+  if (length() == 1) return true;
   const int s = line_.slot(along == first_.along ? along + 1 : along - 1);
-  return line_.dem.cell(s).valid() && !stages_.mixture.covered(s);
+  return !line_.dem.cell(s).valid() || stages_.mixture.covered(s);
 }
 
 /// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is
