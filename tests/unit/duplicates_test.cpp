@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cstddef>
+#include <utility>
 
 namespace curbline {
 namespace {
@@ -43,6 +45,20 @@ TEST_CASE("duplicates: a step is told beside a longer crease, and of two far apa
   CHECK(shorter_is_told(CurbKind::ramp_edge, 0.05f));
   curbs[0].kind = CurbKind::crease;
   CHECK(shorter_is_told(CurbKind::step_up, 0.05f));  // two creases are both told
+}
+
+TEST_CASE("duplicates: a step with ground on both sides is told beside a longer brink, and alone beside one as long") {
+  for (const float brink_m : {1.05f, 2.0f}) {
+    std::array<Curb, 2> curbs{step(1.0f, 1.0f), step(1.05f, brink_m)};
+    curbs[1].far_label = no_label;
+    for (const std::size_t brink : {1u, 0u}) {
+      std::array<bool, 2> is_duplicate{};
+      find_duplicates(curbs, 0.1f, is_duplicate);
+      CHECK_FALSE(is_duplicate[1 - brink]);
+      CHECK(is_duplicate[brink] == (brink_m < 1.1f));
+      std::swap(curbs[0], curbs[1]);
+    }
+  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Steps that were found twice. Cells crossed by an edge may belong to a third plane, which makes a second step, of
-// another height, within a cell of the first. Of two steps along each other (all but a cell of the shorter one) the
-// longer stands for the edge, of equals the first; the other is a duplicate. A function without state.
+// Steps that were found twice: cells crossed by an edge may belong to a third plane, which makes a second step, of
+// another height, within a cell of the first. A step along another for all but a cell of its own length is a duplicate
+// if it is a brink and the other none, or if both or neither are and it is the shorter one (of equals the second).
 #pragma once
 
 #include <span>
