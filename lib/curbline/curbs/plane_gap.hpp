@@ -81,8 +81,8 @@ class PlaneGap {
   Sides sides() const {
     return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
   }
-  /// The cells of the gap that hold both heights of a step up, from the first one to the last; without any, the cells
-  /// on both sides.
+  /// The cells of the gap that hold both heights of a step up, and so lie on neither plane, from the first one to the
+  /// last; without any, the cells on both sides.
   struct Face {
     int first, last;
   };
@@ -181,12 +181,17 @@ auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
   const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
   const bool second_is_far = line_.away(from, lower.along) > 0;
   if (second_is_far != second_is_upper) return {first_.along, second_.along};
-  const float slope_m2 = line_.dem.slope_m2(stages_.mixture.plane(first_.label));
+  const Plane& first = stages_.mixture.plane(first_.label);
+  const Plane& second = stages_.mixture.plane(second_.label);
+  const auto lies_on = [&](int along, const Cell& cell, const Plane& plane) {
+    return stages_.lies_on(line_.row(along), line_.col(along), cell, plane);
+  };
   Face face{first_.along, second_.along};
   for (int along = first_.along + 1; along < second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
-    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, slope_m2)) continue;
+    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, line_.dem.slope_m2(first))) continue;
+    if (lies_on(along, cell, first) || lies_on(along, cell, second)) continue;
     if (face.first == first_.along) face.first = along;
     face.last = along;
   }
