@@ -41,14 +41,15 @@ def told_by_results(path):
         status, = struct.unpack_from("<I", record, 16)
         count_at = 20 + COUNTERS
         count, = struct.unpack_from("<I", record, count_at)
-        ahead = None
+        on_the_way = []
         for k in range(count):
             x0, y0, x1, y1, height, *_ = CURB.unpack_from(record, count_at + 4 + CURB.size * k)
             at = ahead_at(x0, y0, x1, y1)
-            if at is not None and (ahead is None or at < ahead[0]):
-                ahead = (at, height)
+            if at is not None:
+                on_the_way.append((height == 0.0, at, height))  # steps come before creases
         if status == 0:
-            yield count, None if ahead is None else ahead[1] * 1000
+            ahead = min(on_the_way, default=None)
+            yield count, None if ahead is None else ahead[2] * 1000
 
 
 def lines_told(path):
@@ -103,11 +104,11 @@ def check_silence(program, drive, folder):
 def main(build, program):
     folder = run_drives.results_folder(build, "template")
     folder.mkdir(parents=True, exist_ok=True)
-    drive, sent = drives.folder(build) / "street.drive", folder / "street.sent"
+    drive, sent = drives.folder(build) / "steps.drive", folder / "steps.sent"  # they lie across the robot's way
     run(program, drive, sent)
     check_silence(program, drive, folder)
     ours = list(told_by_frames(sent))
-    theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "street.results"))
+    theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "steps.results"))
     for line, (a, b) in enumerate(zip(ours, theirs)):
         if a[0] != b[0] or (a[1] is None) != (b[1] is None) or (a[1] is not None and abs(a[1] - b[1]) > 1):
             sys.exit(f"line {line}: the template's loop tells {a}, and the desk has {b}")
