@@ -177,6 +177,7 @@ auto PlaneGap<limits>::middle() const -> Middle {
 /// Seen from its upper side, a step hides what is below its edge: empty cells there are no sign of missing scan lines.
 template <Limits limits>
 auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
+  if (length() == 1) return {first_.along, second_.along};
   const LabelledCell& lower = second_is_upper ? first_ : second_;
   const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
   const bool second_is_far = line_.away(from, lower.along) > 0;
