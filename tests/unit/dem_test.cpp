@@ -442,19 +442,26 @@ TEST_CASE("dem: a latency found to be greater corrects heights, those of this sw
   CHECK(height_m(2) == Approx(0.1 - 0.010 * 0.5).margin(1e-5));
 }
 
+Map seen_two_metres_ahead() {
+  Map dem = make_map(moving());
+  dem.look_from(-1.95f, 0.05f);
+  return dem;
+}
+
+/// A point of the cell at (0.05, 0.05), by a tilt that turns at this rate.
+void add_ahead(Map& dem, float rate_rad_s) {
+  Point point = at(0.05, 0.05, 0.1);
+  point.growth_m_s = -rate_rad_s * 2.0f;
+  REQUIRE(dem.add(point));
+}
+
 TEST_CASE("dem: where growths of upward and downward sweeps cancel, each latency corrects by those of its direction") {
   constexpr float rate_rad_s = 0.5f;
-  Map dem = make_map(moving());
-  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
-  const auto add = [&](float rate) {
-    Point point = at(0.05, 0.05, 0.1);
-    point.growth_m_s = -rate * 2.0f;
-    REQUIRE(dem.add(point));
-  };
+  Map dem = seen_two_metres_ahead();
   const int slot = slot_at(dem, 0.05f, 0.05f);
-  for (int point = 0; point < 3; ++point) add(-rate_rad_s);
+  for (int point = 0; point < 3; ++point) add_ahead(dem, -rate_rad_s);
   dem.begin_sweep();
-  add(rate_rad_s);
+  add_ahead(dem, rate_rad_s);
   CHECK(dem.growth_m_s(slot) == Approx(0.5).margin(1e-3));
   CHECK(dem.growths_m_s(slot, {-rate_rad_s, 0.5f}).before == Approx(-0.25).margin(1e-3));
   CHECK(dem.growths_m_s(slot, {-rate_rad_s, 0.5f}).last == Approx(0.75).margin(1e-3));
@@ -467,15 +474,9 @@ TEST_CASE("dem: where growths of upward and downward sweeps cancel, each latency
 
 TEST_CASE("dem: growths are divided between upward and downward sweeps, however much faster one of them is") {
   constexpr float down_rad_s = 0.25f, up_rad_s = -0.75f;
-  Map dem = make_map(moving());
-  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
-  const auto add = [&](float rate) {
-    Point point = at(0.05, 0.05, 0.1);
-    point.growth_m_s = -rate * 2.0f;
-    REQUIRE(dem.add(point));
-  };
-  for (int point = 0; point < 3; ++point) add(down_rad_s);
-  add(up_rad_s);
+  Map dem = seen_two_metres_ahead();
+  for (int point = 0; point < 3; ++point) add_ahead(dem, down_rad_s);
+  add_ahead(dem, up_rad_s);
   const BySweep growth_m_s = dem.growths_m_s(slot_at(dem, 0.05f, 0.05f), {up_rad_s, 0.25f});
   CHECK(growth_m_s.now + growth_m_s.before == Approx(0.75 * -0.5).margin(1e-3));
   CHECK(growth_m_s.last == Approx(0.25 * 1.5).margin(1e-3));
@@ -483,16 +484,10 @@ TEST_CASE("dem: growths are divided between upward and downward sweeps, however 
 
 TEST_CASE("dem: of ground that was seen upward and downward for long, a new sweep's latency moves what it saw itself") {
   constexpr float rate_rad_s = 0.5f;
-  Map dem = make_map(moving());
-  dem.look_from(-1.95f, 0.05f);  // the cell lies 2 m ahead
-  const auto add = [&](float rate) {
-    Point point = at(0.05, 0.05, 0.1);
-    point.growth_m_s = -rate * 2.0f;
-    REQUIRE(dem.add(point));
-  };
-  for (const float rate : {1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f}) add(rate * rate_rad_s);
+  Map dem = seen_two_metres_ahead();
+  for (const float rate : {1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f, 1.0f, -1.0f}) add_ahead(dem, rate * rate_rad_s);
   dem.begin_sweep();
-  add(rate_rad_s);
+  add_ahead(dem, rate_rad_s);
   dem.delay({0.009f, 0.0f, 0.0f}, {-rate_rad_s, 0.5f});
   CHECK(dem.cell(slot_at(dem, 0.05f, 0.05f)).height_m == Approx(0.1 - 0.001).margin(1e-4));
 }
