@@ -116,10 +116,12 @@ class Borders {
 
   int walk(const Dem<limits>& dem, Index start, int reach);
   Index nearest(const Dem<limits>& dem, const Border& from, int reach) const;
+  /// Cells are numbered row by row, not by slot: nothing is kept until the window moves.
+  static int number(int i, int j) { return i * limits.cols + j; }
   /// A border beyond the window's ends belongs to the first or last cell.
-  int cell_of(const Dem<limits>& dem, const Border& border) const {
+  static int cell_of(const Dem<limits>& dem, const Border& border) {
     const auto within = [](float cells, int count) { return std::clamp(static_cast<int>(cells), 0, count - 1); };
-    return dem.slot(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
+    return number(within(border.x_m / dem.cell_x_m(), dem.rows()), within(border.y_m / dem.cell_y_m(), dem.cols()));
   }
 
   std::array<Border, limits.borders> border_;
@@ -169,7 +171,7 @@ auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int re
   float best_m2 = 1e30f;
   for (int i = first_i; i <= last_i; ++i) {
     for (int j = first_j; j <= last_j; ++j) {
-      for (Index b = in_cell_[dem.slot(i, j)]; b != none; b = border_[b].next_in_cell) {
+      for (Index b = in_cell_[number(i, j)]; b != none; b = border_[b].next_in_cell) {
         const Border& border = border_[b];
         if (border.chained || border.one != from.one || border.other != from.other) continue;
         const float dx = border.x_m - from.x_m, dy = border.y_m - from.y_m;
