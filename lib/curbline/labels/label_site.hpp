@@ -85,12 +85,12 @@ struct LabelSite {
 };
 
 inline void LabelSite::Candidates::consider(Label other, float other_doubt) {
-  std::size_t rank = label.size();
-  while (rank > 0 && (label[rank - 1] == no_label || other_doubt < doubt[rank - 1])) --rank;
-  if (rank == label.size()) return;
-  for (std::size_t c = label.size() - 1; c > rank; --c) {
-    label[c] = label[c - 1];
-    doubt[c] = doubt[c - 1];
+  const auto follows = [&](std::size_t c) { return label[c] == no_label || other_doubt < doubt[c]; };
+  std::size_t rank = label.size() - 1;
+  if (!follows(rank)) return;
+  for (; rank > 0 && follows(rank - 1); --rank) {
+    label[rank] = label[rank - 1];
+    doubt[rank] = doubt[rank - 1];
   }
   label[rank] = other;
   doubt[rank] = other_doubt;
