@@ -48,6 +48,8 @@ class CurbTracer {
     std::array<bool, limits.curbs> is_duplicate;
     int curbs;
     typename Surfaces<limits>::Work surfaces;
+
+    std::span<Curb> found() { return {curb.data(), static_cast<std::size_t>(curbs)}; }
   };
 
   /// Finds all curbs of the window, in working memory of the caller.
@@ -66,8 +68,8 @@ class CurbTracer {
 
   static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
   static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
-  static void leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work);
-  static void leave_out_duplicates(Work& work, float cell_m);
+  template <typename Out>
+  static void leave_out(Work& work, Out&& out);
   void keep_ids(Work& work, float near_m);
 
   CurbSettings settings_{};
@@ -88,28 +90,22 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   for (int b = 0; b < work.borders.size(); ++b) {
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
-  leave_out_behind_obstacles(maker, work);
-  const std::span<Curb> found(work.curb.data(), static_cast<std::size_t>(work.curbs));
-  work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, found));
+  leave_out(work, [&](std::size_t k) { return maker.behind_obstacle(work.curb[k]); });
+  work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, work.found()));
   const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
-  leave_out_duplicates(work, cell_m);
+  find_duplicates(work.found(), cell_m, work.is_duplicate);
+  leave_out(work, [&](std::size_t k) { return work.is_duplicate[k]; });
   keep_ids(work, 2.0f * cell_m);
 }
 
+/// Leaves out curb k if out(k).
 template <Limits limits>
-void CurbTracer<limits>::leave_out_behind_obstacles(const CurbMaker<limits>& maker, Work& work) {
-  const auto made = work.curb.begin();
-  const auto kept = std::remove_if(made, made + work.curbs, [&](const Curb& c) { return maker.behind_obstacle(c); });
-  work.curbs = static_cast<int>(kept - made);
-}
-
-template <Limits limits>
-void CurbTracer<limits>::leave_out_duplicates(Work& work, float cell_m) {
+template <typename Out>
+void CurbTracer<limits>::leave_out(Work& work, Out&& out) {
   const auto found = static_cast<std::size_t>(work.curbs);
-  find_duplicates(std::span(work.curb.data(), found), cell_m, work.is_duplicate);
   work.curbs = 0;
   for (std::size_t k = 0; k < found; ++k) {
-    if (!work.is_duplicate[k]) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
+    if (!out(k)) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
   }
 }
 
@@ -117,8 +113,8 @@ void CurbTracer<limits>::leave_out_duplicates(Work& work, float cell_m) {
 /// which they were found; the others get new numbers.
 template <Limits limits>
 void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
-  for (int n = 0; n < work.curbs; ++n) {
-    Curb& now = work.curb[static_cast<std::size_t>(n)];
+  const std::span<Curb> found = work.found();
+  for (Curb& now : found) {
     Curb* same = nullptr;
     float most_m = 0.0f;
     for (int o = 0; o < curbs_; ++o) {
@@ -134,19 +130,17 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
     now.id = same->id;
     same->id = 0;  // taken
   }
-  const std::span<const Curb> kept(work.curb.data(), static_cast<std::size_t>(work.curbs));
   const auto new_id = [&] {
     do {
       last_id_ = static_cast<std::uint16_t>(last_id_ == 65535 ? 1 : last_id_ + 1);
-    } while (std::any_of(kept.begin(), kept.end(), [this](const Curb& curb) { return curb.id == last_id_; }));
+    } while (std::ranges::find(found, last_id_, &Curb::id) != found.end());
     return last_id_;
   };
-  for (int n = 0; n < work.curbs; ++n) {
-    Curb& curb = curb_[static_cast<std::size_t>(n)];
-    curb = work.curb[static_cast<std::size_t>(n)];
-    if (curb.id == 0) curb.id = new_id();
-  }
   curbs_ = work.curbs;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    curb_[n] = found[n];
+    if (curb_[n].id == 0) curb_[n].id = new_id();
+  }
 }
 
 /// Splits the chain at its corners, halves straight parts until their height is even, and gives out the pieces in
