@@ -36,19 +36,17 @@ CellSet<limits> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curb
   CellSet<limits> crossed;
   const float cells_x = 1.0f / dem.cell_x_m(), cells_y = 1.0f / dem.cell_y_m();
   const auto near = [](float cells) { return cells > -1e6f && cells < 1e6f; };  // else the window has jumped away
-  const auto insert = [&](int i, int j) {
-    if (dem.contains(i, j)) crossed.insert(dem.slot(i, j));
-  };
   for (const Curb& curb : curbs) {
     if (!is_step(curb) || curb.far_label == no_label) continue;
-    const float i0 = (curb.x0_m - dem.origin_x_m()) * cells_x, j0 = (curb.y0_m - dem.origin_y_m()) * cells_y;
-    const float i1 = (curb.x1_m - dem.origin_x_m()) * cells_x, j1 = (curb.y1_m - dem.origin_y_m()) * cells_y;
-    if (!near(i0) || !near(j0) || !near(i1) || !near(j1)) continue;
-    if (square(i1 - i0) >= square(j1 - j0)) {
-      for_each_crossed(i0, j0, i1, j1, dem.rows(), insert);
-    } else {
-      for_each_crossed(j0, i0, j1, i1, dem.cols(), [&](int j, int i) { insert(i, j); });
-    }
+    float x0 = (curb.x0_m - dem.origin_x_m()) * cells_x, y0 = (curb.y0_m - dem.origin_y_m()) * cells_y;
+    float x1 = (curb.x1_m - dem.origin_x_m()) * cells_x, y1 = (curb.y1_m - dem.origin_y_m()) * cells_y;
+    if (!near(x0) || !near(y0) || !near(x1) || !near(y1)) continue;
+    const int axis = square(x1 - x0) >= square(y1 - y0) ? 0 : 1;
+    if (axis == 1) std::swap(x0, y0), std::swap(x1, y1);
+    for_each_crossed(x0, y0, x1, y1, dem.cells_along(axis), [&](int x, int y) {
+      const int i = axis == 0 ? x : y, j = axis == 0 ? y : x;
+      if (dem.contains(i, j)) crossed.insert(dem.slot(i, j));
+    });
   }
   return crossed;
 }
