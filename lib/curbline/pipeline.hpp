@@ -142,10 +142,6 @@ class Pipeline {
   int settle_labels(int passes);
   void follow_curbs();
   void follow_noise();
-  Eigen::Vector3f p_base_tilt() const {
-    const MountSettings& mount = settings_.tilt.T_base_tilt;
-    return {mount.x_m, mount.y_m, mount.z_m};
-  }
   Viewpoint view() const {
     Viewpoint view{p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
     view.divergence_rad = settings_.laser.beam_divergence_rad;
@@ -161,8 +157,6 @@ class Pipeline {
   bool planes_next_ = true;                               ///< which half of the inference is due
   bool unrefined_ = false;                                ///< planes were fitted since settle()
   Eigen::Vector3f p_map_tilt_ = Eigen::Vector3f::Zero();  ///< where the tilt axis is, of the last line
-  Eigen::Vector3f tilt_axis_ = Eigen::Vector3f::UnitY();  ///< in the base frame: a greater tilt lowers what lies to the
-                                                          ///< right of it, looking along it from above
   Counters counters_{};
   LineIntake<limits> line_intake_{};
   Dem<limits> dem_{};
@@ -185,9 +179,8 @@ Status Pipeline<limits>::init(const Settings& settings) {
   counters_ = Counters{};
   planes_next_ = true;
   unrefined_ = false;
-  p_map_tilt_ = p_base_tilt();
-  tilt_axis_ = make_transform(settings_.tilt.T_base_tilt).rotation.col(1);
   line_intake_.init(settings);
+  p_map_tilt_ = line_intake_.T_base_tilt().translation;
   dem_.init(settings.window, prior);
   segmentation_.init(settings.segmentation, prior);
   plane_mixture_.init(settings_.planes);
@@ -263,7 +256,8 @@ void Pipeline<limits>::take_point(const Point& point) {
 /// Moves the window with the robot; what leaves it leaves every stage.
 template <Limits limits>
 void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
-  p_map_tilt_ = T_map_base * p_base_tilt();
+  const Transform& T_base_tilt = line_intake_.T_base_tilt();
+  p_map_tilt_ = T_map_base * T_base_tilt.translation;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
   dem_.follow(T_map_base, [this](int slot) {
     segmentation_.forget(slot);
@@ -271,7 +265,8 @@ void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
-  const Eigen::Vector3f axis = rotated(T_map_base.rotation, tilt_axis_);
+  // Along y of the tilt frame: a greater tilt lowers what lies to the right of it, looking along it from above.
+  const Eigen::Vector3f axis = rotated(T_map_base.rotation, T_base_tilt.rotation.col(1));
   dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y(), {-axis.x(), axis.y()});
 }
 

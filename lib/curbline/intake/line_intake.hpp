@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "curbline/counters.hpp"
+#include "curbline/frames.hpp"
 #include "curbline/intake/line_projection.hpp"
 #include "curbline/intake/map_comparison.hpp"
 #include "curbline/intake/pose_offset.hpp"
@@ -56,6 +57,7 @@ class LineIntake {
   bool project(const ScanLine& line, const MapComparison<limits>& map, Dem<limits>& dem, Work& work,
                Counters& counters);
 
+  const Transform& T_base_tilt() const { return line_projection_.T_base_tilt(); }
   const TiltLatency& tilt_latency() const { return tilt_latency_; }
   const PoseOffset& pose_offset() const { return pose_offset_; }
 

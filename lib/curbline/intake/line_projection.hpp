@@ -89,6 +89,7 @@ class LineProjection {
   const LaserSettings& laser() const { return laser_; }
   const TiltSettings& tilt() const { return tilt_; }
   const PoseSettings& pose() const { return pose_; }
+  const Transform& T_base_tilt() const { return T_base_tilt_; }
 
  private:
   bool returned(float range_m) const {
@@ -123,8 +124,6 @@ class LineProjection {
   float lean_rad_ = 0.0f;
   std::int64_t beam_interval_ns_ = 0;
   Transform T_base_tilt_{}, T_tilt_laser_{};
-  Eigen::Vector3f laser_x_ = Eigen::Vector3f::UnitX(),
-                  laser_y_ = Eigen::Vector3f::UnitY();           ///< the laser's axes, in the tilt frame
   std::array<SinCos, limits.beams> bearing_;                     ///< of each beam
   std::array<std::uint32_t, (limits.beams + 31) / 32> alone_{};  ///< bits: beams that stood alone in the last line
 };
@@ -138,8 +137,6 @@ void LineProjection<limits>::init(const Settings& settings) {
   beam_interval_ns_ = laser_.beam_interval_ns();
   T_base_tilt_ = make_transform(tilt_.T_base_tilt);
   T_tilt_laser_ = make_transform(tilt_.T_tilt_laser);
-  laser_x_ = T_tilt_laser_.rotation.col(0);
-  laser_y_ = T_tilt_laser_.rotation.col(1);
   alone_.fill(0);
   for (int i = 0; i < laser_.beams; ++i) {
     bearing_[static_cast<std::size_t>(i)] =
@@ -155,6 +152,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
   const std::size_t beams = ranges_m.size();
   const float step = beams > 1 ? 1.0f / static_cast<float>(beams - 1) : 0.0f;
   const Eigen::Vector3f x_axis = gradient(motion, 0), y_axis = gradient(motion, 1), up_axis = gradient(motion, 2);
+  const Eigen::Vector3f laser_x = T_tilt_laser_.rotation.col(0), laser_y = T_tilt_laser_.rotation.col(1);
   const float three_sd_m2 = gate * laser_.range_sd_m * laser_.range_sd_m;
   NearSinCos near;
   std::uint32_t alone_before = 0;
@@ -174,7 +172,7 @@ void LineProjection<limits>::project(const ScanLine& line, TiltSnapshot<limits>&
     counters.beams_extrapolated += angle.source == TiltAngle::Source::extrapolated;
 
     const SinCos s = near.at(angle.angle_rad + lean_rad_);
-    const Eigen::Vector3f x = tilted(s, laser_x_), y = tilted(s, laser_y_);  // the laser's axes
+    const Eigen::Vector3f x = tilted(s, laser_x), y = tilted(s, laser_y);  // the laser's axes
     const SinCos& bearing = bearing_[i];
     const Eigen::Vector3f along = x * bearing.cos + y * bearing.sin;
     const Eigen::Vector3f p_axis = along * range + tilted(s, T_tilt_laser_.translation);
