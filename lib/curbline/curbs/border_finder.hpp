@@ -38,9 +38,10 @@ class BorderFinder {
 
   // Not inlined: twice inlined it would not fit the flash budget.
   template <typename Add>
-  [[gnu::noinline]] void cross(const Gap& gap, Add&& add) const;
+  [[gnu::noinline]] void cross(const Line& line, const LabelledCell& first, const LabelledCell& second,
+                               Add&& add) const;
   Border border_of(const Gap& gap) const;
-  Beside beside(const Line& line, float border_m, int toward, Label label) const;
+  Beside beside(const Gap& gap, float border_m, int toward, const typename Gap::Side& side) const;
 
   const CurbStages<limits>& stages_;
   const GroundEnds<limits> ends_;
@@ -55,7 +56,7 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
     if (const auto brink = ends_.brink(line, veil)) add(*brink);
   };
   const auto pass = [&](LabelledCell& before, const LabelledCell& here, const Line& line) {
-    if (before.label != no_label && before.label != here.label) cross({stages_, line, before, here}, add);
+    if (before.label != no_label && before.label != here.label) cross(line, before, here, add);
     before = here;
   };
   std::array<LabelledCell, limits.cols> before_in_col{};
@@ -74,21 +75,24 @@ void BorderFinder<limits>::find(Borders<limits>& borders, Counters& counters) co
   });
 }
 
-/// Calls add(border) for the border in a gap, unless that is too wide, and for the end of a face on either side of it.
+/// Calls add(border) for the border in the gap of two cells, unless that is too wide, and for the end of a face on
+/// either side of it.
 template <Limits limits>
 template <typename Add>
-void BorderFinder<limits>::cross(const Gap& gap, Add&& add) const {
+void BorderFinder<limits>::cross(const Line& line, const LabelledCell& first, const LabelledCell& second,
+                                 Add&& add) const {
+  const Gap gap(stages_, line, first, second);
   if (gap.length() > stages_.settings.link_reach && !gap.hidden()) return;
   add(border_of(gap));
-  if (const auto end = ends_.of_face(gap.line(), gap.first(), -1)) add(*end);
-  if (const auto end = ends_.of_face(gap.line(), gap.second(), 1)) add(*end);
+  if (const auto end = ends_.of_face(gap, gap.first(), -1)) add(*end);
+  if (const auto end = ends_.of_face(gap, gap.second(), 1)) add(*end);
 }
 
 template <Limits limits>
 auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first().label < gap.second().label;
-  const LabelledCell& one = rising ? gap.first() : gap.second();
-  const LabelledCell& other = rising ? gap.second() : gap.first();
+  const auto& one = rising ? gap.first() : gap.second();
+  const auto& other = rising ? gap.second() : gap.first();
   const auto [along_m, open, empty, sloped] = gap.middle();
   Border border = Borders<limits>::on(gap.line(), along_m);
   border.probability = 1.0f - gap.same_plane();
@@ -99,19 +103,19 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.sloped_cells = sloped;
   border.open = open;
   border.empty = static_cast<std::uint8_t>(std::min(empty, 255));
-  border.beside_one = beside(gap.line(), along_m, -border.sign, one.label);
-  border.beside_other = beside(gap.line(), along_m, border.sign, other.label);
+  border.beside_one = beside(gap, along_m, -border.sign, one);
+  border.beside_other = beside(gap, along_m, border.sign, other);
   return border;
 }
 
 /// By the two cells after the border's own, along the axis (toward 1) or against it (-1); one that holds more than the
 /// side's plane may be skipped.
 template <Limits limits>
-Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward, Label label) const {
-  const Plane& plane = stages_.mixture.plane(label);
-  const float slope_m2 = line.dem.slope_m2(plane);
+Beside BorderFinder<limits>::beside(const Gap& gap, float border_m, int toward, const typename Gap::Side& side) const {
+  const Line& line = gap.line();
+  const float slope_m2 = line.dem.slope_m2(side.plane);
   const auto lies_alone = [&](int along) {
-    return along >= 0 && along < line.cells() && stages_.holds_alone(line.slot(along), label, slope_m2);
+    return along >= 0 && along < line.cells() && stages_.holds_alone(line.slot(along), side.label, slope_m2);
   };
   const float border = border_m / line.pitch_m();
   int nearer = static_cast<int>(border) + toward;
@@ -119,7 +123,7 @@ Beside BorderFinder<limits>::beside(const Line& line, float border_m, int toward
   const int farther = nearer + toward;
   if (!lies_alone(nearer) || !lies_alone(farther)) return {};
   const float away = static_cast<float>(toward) * (static_cast<float>(nearer) + 0.5f - border);
-  return Beside::of(line.above_m(nearer, plane), line.above_m(farther, plane), away);
+  return Beside::of(line.above_m(nearer, side.plane), line.above_m(farther, side.plane), away);
 }
 
 }  // namespace curbline

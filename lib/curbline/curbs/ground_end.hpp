@@ -26,12 +26,13 @@ class GroundEnds {
  public:
   using Border = typename Borders<limits>::Border;
   using Line = CellLine<limits>;
+  using Gap = PlaneGap<limits>;
 
   explicit GroundEnds(const CurbStages<limits>& stages) : stages_(stages) {}
 
-  /// The end of the face that begins with a cell and goes on along the line (toward 1) or against it (-1); none if it
+  /// The end of the face that begins beside a gap and goes on along the line (toward 1) or against it (-1); none if it
   /// is no face, or does not end in the window.
-  std::optional<Border> of_face(const Line& line, const LabelledCell& first, int toward) const;
+  std::optional<Border> of_face(const Gap& gap, const typename Gap::Side& first, int toward) const;
   /// The brink before a cell, if that is the first of a veil, as the laser sees it. A cell of an obstacle counts as one
   /// of a veil if it is below the ground and was seen over the edge: what stands on the ground is not below it.
   std::optional<Border> brink(const Line& line, int first_of_veil) const;
@@ -48,11 +49,11 @@ class GroundEnds {
 /// The points of the last cell are taken to reach as far beyond their centroid as before it; the uncertainty is that of
 /// the next cell, in which nothing was seen.
 template <Limits limits>
-auto GroundEnds<limits>::of_face(const Line& line, const LabelledCell& first, int toward) const
+auto GroundEnds<limits>::of_face(const Gap& gap, const typename Gap::Side& first, int toward) const
     -> std::optional<Border> {
-  const Plane& plane = stages_.mixture.plane(first.label);
+  const Line& line = gap.line();
   const auto sign = static_cast<float>(toward);
-  const float rise = sign * (line.axis == 0 ? plane.slope_x : plane.slope_y);
+  const float rise = sign * (line.axis == 0 ? first.plane.slope_x : first.plane.slope_y);
   if (rise <= steepest_ramp || line.away(stages_.view, first.along) != toward) return std::nullopt;
 
   // Cells that the widest face touches, wherever it begins in one.
@@ -126,8 +127,8 @@ bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge
   if (std::abs(ground - edge.along) <= stages_.settings.link_reach) return false;
   const auto seen_over_edge = [&](int along) {
     const LabelledCell far{edge.label, static_cast<std::int16_t>(along)};
-    return along > edge.along ? PlaneGap<limits>(stages_, line, edge, far).hidden()
-                              : PlaneGap<limits>(stages_, line, far, edge).hidden();
+    const bool forward = along > edge.along;
+    return Gap(stages_, line, forward ? edge : far, forward ? far : edge).hidden();
   };
   return seen_over_edge(first_of_veil) && !seen_over_edge(ground);
 }

@@ -49,12 +49,19 @@ class PlaneGap {
   using Line = CellLine<limits>;
 
   PlaneGap(const CurbStages<limits>& stages, const Line& line, const LabelledCell& first, const LabelledCell& second)
-      : stages_(stages), line_(line), first_(first), second_(second) {}
+      : stages_(stages),
+        line_(line),
+        first_{first, stages.mixture.plane(first.label)},
+        second_{second, stages.mixture.plane(second.label)} {}
 
   const Line& line() const { return line_; }
-  /// The cells on both sides, the first before the second along the line.
-  const LabelledCell& first() const { return first_; }
-  const LabelledCell& second() const { return second_; }
+  /// A cell beside the gap, and its plane.
+  struct Side : LabelledCell {
+    const Plane& plane;
+  };
+  /// The first one is before the second along the line.
+  const Side& first() const { return first_; }
+  const Side& second() const { return second_; }
   /// Distance of the two, in cells.
   int length() const { return second_.along - first_.along; }
 
@@ -74,9 +81,9 @@ class PlaneGap {
  private:
   static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
 
-  /// The cells on both sides, as the laser sees them.
+  /// As the laser sees them.
   struct Sides {
-    const LabelledCell &near, &far;
+    const Side &near, &far;
   };
   Sides sides() const {
     return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
@@ -92,8 +99,8 @@ class PlaneGap {
   auto belief(int along) const { return stages_.field.belief(stages_.dem, line_.row(along), line_.col(along)); }
 
   const CurbStages<limits>& stages_;
-  const Line line_;
-  const LabelledCell first_, second_;
+  const Line& line_;
+  const Side first_, second_;
 };
 
 /// If so, no obstacle stands in it, and the ray to its far cell grazes the near plane's edge: where the ray meets that
@@ -104,9 +111,9 @@ bool PlaneGap<limits>::hidden() const {
   const auto [near, far] = sides();
   const int i = line_.row(far.along), j = line_.col(far.along), far_slot = dem.slot(i, j);
   const Viewpoint from = dem.seen_from(far_slot, stages_.view);
-  const Plane& plane = stages_.mixture.plane(near.label);
   const Cell& cell = dem.cell(far_slot);
-  const float above_m = from.z_m - plane.height_m(from.x_m, from.y_m), below_m = -dem.above_m(i, j, cell, plane);
+  const float above_m = from.z_m - near.plane.height_m(from.x_m, from.y_m);
+  const float below_m = -dem.above_m(i, j, cell, near.plane);
   if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
   for (int along = first_.along + 1; along < second_.along; ++along) {
     if (stages_.mixture.obstructed(dem, line_.slot(along))) return false;
@@ -143,10 +150,8 @@ auto PlaneGap<limits>::middle() const -> Middle {
   const float cell_m = line_.pitch_m();
   const auto cells = static_cast<float>(length() + 1);
   const float halfway_m = (static_cast<float>(first_.along) + 0.5f * cells) * cell_m;
-  const Plane& first = stages_.mixture.plane(first_.label);
-  const Plane& second = stages_.mixture.plane(second_.label);
   const float x_m = line_.x_m(halfway_m), y_m = line_.y_m(halfway_m);
-  const float step_m = second.height_m(x_m, y_m) - first.height_m(x_m, y_m);
+  const float step_m = second_.plane.height_m(x_m, y_m) - first_.plane.height_m(x_m, y_m);
   const Face face = seen_face(step_m > 0.0f);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f, sloped = 0.0f;
@@ -163,13 +168,14 @@ auto PlaneGap<limits>::middle() const -> Middle {
       before += 0.5f;
     } else {
       const bool inner = along != first_.along && along != second_.along;
-      const float far_share = line_.above_m(along, first) / step_m;
+      const float far_share = line_.above_m(along, first_.plane) / step_m;
       before += before_middle({far_share, 0.5f + (inner || unseen_reaches(along, face) ? line_.offset(cell) : 0.0f)});
       if (inner) sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
   const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
-  if (2.0f * step_m * step_m <= gate * (first.variance_m2 + second.variance_m2)) return {halfway_m, open, empty, 0.0f};
+  if (2.0f * step_m * step_m <= gate * (first_.plane.variance_m2 + second_.plane.variance_m2))
+    return {halfway_m, open, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
   return {(static_cast<float>(first_.along) + before) * cell_m, open, empty, sloped};
 }
@@ -178,12 +184,10 @@ auto PlaneGap<limits>::middle() const -> Middle {
 template <Limits limits>
 auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
   if (length() == 1) return {first_.along, second_.along};
-  const LabelledCell& lower = second_is_upper ? first_ : second_;
+  const Side& lower = second_is_upper ? first_ : second_;
   const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
   const bool second_is_far = line_.away(from, lower.along) > 0;
   if (second_is_far != second_is_upper) return {first_.along, second_.along};
-  const Plane& first = stages_.mixture.plane(first_.label);
-  const Plane& second = stages_.mixture.plane(second_.label);
   const auto lies_on = [&](int along, const Cell& cell, const Plane& plane) {
     return stages_.lies_on(line_.row(along), line_.col(along), cell, plane);
   };
@@ -191,8 +195,9 @@ auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
   for (int along = first_.along + 1; along < second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
-    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, line_.dem.slope_m2(first))) continue;
-    if (lies_on(along, cell, first) || lies_on(along, cell, second)) continue;
+    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, line_.dem.slope_m2(first_.plane)))
+      continue;
+    if (lies_on(along, cell, first_.plane) || lies_on(along, cell, second_.plane)) continue;
     if (face.first == first_.along) face.first = along;
     face.last = along;
   }
@@ -214,13 +219,10 @@ bool PlaneGap<limits>::unseen_reaches(int along, const Face& face) const {
 template <Limits limits>
 bool PlaneGap<limits>::behind_obstacle(int along) const {
   const Dem<limits>& dem = stages_.dem;
-  const Sides cells_beside = sides();
-  const Plane& near = stages_.mixture.plane(cells_beside.near.label);
-  const Plane& far = stages_.mixture.plane(cells_beside.far.label);
   const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
     return dem.above_m(i, j, cell, plane) > 0.0f && !stages_.lies_on(i, j, cell, plane);
   };
-  const Viewpoint from = dem.seen_from(line_.slot(cells_beside.far.along), stages_.view);
+  const Viewpoint from = dem.seen_from(line_.slot(sides().far.along), stages_.view);
   const float middle_m = (static_cast<float>(along) + 0.5f) * line_.pitch_m();
   const float x_m = line_.x_m(middle_m), y_m = line_.y_m(middle_m);
   const float dx = (from.x_m - x_m) / dem.cell_x_m(), dy = (from.y_m - y_m) / dem.cell_y_m();
@@ -234,7 +236,7 @@ bool PlaneGap<limits>::behind_obstacle(int along) const {
     const int s = dem.slot(i, j);
     const Cell& cell = dem.cell(s);
     if (!cell.valid() || stages_.bears_ground(s)) continue;
-    if (above(i, j, cell, near) && above(i, j, cell, far)) return true;
+    if (above(i, j, cell, first_.plane) && above(i, j, cell, second_.plane)) return true;
   }
   return false;
 }
