@@ -33,10 +33,7 @@ class CurbMaker {
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
-  /// Whether a part is at the first and last end of its chain.
-  struct Ends {
-    bool first, last;
-  };
+  using Ends = typename CurbPiece<limits>::Ends;
   /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
   std::optional<Curb> make(const Part& part, const Ends& at);
 
@@ -64,15 +61,13 @@ template <Limits limits>
 std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
   Piece piece(stages_, part);
   if (at.first) piece.go_on(stages_, Piece::End::first);
-  if (at.last) piece.go_on(stages_, Piece::End::second);
+  if (at.second) piece.go_on(stages_, Piece::End::second);
   StepHeight<limits> step(stages_, piece);
   Curb curb = without_height(piece);
   curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
-  step.refine(part, is_step(curb));
-  if (is_step(curb) && at.first) step.doubt_end(Piece::End::first);
-  if (is_step(curb) && at.last) step.doubt_end(Piece::End::second);
+  step.refine(part, at, is_step(curb));
   if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.

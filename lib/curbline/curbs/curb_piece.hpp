@@ -62,14 +62,23 @@ struct CurbPiece {
   float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
 
   enum class End : std::uint8_t { first, second };  ///< of its line
+  /// Whether those ends are also the ends of its chain.
+  struct Ends {
+    bool first, second;
+  };
+  /// From an end on: a cell along the line, and the way from the line to cells of `other`.
+  struct Beyond {
+    float x_m, y_m, step_x, step_y, other_x, other_y;
+    float cells;  ///< length of the piece
+  };
+  Beyond beyond(const Stages& stages, End end) const;
+  /// Label of the ground at a place; no_label where none is seen.
+  static Label ground_at(const Stages& stages, float x_m, float y_m);
   /// Continues the line beyond the end of its chain, where one side is hidden and so there are no borders: cell by
   /// cell, as long as one side is of its plane, the other of no other plane, and the height stays even; at most to the
   /// middle of the widest gap that a chain bridges, and by at most a quarter of the length, where the variance of its
   /// position has doubled.
   void go_on(const Stages& stages, End end);
-  /// Beyond an end of its chain another plane may take the place of a side's. By how much lower the step would be, in
-  /// square, if that plane reached the piece's middle; 0 if labels tell it from the side's.
-  [[gnu::noinline]] float lower_m2(const Stages& stages, End end, bool other_is_upper) const;
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
   /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
@@ -87,13 +96,6 @@ struct CurbPiece {
   void take_means(const Part& part);
   void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
   void take_widths(const Dem<limits>& dem, const Part& part);
-  static Label ground_at(const Stages& stages, float x_m, float y_m);
-  /// From an end on: a cell along the line, and the way from the line to cells of `other`.
-  struct Beyond {
-    float x_m, y_m, step_x, step_y, other_x, other_y;
-    float cells;  ///< length of the piece
-  };
-  Beyond beyond(const Stages& stages, End end) const;
 };
 
 template <Limits limits>
@@ -170,7 +172,6 @@ void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
   }
 }
 
-/// Label of the ground at a place; no_label where none is seen.
 template <Limits limits>
 Label CurbPiece<limits>::ground_at(const Stages& stages, float x_m, float y_m) {
   const Dem<limits>& dem = stages.dem;
@@ -210,29 +211,6 @@ void CurbPiece<limits>::go_on(const Stages& stages, End end) {
     end_x += from.step_x;
     end_y += from.step_y;
   }
-}
-
-/// Labels tell two planes apart that differ, over all borders, by three standard deviations.
-template <Limits limits>
-float CurbPiece<limits>::lower_m2(const Stages& stages, End end, bool other_is_upper) const {
-  const Beyond from = beyond(stages, end);
-  float most_m2 = 0.0f;
-  for (const bool other : {false, true}) {
-    const Plane& own = other ? planes.other : planes.one;
-    for (const float cells : {0.5f, 1.5f}) {
-      const float aside = other ? 1.0f : -1.0f;
-      const Label label = ground_at(stages, from.x_m + cells * from.step_x + aside * from.other_x,
-                                    from.y_m + cells * from.step_y + aside * from.other_y);
-      if (label == no_label || label == first.one || label == first.other) continue;
-      const Plane& third = stages.mixture.plane(label);
-      if (!third.alive()) continue;
-      const float rise_m = third.height_m(middle_x_m(), middle_y_m()) - own.height_m(middle_x_m(), middle_y_m());
-      const float lower_m = other == other_is_upper ? -rise_m : rise_m;
-      const bool alike = square(lower_m) * borders <= gate * (own.variance_m2 + third.variance_m2);
-      if (lower_m > 0.0f && alike) most_m2 = std::max(most_m2, square(lower_m));
-    }
-  }
-  return most_m2;
 }
 
 }  // namespace curbline

@@ -38,12 +38,9 @@ class StepHeight {
   /// For PlanePair::kind(), to decide whether it is a step.
   MeasuredStep measured() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
-  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
-  void refine(const Part& part, bool is_step);
-  /// Adds that of an end of a chain, beyond which the ground may be another plane's.
-  void doubt_end(typename Piece::End end) {
-    if (!piece_.one_sided()) variance_m2_ += (1.0f / 3) * piece_.lower_m2(stages_, end, other_is_upper());
-  }
+  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance. `at`: which of the piece's
+  /// ends are those of its chain.
+  void refine(const Part& part, const typename Piece::Ends& at, bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
@@ -68,6 +65,7 @@ class StepHeight {
   // Not inlined: three times inlined it takes 320 bytes of flash more.
   [[gnu::noinline]] Deviations deviations() const;
   float plane_variance_m2(const Plane& plane) const;
+  [[gnu::cold]] float lower_m2(typename Piece::End end) const;
   float ground_share_of_slope(const Viewpoint& view) const;
 
   const CurbStages<limits>& stages_;
@@ -85,7 +83,7 @@ MeasuredStep StepHeight<limits>::measured() const {
 }
 
 template <Limits limits>
-void StepHeight<limits>::refine(const Part& part, bool is_step) {
+void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at, bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
   float ground_share = 0.0f;  // of the step
@@ -106,6 +104,36 @@ void StepHeight<limits>::refine(const Part& part, bool is_step) {
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
+  // Beyond an end of the chain the ground may be another plane's.
+  if (!is_step || one_sided) return;
+  if (at.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
+  if (at.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
+}
+
+/// Beyond an end of the chain another plane may take the place of a side's: by how much lower the step would be, in
+/// square, if that plane reached the piece's middle; 0 if labels tell it from the side's, as they do where the two
+/// differ, over all borders, by three standard deviations.
+template <Limits limits>
+float StepHeight<limits>::lower_m2(typename Piece::End end) const {
+  const auto from = piece_.beyond(stages_, end);
+  const float middle_x_m = piece_.middle_x_m(), middle_y_m = piece_.middle_y_m();
+  float most_m2 = 0.0f;
+  for (const bool other : {false, true}) {
+    const Plane& own = other ? piece_.planes.other : piece_.planes.one;
+    for (const float cells : {0.5f, 1.5f}) {
+      const float aside = other ? 1.0f : -1.0f;
+      const Label label = Piece::ground_at(stages_, from.x_m + cells * from.step_x + aside * from.other_x,
+                                           from.y_m + cells * from.step_y + aside * from.other_y);
+      if (label == no_label || label == piece_.first.one || label == piece_.first.other) continue;
+      const Plane& third = stages_.mixture.plane(label);
+      if (!third.alive()) continue;
+      const float rise_m = third.height_m(middle_x_m, middle_y_m) - own.height_m(middle_x_m, middle_y_m);
+      const float lower_m = other == other_is_upper() ? -rise_m : rise_m;
+      const bool alike = square(lower_m) * piece_.borders <= gate * (own.variance_m2 + third.variance_m2);
+      if (lower_m > 0.0f && alike) most_m2 = std::max(most_m2, square(lower_m));
+    }
+  }
+  return most_m2;
 }
 
 /// Where slopes differ, the height is as uncertain as the piece's position. If the localisation steps, both sides may
