@@ -190,7 +190,7 @@ class Dem : public Window<limits> {
   bool seen_from_several() const { return last_seen_.from_several(); }
 
   /// Mean growth of its points' heights with the tilt's latency.
-  float growth_m_s(int slot) const { return static_cast<float>(growth_[slot]) * (1.0f / mean_scale); }
+  float growth_m_s(int slot) const { return mean_of(growth_[slot]); }
   /// Its parts, by points of this sweep, of the last one, and of the one before. A point X ahead grows by -X times the
   /// tilt's rate, so that mean growth and mean X tell how much of it has cancelled between the directions. Ground that
   /// this sweep has seen, too, is divided as if what earlier ones saw had cancelled: seen for long, hardly any of it is
@@ -223,8 +223,9 @@ class Dem : public Window<limits> {
     const float beyond_m2 = cell.scatter_m2 - slope_m2 * cell.weight - noise_m2 * freedom;
     return beyond_m2 > 0.0f && square(beyond_m2) > 4.0f * 2.0f * freedom * square(noise_m2);
   }
-  float mean_ahead_m(int slot) const { return static_cast<float>(ahead_[slot]) * (1.0f / mean_scale); }
-  static void follow_mean(std::int16_t& mean, float value, float share, float lot);
+  static float mean_of(std::int16_t held) { return static_cast<float>(held) * (1.0f / mean_scale); }
+  float mean_ahead_m(int slot) const { return mean_of(ahead_[slot]); }
+  static void follow_mean(std::int16_t& held, float value, float share, float lot);
   void add_means(int s, const Point& point, float weight);
   void leave(int i, int j);
 
@@ -329,11 +330,9 @@ void Dem<limits>::add_means(int s, const Point& point, float weight) {
 }
 
 template <Limits limits>
-void Dem<limits>::follow_mean(std::int16_t& mean, float value, float share, float lot) {
-  const float before = static_cast<float>(mean);
-  const float now = before + share * (value * mean_scale - before);
-  if (now > -most_mean * mean_scale && now < most_mean * mean_scale)
-    mean = static_cast<std::int16_t>(floor_to_int(now + lot));
+void Dem<limits>::follow_mean(std::int16_t& held, float value, float share, float lot) {
+  const float before = mean_of(held), now = before + share * (value - before);
+  if (now > -most_mean && now < most_mean) held = static_cast<std::int16_t>(floor_to_int(now * mean_scale + lot));
 }
 
 template <Limits limits>
