@@ -101,11 +101,10 @@ class TiltLatency {
     float offset_s = 0.0f, variance_s2 = 0.0f;
   };
 
+  /// missing_s is what this sweep's offset lacks and shares of the last two's, less a share of the lean.
   struct Observation {
     float missing_s, variance_s2;
-    float last_share,
-        before_share;     ///< missing_s is what this sweep's offset lacks, these shares of the last two's ...
-    float farther_share;  ///< ... less this share of the lean
+    float last_share, before_share, farther_share;
     /// The sum of what it consists of.
     float sum(const States& of) const { return of[now] + last_share * of[last] + before_share * of[before]; }
   };
