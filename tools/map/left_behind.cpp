@@ -11,7 +11,7 @@ namespace {
 double ahead(double side, double before, double now, double inward) {
   if (now == before) return side;
   const bool leaves = (now > before) == (inward > 0);
-  return leaves ? now + inward : std::copysign(std::numeric_limits<double>::infinity(), -inward);
+  return leaves ? now + inward : std::copysign(LeftBehind::infinite, -inward);
 }
 
 }  // namespace

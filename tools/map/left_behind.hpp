@@ -12,6 +12,8 @@ namespace curbline::tools {
 
 class LeftBehind {
  public:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
   explicit LeftBehind(const Grid& grid) : grid_(grid) {}
 
   /// The window is now there. Keeps the parts that it has left of the curbs last found. The pipeline may still have
@@ -21,8 +23,6 @@ class LeftBehind {
   const std::vector<MapCurb>& curbs() const { return curbs_; }
 
  private:
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
-
   void keep(const MapCurb& curb, double from, double to);
 
   Grid grid_;
