@@ -57,12 +57,10 @@ struct CleanFit {
   /// A clean cell with so many points. step_m: height of the step beside it or across it, 0 if there is none.
   void add(PlaneMoments cell, float cell_points, float step_m) {
     if (!steep) cell.zz = 0.0f;
-    if (!(step_m > 0.0f)) {
-      told = told || cell_points >= telling_points;
-      return inner.add_cell(cell);
-    }
-    beside.add_cell(cell);
+    const bool by_step = step_m > 0.0f;
+    (by_step ? beside : inner).add_cell(cell);
     bias_m2 += cell.weight * step_m * step_m * (1.0f / 12);
+    told = told || (!by_step && cell_points >= telling_points);
   }
   /// Replaces the plane of the region, if there are enough clean cells, or one beyond doubt. The region's variance
   /// stays, for labels. Cells beside a step are off by anything up to half of it, all alike: one observation together.
