@@ -221,18 +221,16 @@ void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& 
     message = LabelSite::message(site.probabilities(by_others), coupling_[distance]);
   }
   auto& sent = site.sent[direction];
+  std::array<int, label_candidates> change;
   bool news = false;
   for (std::size_t c = 0; c < message.size(); ++c) {
-    const int change = message[c] - sent[c];
-    news |= change > no_news || change < -no_news;
+    change[c] = message[c] - sent[c];
+    news |= change[c] > no_news || change[c] < -no_news;
   }
   if (!news) return;
   auto& flag = flag_[from.neighbour[direction]];
-  if ((flag & visited) != 0) {
-    auto& sum = visits.visit[visits.index[from.neighbour[direction]]].heard;
-    other.hear(site.label, sent, -1, sum);
-    other.hear(site.label, message, 1, sum);
-  }
+  if ((flag & visited) != 0)
+    other.hear(site.label, change, 1, visits.visit[visits.index[from.neighbour[direction]]].heard);
   flag |= heard;
   sent = message;
 }

@@ -69,8 +69,10 @@ struct LabelSite {
   void set_labels(const Labels& labels);
   /// The same, with node potentials from their doubts; flat ones where the ground is covered.
   void set_candidates(const Candidates& candidates, bool covered);
-  /// Adds a neighbour's message to `sum` (sign 1), or subtracts it (-1), for the candidates that both have.
-  void hear(const Labels& others, const Message& said, int sign, Heard& sum) const;
+  /// Adds a neighbour's message, or its change, to `sum` (sign 1), or subtracts it (-1), for the candidates that both
+  /// have.
+  template <typename Said>
+  void hear(const Labels& others, const Said& said, int sign, Heard& sum) const;
   /// The belief, from node potentials and messages heard.
   Probabilities probabilities(const Heard& heard) const;
   /// The message of a cell with belief p, without the receiver's own message; normalised to 1 for labels that it rules
@@ -120,7 +122,8 @@ inline void LabelSite::set_labels(const Labels& labels) {
   label = labels;
 }
 
-inline void LabelSite::hear(const Labels& others, const Message& said, int sign, Heard& sum) const {
+template <typename Said>
+void LabelSite::hear(const Labels& others, const Said& said, int sign, Heard& sum) const {
   for (std::size_t c = 0; c < label.size() && label[c] != no_label; ++c) {
     for (std::size_t o = 0; o < others.size(); ++o) {
       if (label[c] == others[o]) sum[c] = static_cast<std::int16_t>(sum[c] + sign * said[o]);
