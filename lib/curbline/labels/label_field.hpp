@@ -75,9 +75,9 @@ class LabelField {
                                        Visits& visits, Counters& counters);
   void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
   bool wants_to_send(const PlaneMixture<limits>& mixture, int slot) const;
-  Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
+  [[gnu::noinline]] Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
   void hear_neighbours(Visit& visit) const;
-  [[gnu::noinline]] Visit heard_by(const Dem<limits>& dem, int i, int j, int slot) const;
+  Visit heard_by(const Dem<limits>& dem, int i, int j, int slot) const;
   void send(const Visit& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
   int follow_belief(const Visit& visit);
