@@ -324,7 +324,7 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
   plane_mixture_.forget_changes();
   if (plane_mixture_.mode() == PlaneUpdate::responsibilities) {
     plane_mixture_.maximise(dem_, [this](int i, int j, auto&& visit) {
-      const auto belief = label_field_.belief(dem_, i, j);
+      const auto belief = label_field_.belief(dem_, dem_.slot(i, j));
       for (std::size_t c = 0; c < belief.label.size(); ++c) {
         if (belief.label[c] != no_label) visit(belief.label[c], belief.probability[c]);
       }
@@ -346,7 +346,7 @@ void Pipeline<limits>::follow_noise() {
 
 template <Limits limits>
 float Pipeline<limits>::label_probability(int i, int j) const {
-  return ready_ ? label_field_.belief(dem_, i, j).of(label(i, j)) : 0.0f;
+  return ready_ ? label_field_.belief(dem_, dem_.slot(i, j)).of(label(i, j)) : 0.0f;
 }
 
 }  // namespace curbline

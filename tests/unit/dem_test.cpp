@@ -401,7 +401,7 @@ TEST_CASE("dem: a link goes on to the ground behind what stands on it, within re
     int links = 0;
     for_each_link(dem, 4, [&](const Link& link) {
       const bool along_x = link.axis == 0;
-      if ((along_x ? link.i : link.j) != 5 || (along_x ? link.j : link.i) != 2) return;
+      if (link.from != (along_x ? dem.slot(5, 2) : dem.slot(2, 5))) return;
       ++links;
       const auto posts = [&](int slot) { return dem.steep(dem.cell(slot)); };
       CHECK(beyond_obstacle(dem, link, 4, posts) == (along_x ? dem.slot(9, 2) : dem.slot(2, 9)));

@@ -118,7 +118,7 @@ double worst_difference(const Tiny& tiny) {
   const auto truth = marginals_by_enumeration(tiny);
   double worst = 0.0;
   for (std::size_t s = 0; s < tiny.sites.size(); ++s) {
-    const auto belief = tiny.field.belief(tiny.dem, tiny.sites[s].i, tiny.sites[s].j);
+    const auto belief = tiny.field.belief(tiny.dem, tiny.dem.slot(tiny.sites[s].i, tiny.sites[s].j));
     double sum = 0.0;
     for (std::size_t c = 0; c < belief.label.size(); ++c) {
       REQUIRE(belief.label[c] < 3);
@@ -199,7 +199,7 @@ TEST_CASE("label field: a height far from all planes is still given the nearest,
   const auto tiny = std::make_unique<Tiny>(std::vector<Site>{{5, 17, 1e6}, {6, 17, -1e6}});
   tiny->update();
   for (const int i : {5, 6}) {
-    const auto belief = tiny->field.belief(tiny->dem, i, 17);
+    const auto belief = tiny->field.belief(tiny->dem, tiny->dem.slot(i, 17));
     for (const float p : belief.probability) CHECK(is_finite(p));
     CHECK(tiny->field.label(tiny->dem.slot(i, 17)) != no_label);
   }
@@ -278,7 +278,7 @@ TEST_CASE("label field: with fewer planes than candidates the others are none, w
   const auto stages = std::make_unique<Stages<>>(small_settings());
   fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
   stages->infer(true);
-  const auto belief = stages->field.belief(stages->dem, 3, 3);
+  const auto belief = stages->field.belief(stages->dem, stages->dem.slot(3, 3));
   CHECK(belief.label[2] == no_label);
   CHECK(belief.probability[2] == 0.0f);
   CHECK(belief.probability[0] > 0.99f);
@@ -378,9 +378,10 @@ TEST_CASE("label field: on a map that no longer changes the kept field comes to 
   float worst = 0.0f;
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {
-      if (!whole->dem.cell(whole->dem.slot(i, j)).valid()) continue;
+      const int slot = whole->dem.slot(i, j);
+      if (!whole->dem.cell(slot).valid()) continue;
       CHECK(lines->label_at(i, j) == whole->label_at(i, j));
-      const auto a = lines->field.belief(lines->dem, i, j), b = whole->field.belief(whole->dem, i, j);
+      const auto a = lines->field.belief(lines->dem, slot), b = whole->field.belief(whole->dem, slot);
       for (std::size_t c = 0; c < a.label.size(); ++c)
         worst = std::max(worst, std::abs(a.probability[c] - b.probability[c]));
     }

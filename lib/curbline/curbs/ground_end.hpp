@@ -136,9 +136,10 @@ bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge
 /// A border behind the last cell of a plane, with no_label for `other`, on the unseen side.
 template <Limits limits>
 auto GroundEnds<limits>::border_behind(const Line& line, int last, int toward, float along_m) const -> Border {
-  const Label label = stages_.field.label(line.slot(last));
+  const int slot = line.slot(last);
+  const Label label = stages_.field.label(slot);
   Border border = Borders<limits>::on(line, along_m);
-  border.probability = stages_.field.belief(line.dem, line.row(last), line.col(last)).of(label);
+  border.probability = stages_.field.belief(line.dem, slot).of(label);
   border.one = label;
   border.other = no_label;
   border.sign = static_cast<std::int8_t>(toward);

@@ -96,7 +96,6 @@ class PlaneGap {
   Face seen_face(bool second_is_upper) const;
   bool unseen_reaches(int along, const Face& face) const;
   bool behind_obstacle(int along) const;
-  auto belief(int along) const { return stages_.field.belief(stages_.dem, line_.row(along), line_.col(along)); }
 
   const CurbStages<limits>& stages_;
   const Line& line_;
@@ -131,7 +130,8 @@ bool PlaneGap<limits>::hidden() const {
 
 template <Limits limits>
 float PlaneGap<limits>::same_plane() const {
-  const auto p = belief(first_.along), q = belief(second_.along);
+  const auto p = stages_.field.belief(stages_.dem, line_.slot(first_.along));
+  const auto q = stages_.field.belief(stages_.dem, line_.slot(second_.along));
   float same = 0.0f;
   for (std::size_t m = 0; m < p.label.size(); ++m) {
     for (std::size_t n = 0; n < q.label.size(); ++n) {

@@ -62,7 +62,8 @@ class LabelField {
 
   Label label(int slot) const { return sites_[slot].best; }
   /// Posterior of a valid cell. O(label_candidates^2).
-  Belief belief(const Dem<limits>& dem, int i, int j) const;
+  // Not inlined: asked for few cells, in several places.
+  [[gnu::noinline]] Belief belief(const Dem<limits>& dem, int slot) const;
 
  private:
   static constexpr int no_news = 2;  ///< a message that changes by no more, 1/16 nat, is not sent again
@@ -75,9 +76,9 @@ class LabelField {
                                        Visits& visits, Counters& counters);
   void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
   bool wants_to_send(const PlaneMixture<limits>& mixture, int slot) const;
-  [[gnu::noinline]] Visit visit_to(const Dem<limits>& dem, int i, int j, int slot) const;
+  [[gnu::noinline]] Visit visit_to(const Dem<limits>& dem, int slot) const;
   void hear_neighbours(Visit& visit) const;
-  Visit heard_by(const Dem<limits>& dem, int i, int j, int slot) const;
+  Visit heard_by(const Dem<limits>& dem, int slot) const;
   void send(const Visit& from, std::size_t direction, Visits& visits);
   int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
   int follow_belief(const Visit& visit);
@@ -133,7 +134,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
     if ((flag_[s] & visited) == 0) return;
     sites_[s].set_candidates(near_by_.candidates(dem, mixture, i, j, dem.cell(s)), mixture.covered(s));
     visits.index[s] = static_cast<Slot<limits>>(visits.size);
-    visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, i, j, s);
+    visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, s);
   });
 }
 
@@ -176,13 +177,13 @@ bool LabelField<limits>::wants_to_send(const PlaneMixture<limits>& mixture, int 
 }
 
 template <Limits limits>
-auto LabelField<limits>::visit_to(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
+auto LabelField<limits>::visit_to(const Dem<limits>& dem, int slot) const -> Visit {
   Visit visit;
   visit.slot = static_cast<Slot<limits>>(slot);
   for (std::size_t d = 0; d < directions; ++d) {
     const int g = dem.next_valid(slot, static_cast<int>(d), settings_.link_reach);
     visit.distance[d] = static_cast<std::uint8_t>(g);
-    visit.neighbour[d] = static_cast<Slot<limits>>(g == 0 ? slot : dem.slot(i + g * step_i[d], j + g * step_j[d]));
+    visit.neighbour[d] = static_cast<Slot<limits>>(dem.slot_beside(slot, static_cast<int>(d), g));
   }
   return visit;
 }
@@ -201,8 +202,8 @@ void LabelField<limits>::hear_neighbours(Visit& visit) const {
 
 /// A visit of a cell with what it has heard, for cells that are not in the list of visits.
 template <Limits limits>
-auto LabelField<limits>::heard_by(const Dem<limits>& dem, int i, int j, int slot) const -> Visit {
-  Visit here = visit_to(dem, i, j, slot);
+auto LabelField<limits>::heard_by(const Dem<limits>& dem, int slot) const -> Visit {
+  Visit here = visit_to(dem, slot);
   hear_neighbours(here);
   return here;
 }
@@ -240,8 +241,8 @@ template <Limits limits>
 int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
   int changed = 0;
   for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
-  dem.for_each_valid([&](int i, int j, int s) {
-    if ((flag_[s] & (visited | heard)) == heard) changed += follow_belief(heard_by(dem, i, j, s));
+  dem.for_each_valid([&](int, int, int s) {
+    if ((flag_[s] & (visited | heard)) == heard) changed += follow_belief(heard_by(dem, s));
   });
   return changed;
 }
@@ -257,10 +258,9 @@ int LabelField<limits>::follow_belief(const Visit& visit) {
 }
 
 template <Limits limits>
-auto LabelField<limits>::belief(const Dem<limits>& dem, int i, int j) const -> Belief {
-  const int slot = dem.slot(i, j);
+auto LabelField<limits>::belief(const Dem<limits>& dem, int slot) const -> Belief {
   const LabelSite& site = sites_[slot];
-  return {site.label, site.probabilities(heard_by(dem, i, j, slot).heard)};
+  return {site.label, site.probabilities(heard_by(dem, slot).heard)};
 }
 
 }  // namespace curbline

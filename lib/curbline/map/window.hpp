@@ -54,6 +54,14 @@ class Window {
     if (j >= settings_.cols) j -= settings_.cols;
     return i * limits.cols + j;
   }
+  /// Slot of the cell that lies so many cells from another in a direction (grid.hpp), both in the window.
+  int slot_beside(int slot, int direction, int distance) const {
+    const bool along_x = direction < 2;
+    const int step = along_x ? limits.cols : 1, end = cells_along(along_x ? 0 : 1) * step;
+    const int way = (direction % 2 == 0 ? distance : -distance) * step;
+    const int there = (along_x ? slot : slot % limits.cols) + way;
+    return slot + way + (there < 0 ? end : there >= end ? -end : 0);
+  }
   /// Slot of the k-th cell of a block, row by row, from that of its first: no block lies across the ends of the ring.
   static int slot_in_block(int first, int k) { return first + k / block_side * limits.cols + k % block_side; }
   /// A place in the window.

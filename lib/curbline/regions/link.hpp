@@ -12,16 +12,15 @@ struct Link {
   int from, to;  ///< slots
   int distance;  ///< in cells
   int axis;      ///< 0: along +x, 1: along +y
-  int i, j;      ///< row and column of `from`
 };
 
 /// Calls visit(const Link&) for each pair of neighbours along +x and +y that are at most `reach` cells apart.
 template <Limits limits, typename Visit>
 void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
-  dem.for_each_valid([&](int i, int j, int s) {
+  dem.for_each_valid([&](int, int, int s) {
     for (int axis = 0; axis < 2; ++axis) {
       const int g = dem.next_valid(s, direction(axis, 1), reach);
-      if (g > 0) visit(Link{s, axis == 0 ? dem.slot(i + g, j) : dem.slot(i, j + g), g, axis, i, j});
+      if (g > 0) visit(Link{s, dem.slot_beside(s, direction(axis, 1), g), g, axis});
     }
   });
 }
@@ -30,12 +29,13 @@ void for_each_link(const Dem<limits>& dem, int reach, Visit&& visit) {
 /// `reach` cells of link.from.
 template <Limits limits, typename Obstructed>
 int beyond_obstacle(const Dem<limits>& dem, const Link& link, int reach, Obstructed&& obstructed) {
+  const int along = direction(link.axis, 1);
   int slot = link.to;
   for (int distance = link.distance; obstructed(slot);) {
-    const int g = dem.next_valid(slot, direction(link.axis, 1), reach - distance);
+    const int g = dem.next_valid(slot, along, reach - distance);
     if (g == 0) return -1;
     distance += g;
-    slot = link.axis == 0 ? dem.slot(link.i + distance, link.j) : dem.slot(link.i, link.j + distance);
+    slot = dem.slot_beside(slot, along, g);
   }
   return slot;
 }
