@@ -4,6 +4,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <set>
@@ -367,6 +368,23 @@ TEST_CASE("dem: after any drive the distances to neighbours are those that a sea
         REQUIRE(dem.next_valid(s, d, max_link_reach) == (found ? g : 0));
       }
     });
+  }
+}
+
+TEST_CASE("dem: the slot of a neighbour follows from the cell's own and the distance, wherever the ring begins") {
+  WindowSettings window = moving();
+  if (GENERATE(false, true)) window.rows = 8, window.cols = 12;
+  Map dem = make_map(window);
+  for (const float x_m : {0.0f, 0.4f, -1.2f}) {
+    dem.follow(standing_at(x_m, 2.0f * x_m), [](int) {});
+    for (int i = 0; i < dem.rows(); ++i) {
+      for (int a = 0; a < dem.rows(); ++a)
+        CHECK(dem.slot_beside(dem.slot(i, 2), direction(0, a < i ? -1 : 1), std::abs(a - i)) == dem.slot(a, 2));
+    }
+    for (int j = 0; j < dem.cols(); ++j) {
+      for (int b = 0; b < dem.cols(); ++b)
+        CHECK(dem.slot_beside(dem.slot(3, j), direction(1, b < j ? -1 : 1), std::abs(b - j)) == dem.slot(3, b));
+    }
   }
 }
 

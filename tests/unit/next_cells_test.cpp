@@ -31,7 +31,7 @@ TEST_CASE("next cells: a cell that comes between two is the next of both, and on
   CHECK(next.distance(near, plus_x, max_link_reach) == 3);
   CHECK(next.distance(far, minus_x, max_link_reach) == 3);
   CHECK(next.distance(near, plus_y, max_link_reach) == 0);
-  next.leave(window, 5, 1);
+  next.leave(window, window.slot(5, 1));
   CHECK(next.distance(near, plus_x, max_link_reach) == 0);  // what lies beyond leaves with it
   CHECK(next.distance(far, minus_x, max_link_reach) == 0);
 }

@@ -227,7 +227,7 @@ class Dem : public Window<limits> {
   float mean_ahead_m(int slot) const { return mean_of(ahead_[slot]); }
   static void follow_mean(std::int16_t& held, float value, float share, float lot);
   void add_means(int s, const Point& point, float weight);
-  void leave(int i, int j);
+  void leave(int s);
 
   PlanePrior prior_{};
   float common_m2_ = 0.0f;
@@ -270,16 +270,15 @@ void Dem<limits>::follow(const Transform& T_map_base, Left&& left) {
       const int s = this->slot(i, j);
       if (!cell(s).valid()) continue;
       left(s);
-      leave(i, j);
+      leave(s);
     }
   }
   this->move(to);
 }
 
 template <Limits limits>
-void Dem<limits>::leave(int i, int j) {
-  const int s = this->slot(i, j);
-  next_.leave(*this, i, j);
+void Dem<limits>::leave(int s) {
+  next_.leave(*this, s);
   cells_[s] = Cell{};
   growth_[s] = ahead_[s] = 0;
   last_seen_.touch(s);

@@ -28,7 +28,7 @@ class NextCells {
   void enter(const Window<limits>& window, int i, int j, Valid&& valid);
   /// Call when a cell leaves. What lies beyond it leaves too, so that its neighbours have none in that direction any
   /// more.
-  void leave(const Window<limits>& window, int i, int j);
+  void leave(const Window<limits>& window, int slot);
 
  private:
   void set(int slot, int direction, int distance) {
@@ -60,14 +60,12 @@ void NextCells<limits>::enter(const Window<limits>& window, int i, int j, Valid&
 }
 
 template <Limits limits>
-void NextCells<limits>::leave(const Window<limits>& window, int i, int j) {
-  const int s = window.slot(i, j);
+void NextCells<limits>::leave(const Window<limits>& window, int slot) {
   for (int d = 0; d < directions; ++d) {
-    const auto n = static_cast<std::size_t>(d);
-    const int g = distance(s, d, max_link_reach);
-    if (g > 0) set(window.slot(i + g * step_i[n], j + g * step_j[n]), d ^ 1, 0);
+    const int g = distance(slot, d, max_link_reach);
+    if (g > 0) set(window.slot_beside(slot, d, g), d ^ 1, 0);
   }
-  distances_[s] = 0;
+  distances_[slot] = 0;
 }
 
 }  // namespace curbline

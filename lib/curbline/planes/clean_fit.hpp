@@ -161,8 +161,7 @@ float CleanFits<limits>::step_beside_m(int i, int j, int s, bool crossed) const 
   float most_m = 0.0f;
   for (std::size_t k = 0; k < (crossed ? 4u : 2u); ++k) {
     if (dem_.next_valid(s, beside[k], 1) == 0) continue;
-    const auto d = static_cast<std::size_t>(beside[k]);
-    const int next = dem_.slot(i + step_i[d], j + step_j[d]);
+    const int next = dem_.slot_beside(s, beside[k], 1);
     const Label other = region_label_[next];
     if (other == region_label_[s]) continue;
     const float step_m = dem_.cell(next).height_m - cell.height_m;
