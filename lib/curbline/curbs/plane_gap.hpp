@@ -48,6 +48,7 @@ class PlaneGap {
  public:
   using Line = CellLine<limits>;
 
+  /// `line` must outlive it.
   PlaneGap(const CurbStages<limits>& stages, const Line& line, const LabelledCell& first, const LabelledCell& second)
       : stages_(stages),
         line_(line),

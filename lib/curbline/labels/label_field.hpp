@@ -76,6 +76,7 @@ class LabelField {
                                        Visits& visits, Counters& counters);
   void flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Counters& counters);
   bool wants_to_send(const PlaneMixture<limits>& mixture, int slot) const;
+  // Not inlined: for cells that send and for those that only hear it would take 300 bytes of flash more.
   [[gnu::noinline]] Visit visit_to(const Dem<limits>& dem, int slot) const;
   void hear_neighbours(Visit& visit) const;
   Visit heard_by(const Dem<limits>& dem, int slot) const;
