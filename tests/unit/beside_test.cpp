@@ -7,38 +7,45 @@
 namespace curbline {
 namespace {
 
-TEST_CASE("beside: the ground beside a border is carried on to it, and found by three deviations") {
+TEST_CASE("beside: the ground beside a border is carried on to it") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
-  Beside beside = Beside::of(-0.010f, -0.004f, 1.0f);  // falls by 6 mm a cell
+  const Beside beside = Beside::of(-0.010f, -0.004f, 1.0f);  // falls by 6 mm a cell
+  CHECK(deviation(beside, plane, -1.0f, 0.0f, 0.0f).away_m == Approx(0.016));
+  CHECK(deviation(beside, plane, -1.0f, 0.5f, 0.0f).away_m == Approx(0.019));
+  Beside two = beside;
+  two.add(beside);
+  CHECK(deviation(two, plane, -1.0f, 0.0f, 0.0f).away_m == Approx(0.016));
+}
+
+TEST_CASE("beside: of a deviation from the plane the share is the ground's that chance does not explain") {
+  Plane plane;
+  plane.fit_variance_m2 = 1e-6f;  // of the two cells, with weights 2 and -1: 5e-6
+  Beside beside = Beside::of(0.010f, 0.010f, 1.0f);
   float common_m2 = 0.0f;
-  const auto away = [&](float further_cells) { return deviation(beside, plane, -1.0f, further_cells, common_m2); };
-  CHECK(away(0.0f).found());
-  CHECK(away(0.0f).away_m == Approx(0.016));
-  CHECK(away(0.0f).height_variance_m2() == Approx(5e-6));  // two cells with weights 2 and -1
-  CHECK(away(0.5f).away_m == Approx(0.019));
+  const auto seen = [&] { return deviation(beside, plane, 1.0f, 0.0f, common_m2); };
+  CHECK(seen().share() == Approx(0.95));  // 1 - 5e-6 / 1e-4
+  CHECK(static_cast<double>(seen().height_variance_m2()) == Approx(0.95 * 5e-6).margin(0.0));
   beside.add(beside);
-  CHECK(away(0.0f).away_m == Approx(0.016));
-  CHECK(away(0.0f).height_variance_m2() == Approx(2.5e-6));
-  common_m2 = 5e-5f;  // 0.016^2 is 5.1 times as much
-  CHECK(away(0.0f).found());
-  common_m2 = 5.3e-5f;
-  CHECK_FALSE(away(0.0f).found());
-  common_m2 = 0.0f;
-  plane.fit_variance_m2 = 1.2e-5f;  // 0.016^2 is 8.5 times the variance
-  CHECK_FALSE(away(0.0f).found());
-  CHECK_FALSE(deviation(Beside{}, plane, -1.0f, 0.0f, 0.0f).found());
+  CHECK(seen().share() == Approx(0.975));  // of two borders half the variance
+  common_m2 = 4e-5f;                       // half of it is common to both
+  CHECK(seen().share() == Approx(0.775));
+  CHECK(static_cast<double>(seen().height_variance_m2()) == Approx(0.775 * 2.25e-5).margin(0.0));
+  common_m2 = 2e-4f;
+  CHECK(seen().share() == 0.0f);
+  CHECK(deviation(beside, plane, -1.0f, 0.0f, 0.0f).share() == 0.0f);  // toward the other side: it may be mixed
+  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).share() == 0.0f);
 }
 
 TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cells' deviation beyond chance") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) { return deviation(Beside::of(off_m, off_m, 1.0f), plane, 1.0f, 0.0f, 0.0f); };
-  CHECK(lying(0.006f).height_variance_m2() == Approx((3.6e-5 - 4 * 5e-6) / 12));
+  CHECK(lying(-0.006f).height_variance_m2() == Approx((3.6e-5 - 4 * 5e-6) / 12));
   CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side is below
   CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 4 * 5e-6) / 12));
   CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
-  CHECK(lying(0.004f).height_variance_m2() == 0.0f);  // within chance
+  CHECK(lying(-0.004f).height_variance_m2() == 0.0f);  // within chance
   CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
 }
@@ -55,8 +62,7 @@ TEST_CASE("beside: cells along a border tell how far the ground lies off its pla
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const GroundAlong ground = GroundAlong::of(4.0f, 4.0f, 4 * 0.002f, plane);
-  // Their own, and that of a mixture of 0 and 2 mm in the ratio 1 : 3, 0.75 mm^2, over the share.
-  CHECK(static_cast<double>(ground.variance_m2) == Approx(0.25e-6 + 0.75e-6 / 0.75).margin(0.0));
+  CHECK(static_cast<double>(ground.variance_m2) == Approx(0.25e-6).margin(0.0));
   CHECK(ground.share == Approx(0.75));  // 1 - 4 * 0.25 / 2^2
   CHECK(ground.above_m == Approx(0.0015));
   CHECK(GroundAlong::of(4.0f, 4.0f, -4 * 0.002f, plane).above_m == Approx(-0.0015));

@@ -441,8 +441,16 @@ auto with_gutter(double depth_m) {
   return [depth_m](double x, double) { return x > 1.4 ? 0.12 : x > 1.2 ? -depth_m * (x - 1.2) / 0.2 : 0.0; };
 }
 
+/// The same window, when it has turned out that its cells share no noise but 1 mm.
+auto traced_gutter(double depth_m, float robot_x_m = 0.0f, float robot_y_m = 0.0f) {
+  auto stages = traced(with_gutter(depth_m), robot_x_m, robot_y_m);
+  stages->dem.set_common(1e-6f, 1e-6f);
+  stages->trace(robot_x_m, robot_y_m);
+  return stages;
+}
+
 TEST_CASE("curb tracer: a step from a gutter that bears the road's plane is as high as from its bottom") {
-  const auto up = traced(with_gutter(0.02)), down = traced(with_gutter(0.02), 2.3f, 1.2f);
+  const auto up = traced_gutter(0.02), down = traced_gutter(0.02, 2.3f, 1.2f);
   REQUIRE(up->tracer.curbs().size() == 1);
   REQUIRE(down->tracer.curbs().size() == 1);
   const Curb& from_road = up->tracer.curbs()[0];
@@ -1115,7 +1123,7 @@ TEST_CASE(
 }
 
 TEST_CASE("curb tracer: ground beside a step down is carried on to the near end of the step's shadow") {
-  const auto stages = traced(with_gutter(0.02), 2.3f, 1.2f);
+  const auto stages = traced_gutter(0.02, 2.3f, 1.2f);
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
   CHECK(curb.kind == CurbKind::step_down);

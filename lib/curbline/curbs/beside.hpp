@@ -1,7 +1,7 @@
 // The ground beside a border may deviate from its plane: a gutter or the camber of a road, too narrow or too weak for a
-// plane of its own. On each side, the two cells next to the border's own show it, extrapolated to the border. A
-// deviation away from the other side is taken; one toward it may come from cells that mix both sides, and counts only
-// as doubt about the plane. Cost: two cells for each border and side.
+// plane of its own. On each side, the two cells next to the border's own show it, extrapolated to the border. Of a
+// deviation away from the other side the share is taken that chance does not explain; one toward it may come from cells
+// that mix both sides, and counts only as doubt about the plane. Cost: two cells for each border and side.
 #pragma once
 
 #include <algorithm>
@@ -39,19 +39,16 @@ struct GroundAlong {
 
   float above_m = 0.0f;      ///< shrunk by chance, two standard deviations
   float share = 0.0f;        ///< share left by that; the same share of the plane's variance is replaced by variance_m2
-  float variance_m2 = 0.0f;  ///< of the cells' mean, each border one observation, and of whether they or the plane
-                             ///< are right
+  float variance_m2 = 0.0f;  ///< of the cells' mean
 
-  /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane. With
-  /// probability `share` they are right, else the plane: the mixture has share (1 - share) mean^2 beyond both, which is
-  /// share times 4 variances of their mean. Chance alone decides the share, and by chance cells err independently. In
-  /// variance_m2 each border is one observation, also for the mixture: what the cells behind one are off from the
-  /// ground there, they are off alike.
+  /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane.
+  /// Chance alone decides the share, and by chance cells err independently. In variance_m2 each border is one
+  /// observation: what the cells behind one are off from the ground there, they are off alike.
   static GroundAlong of(float cells, float borders, float above_m, const Plane& plane) {
     if (!(cells > 0.0f)) return {};
     const float mean_m = above_m / cells, variance_m2 = plane.fit_variance_m2 / cells;
     const float share = square(mean_m) > 4.0f * variance_m2 ? 1.0f - 4.0f * variance_m2 / square(mean_m) : 0.0f;
-    return {share * mean_m, share, 5.0f * plane.fit_variance_m2 / borders};
+    return {share * mean_m, share, plane.fit_variance_m2 / borders};
   }
 };
 
@@ -59,15 +56,22 @@ struct GroundAlong {
 /// it is nearer.
 struct Deviation {
   float away_m = 0.0f, variance_m2 = 0.0f;
-  float common_m2 = 0.0f;  ///< the part of it that the cells may share: errors of a scan line along the border
+  float shared_m2 = 0.0f;  ///< variance that all borders share, in addition
   float borders = 0.0f;    ///< borders that show it
 
-  /// Is the ground beside the border not the plane's? It is farther by three standard deviations, and by more than one
-  /// of the part that does not average out.
-  bool found() const { return away_m > 0.0f && square(away_m) > gate * variance_m2 && square(away_m) > common_m2; }
-  /// Variance of the side's height there: the cells' own if they decide it; else the plane may be wrong by anything up
-  /// to half of the deviation beyond two standard deviations, what chance makes of it.
-  float height_variance_m2() const { return found() ? variance_m2 : (1.0f / 12) * beyond_m2(4.0f); }
+  /// The share of it that is the ground's. Ground that deviates by a variance of A beside borders, found by A + t^2
+  /// with t^2 the variances above, deviates by A / (A + t^2) of what is found here; the deviation itself is the
+  /// estimate of A + t^2 (empirical Bayes: Efron and Morris 1973, for a single deviation).
+  float share() const {
+    const float by_chance_m2 = variance_m2 + shared_m2, found_m2 = square(away_m);
+    return away_m > 0.0f && found_m2 > by_chance_m2 ? 1.0f - by_chance_m2 / found_m2 : 0.0f;
+  }
+  /// Variance of the side's height there: that of the share. Without one, the plane may be wrong by anything up to half
+  /// of what exceeds two standard deviations, what chance makes of it.
+  float height_variance_m2() const {
+    const float taken = share();
+    return taken > 0.0f ? taken * (variance_m2 + shared_m2) : (1.0f / 12) * beyond_m2(4.0f);
+  }
   /// Mean square, over of_borders borders, of a deviation by which the planes are farther apart than the ground is.
   float too_far_m2(float of_borders) const { return away_m < 0.0f ? borders / of_borders * beyond_m2(1.0f) : 0.0f; }
 
@@ -76,15 +80,15 @@ struct Deviation {
 };
 
 /// The deviation of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow.
-/// `away` is 1 if the other side is below, -1 if above. Each cell is one observation; common_m2 is the variance that
-/// points of one place may share. 0 without borders.
+/// `away` is 1 if the other side is below, -1 if above. Each cell is one observation. Of common_m2, the variance that
+/// points of one place share, all borders share half: all of it if scan lines run along them, none if across. 0 without
+/// borders.
 inline Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2) {
   const float n = beside.borders;
   if (!(n > 0.0f)) return {};
   const float away_m = away * (beside.off_m + further_cells * beside.rise_m) / n;
   const float q = beside.away_cells / n + further_cells;
-  const float of_two = square(1.0f + q) + square(q);
-  return {away_m, plane.fit_variance_m2 * of_two / n, common_m2 * of_two, n};
+  return {away_m, plane.fit_variance_m2 * (square(1.0f + q) + square(q)) / n, 0.5f * common_m2, n};
 }
 
 }  // namespace curbline

@@ -58,7 +58,6 @@ class StepHeight {
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const Part& part, Label label) const;
   void follow_ground(const Part& part);
-  void follow_ground_beside();
   struct Deviations {
     Deviation one, other;
   };
@@ -93,14 +92,12 @@ void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at
     leave_shadow(view);
   }
   const auto [one, other] = piece_.planes;
-  // A plane's error is common to the whole piece: it does not average out. Behind a brink up to as much again as is
-  // visible may be hidden, uniformly.
-  variance_m2_ =
-      plane_variance_m2(one) + plane_variance_m2(other) + (one_sided ? square(height_m_) * (1.0f / 3) : 0.0f);
-  if (is_step && !one_sided) follow_ground(part);
+  // Behind a brink up to as much again as is visible may be hidden, uniformly.
+  variance_m2_ = (one_sided ? square(height_m_) : square(ground_share * height_m_)) * (1.0f / 3);
   if (is_step) {
-    follow_ground_beside();
-    variance_m2_ += square(ground_share * height_m_) * (1.0f / 3);
+    follow_ground(part);
+  } else {
+    variance_m2_ += plane_variance_m2(one) + plane_variance_m2(other);
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
@@ -248,32 +245,20 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
   return GroundAlong::of(cells, borders, above_m, plane);
 }
 
-/// Where the ground along the step deviates from the planes, the step's height is that of the ground; the cells next to
-/// the border then count from there. Where those decide on their own they come first: of a gutter three cells wide and
-/// the road beside it this would take the mean.
+/// Where the ground next to the borders deviates from a plane, the step begins at that ground, by its share; for the
+/// rest at the ground along the step, by that one's share; and for the rest of that at the plane.
 template <Limits limits>
 void StepHeight<limits>::follow_ground(const Part& part) {
   const Deviations beside = deviations();
-  for (const bool other : {false, true}) {
-    if ((other ? beside.other : beside.one).found()) continue;
-    const Plane& plane = other ? piece_.planes.other : piece_.planes.one;
-    const GroundAlong ground = ground_along(part, other ? piece_.first.other : piece_.first.one);
-    height_m_ += other ? ground.above_m : -ground.above_m;
-    variance_m2_ += ground.share * (ground.variance_m2 - plane_variance_m2(plane));
-    Beside& told = other ? piece_.beside_other : piece_.beside_one;
-    told.off_m -= told.borders * ground.above_m;
-  }
-}
-
-/// Where the ground next to the border deviates from the planes, the step's height and variance are those of the
-/// ground.
-template <Limits limits>
-void StepHeight<limits>::follow_ground_beside() {
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
-  const auto [one, other] = deviations();
-  for (const Deviation& side : {one, other}) {
-    if (side.found()) height_m_ += toward * side.away_m;
-    variance_m2_ += side.height_variance_m2();
+  for (const bool other : {false, true}) {
+    const Deviation& next = other ? beside.other : beside.one;
+    const GroundAlong along =
+        piece_.one_sided() ? GroundAlong{} : ground_along(part, other ? piece_.first.other : piece_.first.one);
+    const float share = next.share(), rest = 1.0f - share;
+    height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
+    const float plane_m2 = plane_variance_m2(other ? piece_.planes.other : piece_.planes.one);
+    variance_m2_ += next.height_variance_m2() + rest * (plane_m2 + along.share * (along.variance_m2 - plane_m2));
   }
 }
 
@@ -282,7 +267,7 @@ void StepHeight<limits>::follow_ground_beside() {
 template <Limits limits>
 auto StepHeight<limits>::deviations() const -> Deviations {
   const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
-  const float beyond_cells = -0.5f * up * shadow_m_ / piece_.cell_m;
+  const float beyond_cells = shadow_m_ > 0.0f ? -0.5f * up * shadow_m_ / piece_.cell_m : 0.0f;  // cell_m may be 0
   const float common_m2 = stages_.dem.common_m2();
   return {deviation(piece_.beside_one, piece_.planes.one, -up, -beyond_cells, common_m2),
           deviation(piece_.beside_other, piece_.planes.other, up, beyond_cells, common_m2)};
