@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "curbline/assertion.hpp"
 #include "curbline/can/curb_frames.hpp"
 #include "curbline/can/tilt_decoder.hpp"
 #include "curbline/intake/line_queue.hpp"
@@ -29,7 +30,7 @@ std::uint8_t curbs_told = 255;  // so that the first CurbAhead has 0
 void start() {
   const curbline::Settings settings = robot_settings();
   if (pipeline.init(settings) != curbline::Status::ok) port.stop(curbline::bad_setting(settings, limits));
-  if (!decoder.init(tilt_signal())) port.stop("the tilt signal is none");
+  if (!decoder.init(tilt_signal())) port.stop("the tilt signal is not valid");
   if (!settings.tilt.fixed && can::shares_ids(tilt_signal()))
     port.stop("the tilt servo sends the ids of curb_frames.hpp");
   const float longest_wait_s = settings.pose.still
@@ -80,6 +81,10 @@ void take_lines() {
 
 void curbline::board::leave(int) {
   port.stop("an exception that nobody handles");
+}
+
+void curbline::assertion_failed(const char* what) {
+  port.stop(what);
 }
 
 int main() {

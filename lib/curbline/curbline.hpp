@@ -7,6 +7,7 @@
 #include "curbline/settings.hpp"                // geometry, noise and tuning, at run time
 #include "curbline/status.hpp"                  // how a call ended
 #include "curbline/counters.hpp"                // what was dropped, refused, done
+#include "curbline/assertion.hpp"               // what happens at a bug
 #include "curbline/math.hpp"                    // exp, log, sine: the same bits everywhere
 #include "curbline/frames.hpp"                  // map <- base <- tilt <- laser
 #include "curbline/grid.hpp"                    // numbers of cells and planes, directions

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <span>
 
+#include "curbline/assertion.hpp"
 #include "curbline/counters.hpp"
 #include "curbline/curbs/crossed_cells.hpp"
 #include "curbline/curbs/curb_tracer.hpp"
@@ -100,9 +101,10 @@ class Pipeline {
   std::span<const Curb> curbs() const { return ready_ ? curb_tracer_.curbs() : std::span<const Curb>{}; }
 
   /// May a robot that can take steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or
-  /// over one of curbs()? A curb may be a line older than the planes. See passability.hpp.
+  /// over one of curbs()? A curb may be a line older than the planes. Outside the window the ground is unknown, and not
+  /// passable. See passability.hpp.
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
-    return ready_ && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
+    return knows(i, j) && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
   }
   bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
     const auto side = [this](int label) { return label == no_label ? Plane{} : plane(label); };
@@ -110,19 +112,23 @@ class Pipeline {
   }
 
   /// The plane of ground that the readings in cell (i, j) most likely belong to; below an obstacle, that of the cells
-  /// around. no_label without readings, or as long as no plane of ground is known. i counts along x, j along y, from
-  /// the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive its plane by a line.
-  Label label(int i, int j) const { return ready_ ? label_field_.label(dem_.slot(i, j)) : no_label; }
-  /// The probability of that label; 0 before init().
+  /// around. no_label without readings, outside the window, or as long as no plane of ground is known. i counts along
+  /// x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive
+  /// its plane by a line.
+  Label label(int i, int j) const { return knows(i, j) ? label_field_.label(dem_.slot(i, j)) : no_label; }
+  /// The probability of that label; 0 outside the window and before init().
   float label_probability(int i, int j) const;
-  /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. See
-  /// ground_label.hpp.
+  /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. no_label where
+  /// label() is. See ground_label.hpp.
   Label ground_label(int i, int j) const {
-    return ready_ ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label;
+    return knows(i, j) ? curbline::ground_label(dem_, plane_mixture_, label_field_, curbs(), i, j) : no_label;
   }
   /// A plane, in the window's frame (origin at its lowest corner, z of the map frame). 0 <= label < limits.planes;
-  /// no_label is not allowed.
-  const Plane& plane(int label) const { return plane_mixture_.plane(label); }
+  /// no_label is not allowed: any other label is a bug, see assertion.hpp.
+  const Plane& plane(int label) const {
+    expects(label >= 0 && label < limits.planes, "plane(): 0 <= label < limits.planes");
+    return plane_mixture_.plane(label);
+  }
   /// The name of the surface that a plane is part of: planes along one bent surface, such as a cambered road, share the
   /// lowest of their labels, and no crease is reported between them. For any other plane its own label. See
   /// surfaces.hpp.
@@ -135,6 +141,8 @@ class Pipeline {
   const Settings& settings() const { return settings_; }
 
  private:
+  /// Is there an answer about this cell? Slots wrap: outside the window they are those of the opposite side.
+  bool knows(int i, int j) const { return ready_ && dem_.contains(i, j); }
   void follow_robot(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
@@ -346,7 +354,7 @@ void Pipeline<limits>::follow_noise() {
 
 template <Limits limits>
 float Pipeline<limits>::label_probability(int i, int j) const {
-  return ready_ ? label_field_.belief(dem_, dem_.slot(i, j)).of(label(i, j)) : 0.0f;
+  return knows(i, j) ? label_field_.belief(dem_, dem_.slot(i, j)).of(label(i, j)) : 0.0f;
 }
 
 }  // namespace curbline

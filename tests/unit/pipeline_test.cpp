@@ -179,6 +179,28 @@ TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatev
   CHECK(ends == 1);
 }
 
+TEST_CASE("pipeline: outside the window no cell is passable and none has a label") {
+  const auto pipeline = started();
+  std::vector<Point> level;
+  for (float x = 0.01f; x < 4.0f; x += 0.02f) {
+    for (float y = -1.99f; y < 2.0f; y += 0.02f) level.push_back({x, y, 0.0f, 1e-4f});
+  }
+  pipeline->observe(level);
+  pipeline->settle();
+  const int rows = pipeline->dem().rows(), cols = pipeline->dem().cols();
+  for (const auto& [i, j] : {std::pair{0, 0}, {rows - 1, cols - 1}}) {
+    CHECK(pipeline->passable(i, j, 0.1f, 0.1f));
+    CHECK(pipeline->label(i, j) != no_label);
+  }
+  for (const auto& [i, j] : {std::pair{-1, 5}, {5, -1}, {rows, 5}, {5, cols}, {-rows, 5}, {rows, cols}, {1 << 30, 5}}) {
+    INFO("cell " << i << ", " << j);
+    CHECK_FALSE(pipeline->passable(i, j, 0.1f, 0.1f));
+    CHECK(pipeline->label(i, j) == no_label);
+    CHECK(pipeline->ground_label(i, j) == no_label);
+    CHECK(pipeline->label_probability(i, j) == 0.0f);
+  }
+}
+
 /// A front of 0.6 m, a metre wide, before the step of a street.
 float with_front(float range_m, int beam, int line) {
   const double bearing = -0.5 * pi + pi / 360.0 * beam;

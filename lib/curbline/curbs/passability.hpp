@@ -21,10 +21,10 @@ bool passable(const Plane& plane, const Mobility& mobility);
 /// edge, if neither of its planes is steeper than max_slope_rad.
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
 
-/// May a wheel stand in cell (i, j) and leave it? Yes, if its plane is ground and not too steep, if the heights within
-/// it spread over no more than the step (the width of a uniform distribution of their variance, less that of noise and
-/// of the plane's slope), and if neither it nor the next cell within two cells along x and y lies a step off the plane.
-/// O(1).
+/// May a wheel stand in cell (i, j), which must be one of the window, and leave it? Yes, if its plane is ground and not
+/// too steep, if the heights within it spread over no more than the step (the width of a uniform distribution of their
+/// variance, less that of noise and of the plane's slope), and if neither it nor the next cell within two cells along x
+/// and y lies a step off the plane. O(1).
 template <Limits limits>
 bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
               int j, const Mobility& mobility) {
