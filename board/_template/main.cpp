@@ -7,6 +7,7 @@
 #include "curbline/can/curb_frames.hpp"
 #include "curbline/can/tilt_decoder.hpp"
 #include "curbline/intake/line_queue.hpp"
+#include "curbline/intake/sight_watch.hpp"
 #include "curbline/intake/source_watch.hpp"
 #include "curbline/pipeline.hpp"
 #include "port.hpp"
@@ -22,7 +23,8 @@ Port port;
 curbline::Pipeline<limits> pipeline;
 curbline::LineQueue<limits, queued_lines> waiting;  // lines whose last beams have no tilt or pose yet
 can::TiltDecoder decoder;
-curbline::SourceWatch watch;
+curbline::SourceWatch watch;  // on the servo
+curbline::SightWatch sight;   // of the laser
 curbline::NewestTimes newest;
 curbline::Pose pose;            // the newest; for a stationary robot, the map's origin
 std::uint8_t curbs_told = 255;  // so that the first CurbAhead has 0
@@ -38,6 +40,7 @@ void start() {
                                    : std::max(settings.tilt.max_gap_s, settings.pose.max_extrapolation_s);
   waiting.init(settings.laser, settings.tilt, settings.pose, longest_wait_s);
   watch.init(settings.tilt.max_gap_s, settings.tilt.fixed);
+  sight.init(longest_away_s);
   if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
 }
 
@@ -58,10 +61,10 @@ void take_poses() {
   }
 }
 
-/// Informs the motors after a scan line: the curb that the robot meets first, if the line was accepted, then the
-/// status, whose counter shows whether it was.
-void tell(bool taken) {
-  if (taken) {
+/// Informs the motors after a scan line: the curb that the robot meets first, if the laser sees, then the status, whose
+/// counter shows whether it does. A line of a covered laser is taken, but says nothing.
+void tell(bool sees) {
+  if (sees) {
     const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline.curbs(), pose, half_width_m));
     if (port.send(ahead)) ++curbs_told;
   }
@@ -73,7 +76,8 @@ void take_lines() {
   if (const auto line = port.scan_line()) waiting.push(*line, now_ns);
   while (const auto line = waiting.pop(newest, now_ns, pipeline.tilt_latency().latest_offset_s())) {
     watch.update(newest.tilt_ns, now_ns);
-    tell(pipeline.take(*line) == curbline::Status::ok);
+    pipeline.take(*line);
+    tell(sight.update(pipeline.counters(), line->time_ns));
   }
 }
 

@@ -26,6 +26,10 @@ inline curbline::Settings robot_settings() {
 /// servo of 50 Hz or more, and little latency. 4.3 KB each.
 inline constexpr int queued_lines = 3;
 
+/// For how long the laser may look beside the window before it counts as blind: for a sweep there and back. Of a laser
+/// at a fixed tilt, half a second: a bump of the way.
+inline constexpr float longest_away_s = 4.0f;
+
 /// Free width that the robot needs to either side: half its own width plus its deviation from its path.
 inline constexpr float half_width_m = 0.4f;
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <utility>
 
 #include "curbline/can/curb_frames.hpp"
 #include "formats/bad_input.hpp"
@@ -50,6 +51,7 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   open_bus(robot, options);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
+  sight_.init(robot.tilt.fixed ? least_stale_s : std::max(static_cast<float>(robot.sweep.period_s), least_stale_s));
   poses_.open(robot, options.poses, log_.has_value(), std::max(robot.pose.max_extrapolation_s, least_stale_s));
   server_.open(options.curbs);
 }
@@ -207,8 +209,10 @@ void Daemon::take_line(const ScanLine& line) {
   const Status status = pipeline_->take(line);
   if (status == Status::ok) work_.add(scanner::steady_now_ns() - before_ns);
   note_dropped(status);
+  const bool sees = sight_.update(pipeline_->counters(), line.time_ns);
+  if (sight_.event() != SourceEvent::none) sight_event_ = sight_.event();
   give_curbs(line.time_ns);
-  if (can_out_) send_curbs(status == Status::ok);
+  if (can_out_) send_curbs(sees);
 }
 
 /// A silent servo or localisation is told as such.
@@ -230,10 +234,10 @@ void Daemon::give_curbs(std::int64_t line_ns) {
   server_.send(text);
 }
 
-/// Sends, after a scan line, the curb ahead if the line was accepted, then the status, whose counter shows a receiver
-/// whether it was.
-void Daemon::send_curbs(bool taken) {
-  if (taken) {
+/// Sends, after a scan line, the curb ahead if the laser sees, then the status, whose counter shows a receiver whether
+/// it does.
+void Daemon::send_curbs(bool sees) {
+  if (sees) {
     const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline_->curbs(), poses_.newest(), half_way_m));
     if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   }
@@ -249,7 +253,7 @@ void Daemon::look_around() {
   const SourceEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
   const SourceEvent poses = poses_.update(now_ns);
   const Report status = make_report();
-  troubles_.tell(status, tilt, poses, now_ns);
+  troubles_.tell(status, {tilt, poses, std::exchange(sight_event_, SourceEvent::none)}, now_ns);
   const std::string_view state = state_of(status);
   if (state == told_state_ && now_ns < next_status_ns_) return;
   if (state != told_state_) {
@@ -286,6 +290,7 @@ Report Daemon::make_report() {
     s.latency = &latency_;
   }
   s.poses = poses_.report();
+  s.sight = &sight_.watch();
   if (has_bus_) s.bus = &bus_;
   if (scanner_) {
     scanner_state_ = scanner_->state();

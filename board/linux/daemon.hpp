@@ -17,6 +17,7 @@
 
 #include "curb_server.hpp"
 #include "curbline/can/tilt_decoder.hpp"
+#include "curbline/intake/sight_watch.hpp"
 #include "curbline/intake/source_watch.hpp"
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
@@ -69,7 +70,7 @@ class Daemon {
   void take_line(const ScanLine& line);
   void note_dropped(Status status);
   void give_curbs(std::int64_t line_ns);
-  void send_curbs(bool taken);
+  void send_curbs(bool sees);
   void look_around();
   void give_status();
   Report make_report();
@@ -105,6 +106,8 @@ class Daemon {
   std::uint8_t curbs_sent_ = 255;  ///< the counter of CurbStatus; 255 so that the first CurbAhead has 0
   std::uint64_t heap_calls_before_ = 0;
   std::uint32_t curbs_left_out_ = 0;
+  SightWatch sight_;
+  SourceEvent sight_event_ = SourceEvent::none;                    ///< to be told
   std::uint64_t lines_without_tilt_ = 0, lines_without_pose_ = 0;  ///< as in Report
   LatencyHistogram latency_, work_;
   ScannerState scanner_state_;

@@ -92,9 +92,17 @@ void put_lines(JsonLine& json, const Report& s) {
   json.close('}');
 }
 
+void put_sight(JsonLine& json, const SourceWatch& sight) {
+  json.key("sight").open('{');
+  put_watch(json, sight);
+  json.close('}');
+}
+
 void put_pipeline(JsonLine& json, const Report& s) {
   json.key("pipeline").open('{');
   put(json, "lines", s.pipeline.lines);
+  put(json, "points", s.pipeline.points);
+  put(json, "no_returns", s.pipeline.no_returns);
   put(json, "lines_dropped", s.pipeline.lines_dropped);
   put(json, "lines_without_tilt", s.lines_without_tilt);
   put(json, "lines_without_pose", s.lines_without_pose);
@@ -150,6 +158,7 @@ std::string_view state_of(const Report& s) {
     return s.poses.watch->state() == SourceState::stale ? "poses_stale" : "poses_missing";
   }
   if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
+  if (s.sight != nullptr && s.sight->state() == SourceState::stale) return "laser_blind";
   return "ok";
 }
 
@@ -161,6 +170,7 @@ std::string_view status_line(const Report& s, std::span<char> buffer) {
   if (s.poses.watch != nullptr) put_poses(json, s);
   if (s.bus != nullptr) put_bus(json, *s.bus);
   put_lines(json, s);
+  if (s.sight != nullptr) put_sight(json, *s.sight);
   put_pipeline(json, s);
   put_clients(json, s);
   json.key("microseconds").open('{').key("scan_line").whole(static_cast<std::int64_t>(s.scan_line_s * 1e6));

@@ -36,6 +36,7 @@ struct Report {
   PoseReport poses{};
   const socketcan::SocketCan* bus = nullptr;
   const ScannerState* scanner = nullptr;
+  const SourceWatch* sight = nullptr;  ///< of the window, by the laser
   LineQueueCounters lines{};
   std::uint64_t lines_without_tilt = 0, lines_without_pose = 0;  ///< dropped, though frames or poses come
   Counters pipeline{};
@@ -49,8 +50,8 @@ struct Report {
   std::uint64_t heap_calls_before = 0, heap_calls_since = 0;
 };
 
-/// The most serious problem, as a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale or
-/// scanner_lost.
+/// The most serious problem, as a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale,
+/// scanner_lost or laser_blind.
 std::string_view state_of(const Report& status);
 
 std::string_view status_line(const Report& status, std::span<char> buffer);

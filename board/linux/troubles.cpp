@@ -7,7 +7,7 @@
 namespace curbline::daemon {
 namespace {
 
-/// The messages about a servo or a localisation that reports or is silent.
+/// The messages about a servo or a localisation that reports or is silent, and a laser that sees or is blind.
 struct Told {
   std::string_view missing, first, lost, recovered;
 };
@@ -16,6 +16,7 @@ constexpr Told servo{"no tilt frame since the start; expected ", "the tilt servo
 constexpr Told localisation{"no pose since the start; expected lines of time tx ty tz qx qy qz qw from ",
                             "the localisation gives poses", "the localisation is silent",
                             "the localisation gives poses again"};
+constexpr Told laser{{}, {}, "the laser is blind: covered, or it looks beside the window", "the laser sees again"};
 
 void tell_event(SourceEvent event, const Told& told, std::string_view wanted) {
   switch (event) {
@@ -34,10 +35,11 @@ void tell_event(SourceEvent event, const Told& told, std::string_view wanted) {
 
 }  // namespace
 
-void Troubles::tell(const Report& status, SourceEvent tilt, SourceEvent poses, std::int64_t now_ns) {
+void Troubles::tell(const Report& status, const SourceEvents& events, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
-  tell_event(tilt, servo, status.wanted_tilt);
-  tell_event(poses, localisation, status.poses.wanted);
+  tell_event(events.tilt, servo, status.wanted_tilt);
+  tell_event(events.poses, localisation, status.poses.wanted);
+  tell_event(events.sight, laser, "");
   if (status.scanner != nullptr) tell_scanner(*status.scanner);
   tell_counters(status, now_ns);
 }

@@ -9,10 +9,15 @@
 
 namespace curbline::daemon {
 
+/// What has happened to the sources since they were last told of.
+struct SourceEvents {
+  SourceEvent tilt, poses, sight;  ///< sight: lost or recovered
+};
+
 class Troubles {
  public:
   /// Compares with what was reported before. Call several times a second. `now_ns`: of any clock.
-  void tell(const Report& status, SourceEvent tilt, SourceEvent poses, std::int64_t now_ns);
+  void tell(const Report& status, const SourceEvents& events, std::int64_t now_ns);
 
  private:
   void tell_link(const socketcan::SocketCan& bus);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that feeds it a drive, informs the motors after each
 scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead. While the servo is silent
-for a second, each line is dropped and the counter does not advance."""
+for a second, each line is dropped and the counter does not advance; nor does it while the laser is covered, though the lines are taken."""
 import os
 import struct
 import subprocess
@@ -16,9 +16,10 @@ import run_drives  # noqa: E402
 
 CURB = struct.Struct("<9f4H")
 COUNTERS = 4 * (Path(__file__).resolve().parents[2] / "lib/curbline/counters.hpp").read_text().count("std::uint32_t")
-AHEAD, STATUS, STALE = 0x6A0, 0x6A1, 2  # from lib/curbline/can/curb_frames.hpp
-HALF_WIDTH = 0.5  # from template_robot/robot.hpp
+AHEAD, STATUS, OK, STALE = 0x6A0, 0x6A1, 1, 2  # from lib/curbline/can/curb_frames.hpp
+HALF_WIDTH, LONGEST_AWAY_NS = 0.5, 4e9  # from template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # offsets in the record of a frame
+SCAN_LINE, RANGES = 4, 8 + 8  # RecordKind of port/drive_log; the offset in the record of a line
 
 
 def ahead_at(x0, y0, x1, y1):
@@ -36,9 +37,13 @@ def ahead_at(x0, y0, x1, y1):
 
 
 def told_by_results(path):
-    """(curbs, height of the nearest ahead in mm or None) after each accepted line."""
+    """(curbs, height of the nearest ahead in mm or None) after each line of a laser that sees: see lib/curbline/intake/sight_watch.hpp."""
+    before, seen_ns = (0, 0, 0), None
     for _, record in run_bus.records(path):
-        status, = struct.unpack_from("<I", record, 16)
+        time_ns, _, *counted = struct.unpack_from("<qI3I", record, 8)  # lines, points, outside
+        taken, inside, outside = (now != then for now, then in zip(counted, before))
+        before, seen_ns = counted, time_ns if inside else seen_ns
+        sees = taken and (inside or outside) and seen_ns is not None and time_ns - seen_ns <= LONGEST_AWAY_NS
         count_at = 20 + COUNTERS
         count, = struct.unpack_from("<I", record, count_at)
         on_the_way = []
@@ -47,7 +52,7 @@ def told_by_results(path):
             at = ahead_at(x0, y0, x1, y1)
             if at is not None:
                 on_the_way.append((height == 0.0, at, height))  # steps come before creases
-        if status == 0:
+        if sees:
             ahead = min(on_the_way, default=None)
             yield count, None if ahead is None else ahead[2] * 1000
 
@@ -77,28 +82,50 @@ def run(program, drive, sent):
     subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
 
 
-def silence_servo(drive, out):
-    """Writes the drive without the CAN frames between 1 s and 2 s."""
+def change(drive, out, changed):
+    """Writes the drive with the records between 1 s and 2 s changed: changed(kind, record)."""
     start_ns = next(run_bus.frame_time(record) for kind, record in run_bus.records(drive) if kind == run_bus.CAN_FRAME)
     with out.open("wb") as file:
         for kind, record in run_bus.records(drive):
-            if kind != run_bus.CAN_FRAME or not 1e9 < run_bus.frame_time(record) - start_ns < 2e9:
-                file.write(record)
+            timed = kind in (run_bus.CAN_FRAME, SCAN_LINE)
+            file.write(changed(kind, record) if timed and 1e9 < run_bus.frame_time(record) - start_ns < 2e9 else record)
 
 
-def check_silence(program, drive, folder):
-    """A dropped line is reported too, by a counter that does not advance; an accepted one by an AHEAD and a counter that is one higher."""
-    silent, sent = folder / "silent.drive", folder / "silent.sent"
-    silence_servo(drive, silent)
-    run(program, silent, sent)
+def silent(kind, record):
+    return b"" if kind == run_bus.CAN_FRAME else record
+
+
+def covered(kind, record):
+    return record[:RANGES] + bytes(len(record) - RANGES) if kind == SCAN_LINE else record
+
+
+def told_of(program, drive, folder, changed):
+    """(AHEAD or None, STATUS) of the changed drive. A line that sees nothing is reported too, by a counter that does not advance; another one
+    by an AHEAD and a counter that is one higher."""
+    other, sent = folder / f"{changed.__name__}.drive", folder / f"{changed.__name__}.sent"
+    change(drive, other, changed)
+    run(program, other, sent)
     told = list(lines_told(sent))
     for line, ((_, before), (ahead, status)) in enumerate(zip(told, told[1:]), 1):
         if status[0] != (before[0] + (ahead is not None)) % 256:
             sys.exit(f"line {line}: the counter goes from {before[0]} to {status[0]} with{'out' if ahead is None else ''} a curb ahead")
+    return told
+
+
+def check_silence(program, drive, folder):
+    told = told_of(program, drive, folder, silent)
     dropped = [status[1] & 3 for ahead, status in told if ahead is None]
     if len(dropped) < 20 or STALE not in dropped or told[-1][0] is None:
         sys.exit(f"a servo that is silent for a second: {len(dropped)} lines are told as dropped, their tilt as {sorted(set(dropped))}")
     print(f"{len(dropped)} lines dropped while the servo was silent")
+
+
+def check_cover(program, drive, folder):
+    told = told_of(program, drive, folder, covered)
+    tilts = [status[1] & 3 for ahead, status in told if ahead is None]
+    if len(tilts) < 35 or OK not in tilts or told[-1][0] is None:
+        sys.exit(f"a laser that is covered for a second: {len(tilts)} lines of 40 are told as seeing nothing, their tilt as {sorted(set(tilts))}")
+    print(f"{len(tilts)} lines saw nothing while the laser was covered")
 
 
 def main(build, program):
@@ -107,6 +134,7 @@ def main(build, program):
     drive, sent = drives.folder(build) / "steps.drive", folder / "steps.sent"  # they lie across the robot's way
     run(program, drive, sent)
     check_silence(program, drive, folder)
+    check_cover(program, drive, folder)
     ours = list(told_by_frames(sent))
     theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "steps.results"))
     for line, (a, b) in enumerate(zip(ours, theirs)):

@@ -78,7 +78,7 @@ TEST_CASE("reports: the fullest status fits") {
   const auto bus = std::make_unique<socketcan::SocketCan>();
   const ScannerState scanner;
   status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = bus.get(),
-  status.scanner = &scanner;
+  status.scanner = &scanner, status.sight = &watch;
   status.latency = status.work = &full;
   std::array<char, 32 << 10> buffer{};
   const auto line = status_line(status, buffer);
@@ -95,7 +95,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   Report s;
   s.scan_line_s = 0.025, s.work = &none;
   s.lines = {.pushed = 1, .covered = 2, .overdue = 3, .crowded = 4, .dropped = 5, .too_long = 6, .bad_time = 7};
-  s.pipeline.lines = 11, s.pipeline.lines_dropped = 12;
+  s.pipeline.lines = 11, s.pipeline.lines_dropped = 12, s.pipeline.points = 61, s.pipeline.no_returns = 62;
   s.pipeline.beams_without_tilt = 13, s.pipeline.beams_extrapolated = 14, s.pipeline.tilt_dropped = 15;
   s.curbs = 16, s.curbs_left_out = 17, s.lines_without_tilt = 18, s.lines_without_pose = 19;
   s.clients = 21, s.server.accepted = 22, s.server.too_slow = 23, s.server.refused = 24;
@@ -104,7 +104,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{
       .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
-  s.tilt = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency;
+  s.tilt = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency, s.sight = &watch;
   ScannerState scanner;
   scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53;
   s.scanner = &scanner;
@@ -131,6 +131,8 @@ TEST_CASE("reports: a status has each counter under its name") {
                   {"damaged", 52},
                   {"other_beams", 53}});
   check("pipeline", {{"lines", 11},
+                     {"points", 61},
+                     {"no_returns", 62},
                      {"lines_dropped", 12},
                      {"lines_without_tilt", 18},
                      {"lines_without_pose", 19},
@@ -138,6 +140,7 @@ TEST_CASE("reports: a status has each counter under its name") {
                      {"beams_extrapolated", 14},
                      {"curbs", 16},
                      {"curbs_left_out", 17}});
+  check("sight", {{"state", "never"}, {"times_lost", 0}, {"longest_silence_s", 0}});
   check("clients", {{"connected", 21}, {"accepted", 22}, {"too_slow", 23}, {"refused", 24}});
   check("heap_calls", {{"before_start", 31}, {"since_start", 32}});
   check("tilt", {{"frames", 41},
@@ -171,6 +174,14 @@ TEST_CASE("reports: the reported state is the worst of all problems") {
   watch.update(1'000'000'000, 1'000'000'000);
   scanner.connected = true;
   CHECK(state_of(s) == "ok");
+  SourceWatch sight;
+  sight.init(10.0f, false);
+  s.sight = &sight;
+  CHECK(state_of(s) == "ok");  // no line yet
+  sight.update(0, 0);
+  CHECK(state_of(s) == "ok");
+  sight.update(0, 10'000'000'001);
+  CHECK(state_of(s) == "laser_blind");
   const auto closed = std::make_unique<socketcan::SocketCan>();
   s.bus = closed.get();
   CHECK(state_of(s) == "can_down");

@@ -31,7 +31,7 @@ struct SimulatedErrors {
   double pose_jump_attitude_rad = 0.0;  ///< in roll and in pitch
 };
 
-/// How the servo nods, for the simulator.
+/// How the servo nods, for the simulator; for the daemon, how long the laser may look beside the window.
 struct Sweep {
   double from_rad = -0.2, to_rad = 1.1;  ///< tilt > 0 looks down
   double period_s = 6.0;                 ///< there and back

@@ -1,7 +1,11 @@
 // Curbs for the rest of the robot, as CAN frames: what a motor or brake controller needs to know of the curb ahead,
-// without JSON and without Linux. The daemon or firmware sends, after each scan line taken, a CurbAhead, then a
-// CurbStatus; after a dropped one (no tilt, say) a CurbStatus alone, since nothing new is known about the way.
-// tools/robots/curb_ahead.dbc is their DBC.
+// without JSON and without Linux. The daemon or firmware sends, after each scan line that says something about the
+// window (SightWatch, intake/sight_watch.hpp), a CurbAhead, then a CurbStatus. After any other a CurbStatus alone,
+// since nothing new is known about the way: the line was dropped (no tilt, say), or the laser is covered, or has not
+// seen the window for longer than a sweep takes. tools/robots/curb_ahead.dbc is their DBC.
+//
+// "Nothing ahead" means no curb. It is not a clear way: a wall, a step up higher than CurbSettings::max_step_m (0.3 m)
+// and ground that was not seen are no curbs either. Whether the way is clear, Pipeline::passable() tells.
 //
 // Both are standard frames, with ids that CANopen (CiA 301) leaves free and that, of the preset servos, only an ODrive
 // with node 53 uses: see shares_ids(). All numbers are little endian, in the base frame, x ahead and y left.
@@ -42,7 +46,7 @@ struct CurbStatus {
   std::uint32_t curbs = 0;
 };
 
-/// The frame for a curb or, with nothing, for a clear way.
+/// The frame for a curb or, with nothing, for a way without one.
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb);
 Frame curb_status_frame(const CurbStatus& status);
 
