@@ -5,6 +5,7 @@
 // Shared by all.
 #include "curbline/limits.hpp"                  // sizes, at compile time
 #include "curbline/settings.hpp"                // geometry, noise and tuning, at run time
+#include "curbline/setting_ranges.hpp"          // what each setting may be
 #include "curbline/status.hpp"                  // how a call ended
 #include "curbline/counters.hpp"                // what was dropped, refused, done
 #include "curbline/assertion.hpp"               // what happens at a bug

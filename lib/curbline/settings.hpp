@@ -1,5 +1,6 @@
 // What the builder of a robot states: geometry, noise and tuning, each with its unit, range and reason. Checked once,
-// at init; a bad setting is refused with the Status of its part, and bad_setting() names it.
+// at init; a bad setting is refused with the Status of its part, and bad_setting() names it. setting_ranges.hpp has the
+// ranges as numbers.
 #pragma once
 
 #include <cstddef>
@@ -38,9 +39,10 @@ struct LaserSettings {
                                             ///< first_bearing_rad + beams * this: [-4 pi, 4 pi]
   float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
   float min_range_m = 0.1f;                 ///< readings below, and 0, mean no return; [0, 1e6]
-  float max_range_m = 60.0f;                ///< readings at or above mean no return; (min_range_m, 1e6]
-  float range_sd_m = 0.01f;                 ///< standard deviation of a range, [0, 10]
-  float bearing_sd_rad = 0.0005f;           ///< of a bearing, [0, 1]
+  float max_range_m = 30.0f;       ///< readings at or above mean no return; (min_range_m, 1e6]. Of a UTM-30LX what
+                                   ///< its data sheet guarantees; it gives some to 60 m
+  float range_sd_m = 0.01f;        ///< standard deviation of a range, [0, 10]
+  float bearing_sd_rad = 0.0005f;  ///< of a bearing, [0, 1]
   float beam_divergence_rad = usual_divergence_rad;  ///< full angle, 10 mrad unless set, [0, 1]
 
   /// From one beam to the next, in whole nanoseconds.
@@ -70,7 +72,7 @@ struct TiltSettings {
   float angle_sd_rad = 0.001f;        ///< of one reading: resolution, play; [0, 1]
   float time_sd_s = 0.0f;             ///< jitter of its time stamp, an angle error by the tilt's rate; [0, 1]
   float max_extrapolation_s = 0.05f;  ///< [0, 10]: beams later than the newest reading by more are dropped
-  float max_gap_s = 0.2f;             ///< (0, 10]: no interpolation between readings further apart
+  float max_gap_s = 0.2f;             ///< [1e-4, 10]: no interpolation between readings further apart
   float roll_sd_rad = 0.0f;           ///< of the mount about an x axis through the tilt axis' origin, [0, 1]
   float pitch_sd_rad = 0.0f;          ///< the same about y
 };
@@ -92,7 +94,7 @@ struct PoseSettings {
 /// How cells become regions. lib/README.md has the reason of each constant, and how little depends on it.
 struct SegmentationSettings {
   CellPrior cell{};
-  float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; > 0
+  float leaf_scale = 2.0f;  ///< Felzenszwalb and Huttenlocher's s, inside a block only; [1e-3, 1e6]
   int link_reach = 10;      ///< cells; neighbours further apart are not linked, 1 to max_link_reach
 };
 
@@ -118,9 +120,9 @@ struct LabelSettings {
 
 struct CurbSettings {
   int link_reach = 5;       ///< cells, 1 to max_link_reach: the widest gap of a curb, unless a step down hides more
-  float max_step_m = 0.3f;  ///< > 0; a higher step up is an obstacle, not a curb: curbs and steps of stairs stay below
-                            ///< 0.2 m, and half as much again allows for the unusual. A step down may have any depth,
-                            ///< unless its upper side lies behind such a step up, nearer to the laser
+  float max_step_m = 0.3f;  ///< [1e-3, 1000]; a higher step up is an obstacle, not a curb: curbs and steps of stairs
+                            ///< stay below 0.2 m, and half as much again allows for the unusual. A step down may have
+                            ///< any depth, unless its upper side lies behind such a step up, nearer to the laser
 };
 
 /// Everything, as Pipeline::init() takes it.

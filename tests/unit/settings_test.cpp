@@ -59,6 +59,8 @@ TEST_CASE("settings: the bounds themselves are good") {
   low.planes.prior = {1e-10f, 0.0f, 1.0f, PlanePrior::least_common_share, 0.0f};
   low.planes.min_cells = 3.0f;
   low.labels.coupling = 0.01f;
+  low.tilt.max_gap_s = 1e-4f;
+  low.segmentation.leaf_scale = low.curbs.max_step_m = 1e-3f;
   low.labels.max_messages = 4;
   CHECK(std::string(named(low)) == "none");
 
@@ -83,6 +85,8 @@ TEST_CASE("settings: the bounds themselves are good") {
   high.planes.prior = {100.0f, 100.0f, 1e6f, 1.0f, 10.0f};
   high.planes.min_cells = 1e6f;
   high.labels.coupling = 7.9f;
+  high.segmentation.leaf_scale = 1e6f;
+  high.curbs.max_step_m = 1000.0f;
   CHECK(std::string(named(high)) == "none");
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "curbline/setting_ranges.hpp"
 #include "map/polygon.hpp"
 
 namespace curbline::tools {
@@ -21,9 +22,7 @@ std::string read_toml_text(const std::string& path, const std::string& kind);
 toml::table parse_toml(const std::string& text, const std::string& path);
 
 /// The range of a number, inclusive.
-struct Range {
-  double lowest, highest;
-};
+using Range = SettingRange;
 
 class TomlTable {
  public:

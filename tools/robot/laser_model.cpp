@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "curbline/setting_ranges.hpp"
 #include "robot/parts.hpp"
 
 namespace curbline::tools {
@@ -56,11 +57,12 @@ bool set_model(const std::string& name, Robot& robot) {
 void check_scan(const TomlTable& table, const Robot& robot) {
   const LaserSettings& laser = robot.laser;
   if (laser.bearing_step_rad == 0.0f) table.refuse("bearing_step_rad", "is 0; expected another number");
-  const double steps = laser.beams - 1;
-  if (steps * std::abs(static_cast<double>(laser.bearing_step_rad)) > 2.0 * std::numbers::pi + 1e-3) {
-    table.refuse("bearing_step_rad", "times the beams is more than a turn; expected 2 pi at most");
+  const auto first_rad = static_cast<double>(laser.first_bearing_rad),
+             step_rad = static_cast<double>(laser.bearing_step_rad);
+  if (std::abs(first_rad + laser.beams * step_rad) > 4.0 * std::numbers::pi) {
+    table.refuse("bearing_step_rad", "times the beams, from first_bearing_rad on, is beyond two turns; expected less");
   }
-  if (steps * static_cast<double>(laser.beam_interval_s) > 1.0 / robot.scan_rate_hz) {
+  if ((laser.beams - 1) * static_cast<double>(laser.beam_interval_s) > 1.0 / robot.scan_rate_hz) {
     table.refuse("beam_interval_s", "times the beams is longer than a scan; expected 1 / scan_rate_hz at most");
   }
   if (!(laser.min_range_m < laser.max_range_m))
@@ -70,6 +72,7 @@ void check_scan(const TomlTable& table, const Robot& robot) {
 }  // namespace
 
 void read_laser(TomlTable table, Robot& robot) {
+  namespace ranges = setting_ranges;
   table.read("model", robot.laser_model);
   if (!set_model(robot.laser_model, robot)) {
     table.refuse_word("model", robot.laser_model, "utm-30lx, lms-151 or lms-200");
@@ -77,14 +80,14 @@ void read_laser(TomlTable table, Robot& robot) {
   LaserSettings& laser = robot.laser;
   table.read("scan_rate_hz", robot.scan_rate_hz, {0.1, 1000.0});
   table.read_whole("beams", laser.beams, 1, most_beams);
-  table.read("first_bearing_rad", laser.first_bearing_rad, {-6.28, 6.28});
-  table.read("bearing_step_rad", laser.bearing_step_rad, {-1.0, 1.0});
-  table.read("beam_interval_s", laser.beam_interval_s, {0.0, 1.0});
-  table.read("min_range_m", laser.min_range_m, {0.0, 1000.0});
-  table.read("max_range_m", laser.max_range_m, {0.01, 1000.0});
-  table.read("range_sd_m", laser.range_sd_m, {1e-5, 1.0});
-  table.read("bearing_sd_rad", laser.bearing_sd_rad, {0.0, 0.1});
-  table.read("beam_divergence_rad", laser.beam_divergence_rad, {0.0, 0.1});
+  table.read("first_bearing_rad", laser.first_bearing_rad, ranges::angle_rad);
+  table.read("bearing_step_rad", laser.bearing_step_rad, ranges::bearing_step_rad);
+  table.read("beam_interval_s", laser.beam_interval_s, ranges::beam_interval_s);
+  table.read("min_range_m", laser.min_range_m, ranges::range_m);
+  table.read("max_range_m", laser.max_range_m, ranges::range_m);
+  table.read("range_sd_m", laser.range_sd_m, ranges::deviation_m);
+  table.read("bearing_sd_rad", laser.bearing_sd_rad, ranges::deviation_rad);
+  table.read("beam_divergence_rad", laser.beam_divergence_rad, ranges::divergence_rad);
   table.done();
   check_scan(table, robot);
 }

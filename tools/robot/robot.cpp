@@ -1,8 +1,8 @@
 #include "robot/robot.hpp"
 
 #include <limits>
-#include <numbers>
 
+#include "curbline/setting_ranges.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
 #include "robot/parts.hpp"
@@ -10,32 +10,32 @@
 namespace curbline::tools {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+namespace ranges = setting_ranges;
 
 void read_mount(TomlTable table, MountSettings& mount) {
   for (const auto& [key, value] : {std::pair{"x_m", &mount.x_m}, {"y_m", &mount.y_m}, {"z_m", &mount.z_m}}) {
-    table.read(key, *value, {-100.0, 100.0});
+    table.read(key, *value, ranges::mount_m);
   }
-  table.read("roll_rad", mount.roll_rad, {-pi, pi});
-  table.read("pitch_rad", mount.pitch_rad, {-pi, pi});
-  table.read("yaw_rad", mount.yaw_rad, {-pi, pi});
+  table.read("roll_rad", mount.roll_rad, ranges::angle_rad);
+  table.read("pitch_rad", mount.pitch_rad, ranges::angle_rad);
+  table.read("yaw_rad", mount.yaw_rad, ranges::angle_rad);
   table.done();
 }
 
 void read_tilt(TomlTable table, Robot& robot) {
   TiltSettings& tilt = robot.tilt;
   table.read("fixed", tilt.fixed);
-  table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, {-3.14, 3.14});
+  table.read("fixed_tilt_rad", tilt.fixed_tilt_rad, ranges::fixed_tilt_rad);
   if (table.has("fixed_tilt_rad") && !table.has("fixed"))
     table.refuse("fixed_tilt_rad", "is without fixed; expected fixed = true or false beside it");
-  table.read("latency_s", tilt.latency_s, {-1.0, 1.0});
-  table.read("latency_sd_s", tilt.latency_sd_s, {0.0, 1.0});
-  table.read("angle_sd_rad", tilt.angle_sd_rad, {0.0, 0.1});
-  table.read("time_sd_s", tilt.time_sd_s, {0.0, 1.0});
-  table.read("max_extrapolation_s", tilt.max_extrapolation_s, {1e-4, 10.0});
-  table.read("max_gap_s", tilt.max_gap_s, {1e-4, 10.0});
-  table.read("roll_sd_rad", tilt.roll_sd_rad, {0.0, 0.1});
-  table.read("pitch_sd_rad", tilt.pitch_sd_rad, {0.0, 0.1});
+  table.read("latency_s", tilt.latency_s, ranges::latency_s);
+  table.read("latency_sd_s", tilt.latency_sd_s, ranges::deviation_s);
+  table.read("angle_sd_rad", tilt.angle_sd_rad, ranges::deviation_rad);
+  table.read("time_sd_s", tilt.time_sd_s, ranges::deviation_s);
+  table.read("max_extrapolation_s", tilt.max_extrapolation_s, ranges::extrapolation_s);
+  table.read("max_gap_s", tilt.max_gap_s, ranges::max_gap_s);
+  table.read("roll_sd_rad", tilt.roll_sd_rad, ranges::deviation_rad);
+  table.read("pitch_sd_rad", tilt.pitch_sd_rad, ranges::deviation_rad);
   read_mount(table.table("mount"), tilt.T_base_tilt);
   read_mount(table.table("laser"), tilt.T_tilt_laser);
   read_tilt_signal(table.table("signal"), robot);
@@ -44,10 +44,10 @@ void read_tilt(TomlTable table, Robot& robot) {
 
 void read_pose(TomlTable table, PoseSettings& pose) {
   table.read("still", pose.still);
-  table.read("height_sd_m", pose.height_sd_m, {0.0, 1.0});
-  table.read("attitude_sd_rad", pose.attitude_sd_rad, {0.0, 0.1});
-  table.read("lean_sd_rad", pose.lean_sd_rad, {0.0, 0.05});
-  table.read("max_extrapolation_s", pose.max_extrapolation_s, {1e-4, 10.0});
+  table.read("height_sd_m", pose.height_sd_m, ranges::deviation_m);
+  table.read("attitude_sd_rad", pose.attitude_sd_rad, ranges::deviation_rad);
+  table.read("lean_sd_rad", pose.lean_sd_rad, ranges::lean_sd_rad);
+  table.read("max_extrapolation_s", pose.max_extrapolation_s, ranges::extrapolation_s);
   table.done();
 }
 
@@ -56,13 +56,13 @@ void read_window(TomlTable table, WindowSettings& window) {
     table.read_whole(key, *value, 4, 512);
     if (*value % 4 != 0) table.refuse(key, "is " + std::to_string(*value) + "; expected a multiple of 4");
   }
-  table.read("cell_x_m", window.cell_x_m, {0.001, 10.0});
-  table.read("cell_y_m", window.cell_y_m, {0.001, 10.0});
+  table.read("cell_x_m", window.cell_x_m, ranges::cell_m);
+  table.read("cell_y_m", window.cell_y_m, ranges::cell_m);
   constexpr Range corner{-WindowSettings::furthest_m, WindowSettings::furthest_m};
   table.read("origin_x_m", window.origin_x_m, corner);
   table.read("origin_y_m", window.origin_y_m, corner);
   table.read("fixed", window.fixed);
-  table.read("max_height_m", window.max_height_m, {-1e9, 1e9});
+  table.read("max_height_m", window.max_height_m, ranges::max_height_m);
   table.done();
 }
 
