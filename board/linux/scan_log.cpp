@@ -1,5 +1,7 @@
 #include "scan_log.hpp"
 
+#include <algorithm>
+
 #include "formats/laser_log.hpp"
 
 namespace curbline::daemon {
@@ -11,7 +13,9 @@ ScanLog::ScanLog(const std::string& path, const LaserSettings& laser) : laser_(l
 }
 
 std::int64_t ScanLog::due_ns() const {
-  return front_ns() + laser_.duration_ns(lines_[next_].ranges_m.size());
+  std::int64_t first_beam_ns = front_ns();
+  if (next_ + 1 < lines_.size()) first_beam_ns = std::min(first_beam_ns, lines_[next_ + 1].time_ns);
+  return first_beam_ns + laser_.duration_ns(lines_[next_].ranges_m.size());
 }
 
 ScanLine ScanLog::take() {

@@ -20,7 +20,8 @@ class ScanLog {
 
   bool ended() const { return next_ == lines_.size(); }
 
-  /// Times of the next line's first and last beam; the log must not have ended.
+  /// Time of the next line's first beam, and when the line is due: with its last beam or, if the line behind it is
+  /// earlier, with that line's. The log must not have ended.
   std::int64_t front_ns() const { return lines_[next_].time_ns; }
   std::int64_t due_ns() const;
 

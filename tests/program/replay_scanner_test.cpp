@@ -74,6 +74,18 @@ TEST_CASE("program: a scanner refuses a log whose lines have other beams than th
   refused("RAWLASER1 0 -1.5" + line.substr(line.find(' ', 12)));
 }
 
+TEST_CASE("program: a scanner refuses a log whose times go back, with the line") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.2"});
+  const std::string scans = read_file(logs.path("scans.carmen"));
+  const Words lines = lines_of(scans);
+  const std::string path = logs.directory().write("back.carmen", with_line(with_line(scans, 4, lines[4]), 5, lines[3]));
+  CHECK(error_of([&] {
+          ScanFeed feed = ScanFeed::from_log(path);
+          while (feed.next()) {
+          }
+        }) == "back.carmen:5: ipc_timestamp goes back; expected no less than that of the scan line before");
+}
+
 TEST_CASE("program: lines over SCIP 2.0, beside their CAN log, give the log's curbs byte for byte") {
   const Recording logs("street", "utm30lx");
   check_same(logs, Protocol::scip2);

@@ -540,6 +540,62 @@ TEST_CASE("program: a window that no point falls in is told") {
   CHECK(outcome.err.ends_with(" points lies in the window\n"));
 }
 
+TEST_CASE("program: poses in millimetres, which carry the window away from all it has mapped, are told") {
+  const TemporaryDirectory dir;
+  const std::string scene =
+      dir.write("level.toml", "[ground]\nz = 0.0\n[robot]\npath = [[0.0, 0.0], [2.0, 0.0]]\nspeed = 0.5\n");
+  const Recording logs(scene, "utm30lx");
+  std::istringstream poses(read_file(logs.path("poses.tum")));
+  std::string millimetres, time, rest;
+  for (double x, y, z; poses >> time >> x >> y >> z && std::getline(poses, rest);)
+    millimetres += time + " " + std::to_string(1000 * x) + " " + std::to_string(1000 * y) + " " +
+                   std::to_string(1000 * z) + rest + "\n";
+  const Outcome outcome =
+      curbline(logs.replay("poses", logs.directory().write("mm.tum", millimetres)) + Words{"--json"});
+  CHECK(outcome.status == 0);
+  const nlohmann::json summary = nlohmann::json::parse(outcome.out);
+  CHECK(summary.at("cells") == 0);
+  CHECK(summary.at("points") > 0);
+  CHECK(outcome.err.starts_with(logs.path("scans.carmen") + ": the map is empty: "));
+  CHECK(lines_of(outcome.err).size() == 1);
+}
+
+/// Text of a scan line with another stamp, of seconds.
+std::string stamped(const std::string& line, const std::string& stamp) {
+  const std::size_t before = line.rfind(" curbline "), at = line.rfind(' ', before - 1) + 1;
+  return line.substr(0, at) + stamp + line.substr(before);
+}
+
+TEST_CASE("program: scan lines out of order are dropped and told, as on the robot, and cost only themselves") {
+  const Recording logs("street", "utm30lx", {"--duration", "4"});
+  const nlohmann::json undisturbed = Replayed(logs).summary;
+  const std::string scans = read_file(logs.path("scans.carmen"));
+  const Words lines = lines_of(scans);
+  const auto replayed = [&](const std::string& text) {
+    logs.directory().write("scans.carmen", text);
+    return Replayed(logs);
+  };
+  const auto check = [&](const Replayed& disturbed, const std::string& why) {
+    CHECK(disturbed.summary.at("lines_dropped") == 1);
+    CHECK(disturbed.summary.at("lines").get<int>() == undisturbed.at("lines").get<int>() - 1);
+    CHECK(disturbed.summary.at("curbs") == undisturbed.at("curbs"));
+    CHECK(disturbed.outcome.err == logs.path("scans.carmen") + ": 1 of " + std::to_string(lines.size()) +
+                                       " scan lines were dropped, the last for: " + why + "\n");
+  };
+  SECTION("two that are swapped") {
+    check(replayed(with_line(with_line(scans, 60, lines[60]), 61, lines[59])),
+          "scan line is not later than the one before");
+  }
+  SECTION("one with a stamp of the future") {
+    const std::string hour_later = stamped(lines[59], "1700003600.0");
+    check(replayed(with_line(scans, 60, hour_later)), "no tilt angle near the scan line's time");
+  }
+  SECTION("one with a stamp of the past") {
+    check(replayed(with_line(scans, 60, stamped(lines[59], "1600000000.0"))),
+          "scan line is not later than the one before");
+  }
+}
+
 /// The recording's scan lines with `change` applied to all ranges.
 std::string with_ranges(const Recording& logs, const std::function<double(double)>& change) {
   std::string text;

@@ -57,9 +57,11 @@ class DriveWriter {
     put(RecordKind::setup, setup);
     while (const auto line = scans_.next()) {
       const std::int64_t last_beam_ns = line->time_ns + robot_.laser.duration_ns(line->ranges_m.size());
-      put_frames(last_beam_ns +
-                 static_cast<std::int64_t>((robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
-      put_poses(last_beam_ns);
+      if (!scans_.of_the_future()) {
+        put_frames(last_beam_ns + static_cast<std::int64_t>(
+                                      (robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
+        put_poses(last_beam_ns);
+      }
       put_line(*line);
     }
     out_.commit();

@@ -21,7 +21,7 @@ void read_ranges(Fields& fields, CarmenLine& scan) {
   const std::int64_t beams = fields.whole("the number of ranges", 1, most_beams);
   scan.ranges_m.reserve(static_cast<std::size_t>(beams));
   for (std::int64_t i = 0; i < beams; ++i) {
-    const double range_m = fields.number("a range");
+    const double range_m = fields.number_or_nan("a range");
     const bool is_return = range_m > 0.0 && range_m < scan.maximum_range_m;
     scan.ranges_m.push_back(is_return ? static_cast<float>(range_m) : std::numeric_limits<float>::quiet_NaN());
   }
@@ -61,14 +61,10 @@ std::optional<CarmenLine> CarmenReader::next() {
       if (!is_message_name(message)) fields.fail("message", message, "RAWLASER1 or another CARMEN message");
       continue;
     }
-    CarmenLine scan = parse_scan(fields);
-    if (last_time_ns_ && scan.time_ns < *last_time_ns_) {
-      source_.fail("ipc_timestamp goes back; expected no less than that of the scan line before");
-    }
-    last_time_ns_ = scan.time_ns;
-    return scan;
+    any_ = true;
+    return parse_scan(fields);
   }
-  if (!last_time_ns_) throw BadInput(path() + ": no scan line; expected at least one RAWLASER1 message");
+  if (!any_) throw BadInput(path() + ": no scan line; expected at least one RAWLASER1 message");
   return std::nullopt;
 }
 

@@ -23,7 +23,8 @@ struct CarmenLine {
   double angular_resolution_rad = 0.0;  ///< from beam to beam
   double maximum_range_m = 0.0;
   double accuracy_m = 0.03;
-  std::vector<float> ranges_m;  ///< NaN: no return (written as maximum_range; read from r >= maximum_range or r <= 0)
+  std::vector<float> ranges_m;  ///< NaN: no return (written as maximum_range; read from r >= maximum_range, r <= 0 and
+                                ///< NaN)
 };
 
 class CarmenReader {
@@ -31,7 +32,7 @@ class CarmenReader {
   explicit CarmenReader(const std::string& path) : source_(path) {}
 
   /// The next scan line; nothing at the end. Throws BadInput for a line that is truncated or contains anything but
-  /// numbers, for a time before the last one, and for a file without a scan line.
+  /// numbers, and for a file without a scan line. A time before the last one is for the caller to judge.
   std::optional<CarmenLine> next();
 
   const std::string& path() const { return source_.path(); }
@@ -39,7 +40,7 @@ class CarmenReader {
 
  private:
   LineReader source_;
-  std::optional<std::int64_t> last_time_ns_;
+  bool any_ = false;  ///< scan line
 };
 
 /// How a scan line differs from the robot's laser. Without a misfit, the number of beams is the same, and the bearings

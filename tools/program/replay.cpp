@@ -43,6 +43,10 @@ std::string without_readings(const Robot& robot, const can::TiltDecoderCounters&
          " as the robot's description has it";
 }
 
+bool is_empty(const Map& map) {
+  return std::all_of(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points == 0; });
+}
+
 }  // namespace
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
@@ -69,9 +73,11 @@ bool Replay::step(std::vector<Point>* points) {
   }
   line_ = std::move(*next);
   const std::int64_t last_beam_ns = line_.time_ns + robot_.laser.duration_ns(line_.ranges_m.size());
-  feed_tilt(last_beam_ns +
-            static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
-  feed_poses(last_beam_ns);
+  if (!scans_->of_the_future()) {
+    feed_tilt(last_beam_ns +
+              static_cast<std::int64_t>((robot_.tilt.latency_s + pipeline_->tilt_latency().latest_offset_s()) * 1e9f));
+    feed_poses(last_beam_ns);
+  }
   const std::vector<MapCurb> last_found = pipeline_->map_curbs();
   const ScanLine line{line_.time_ns, line_.ranges_m};
   const auto start = std::chrono::steady_clock::now();
@@ -176,6 +182,9 @@ std::string Replay::remarks() const {
       std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
   if (c.points == 0 && c.outside > 0)
     say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
+  if (c.points > 0 && is_empty(pipeline_->map()))
+    say(logs_.scans, "the map is empty: its window has left all " + std::to_string(c.points) +
+                         " points behind; expected poses in metres, and a robot that stays where it has mapped");
   if (c.points + c.outside + c.beams_without_tilt == 0 && c.no_returns > 0) {
     say(logs_.scans, "none of " + std::to_string(c.no_returns) + " beams returned; expected ranges in metres from " +
                          shortest(robot_.laser.min_range_m) + " to " + shortest(robot_.laser.max_range_m));

@@ -126,7 +126,7 @@ void run(const Options& o) {
   std::vector<Point> points;
   while (replay.step(batch ? &points : nullptr)) {
     if (costs) costs->add(replay);
-    pace.wait_for(replay.line().time_ns);
+    if (replay.status() == Status::ok) pace.wait_for(replay.line().time_ns);  // that of another may be damaged
     if (streams) stream.give_out(replay.pipeline().curbs());
   }
   replay.check_complete();

@@ -42,6 +42,7 @@ class LogSource final : public ScanSource {
   LogSource(const std::string& path, const LaserSettings& laser) : log_(path, laser) {}
 
   std::optional<CarmenLine> next() override { return log_.next(); }
+  bool of_the_future() const override { return log_.of_the_future(); }
   std::string remarks() const override { return log_.remarks(); }
 
  private:

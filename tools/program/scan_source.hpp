@@ -32,6 +32,9 @@ class ScanSource {
   /// robot's.
   virtual std::optional<CarmenLine> next() = 0;
 
+  /// LaserLog::of_the_future().
+  virtual bool of_the_future() const { return false; }
+
   /// Remarks for the user, at the end, about the arrival of the lines; empty if there are none.
   virtual std::string remarks() const { return {}; }
 };

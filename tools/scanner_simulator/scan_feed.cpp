@@ -27,9 +27,14 @@ LaserSettings beams_of(const CarmenLine& line) {
 }  // namespace
 
 ScanFeed ScanFeed::from_log(const std::string& path) {
-  return ScanFeed([reader = std::make_shared<CarmenReader>(path), laser = LaserSettings{.beams = 0}]() mutable {
+  return ScanFeed([reader = std::make_shared<CarmenReader>(path), laser = LaserSettings{.beams = 0},
+                   newest_ns = std::int64_t{0}]() mutable {
     auto line = reader->next();
     if (!line) return line;
+    if (line->time_ns < newest_ns)
+      throw BadInput(reader->path(), reader->line(),
+                     "ipc_timestamp goes back; expected no less than that of the scan line before");
+    newest_ns = line->time_ns;
     if (laser.beams == 0) {
       laser = beams_of(*line);
     } else if (misfit_of(line->ranges_m.size(), line->start_angle_rad, line->angular_resolution_rad, laser) !=

@@ -14,7 +14,7 @@ namespace curbline::tools {
 
 class ScanFeed {
  public:
-  /// All lines must have the beams of the first.
+  /// All lines must have the beams of the first, and times that do not go back: a scanner's clock does not.
   static ScanFeed from_log(const std::string& path);
   static ScanFeed from_scene(const Scene& scene, const Robot& robot);
 
