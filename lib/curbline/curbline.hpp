@@ -4,6 +4,7 @@
 // clang-format off
 // Shared by all.
 #include "curbline/limits.hpp"                  // sizes, at compile time
+#include "curbline/cell_prior.hpp"              // of the variance within a cell
 #include "curbline/settings.hpp"                // geometry, noise and tuning, at run time
 #include "curbline/setting_ranges.hpp"          // what each setting may be
 #include "curbline/status.hpp"                  // how a call ended

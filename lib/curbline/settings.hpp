@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "curbline/cell_prior.hpp"
 #include "curbline/limits.hpp"
-#include "curbline/map/cell.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 #include "curbline/status.hpp"

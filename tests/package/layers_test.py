@@ -10,6 +10,8 @@ WAY = ["map", "regions", "planes", "labels", "curbs"]
 BEFORE = {folder: WAY[:k] for k, folder in enumerate(WAY)} | {"intake": [], "can": ["intake", "curbs"]}
 # Files that may include later stages: they compare a line with what earlier lines have produced.
 BACK = {"map_comparison", "line_intake"}
+# Headers beside the folders that put all stages together; the others are those that all share, and need no stage.
+WHOLE = {"curbline", "pipeline", "workspace"}
 
 
 def sources(folder):
@@ -18,6 +20,16 @@ def sources(folder):
 
 def included(file):
     return re.findall(r'#include ["<]([^">]+)[">]', file.read_text())
+
+
+def stages_reached(file):
+    """The folders of lib/curbline whose headers a file includes, itself or by what it includes."""
+    seen, left = set(), [file]
+    while left:
+        new = {i for i in included(left.pop()) if i.startswith("curbline/")} - seen
+        seen |= new
+        left += [ROOT / "lib" / i for i in new]
+    return {i.split("/")[1] for i in seen if i.count("/") == 2}
 
 
 class Layers(unittest.TestCase):
@@ -29,8 +41,13 @@ class Layers(unittest.TestCase):
         self.assertEqual({f.name for f in (ROOT / "lib/curbline").iterdir() if f.is_dir()}, set(BEFORE))
         for folder, before in BEFORE.items():
             for file in sources(f"lib/curbline/{folder}"):
-                stages = {i.split("/")[1] for i in included(file) if i.startswith("curbline/") and i.count("/") == 2}
-                self.assertEqual(stages - {folder, *before} if file.stem not in BACK else set(), set(), file)
+                if file.stem not in BACK:
+                    self.assertEqual(stages_reached(file) - {folder, *before}, set(), file)
+
+    def test_what_all_stages_of_lib_share_needs_none_of_them(self):
+        for file in (ROOT / "lib/curbline").iterdir():
+            if file.is_file() and file.stem not in WHOLE:
+                self.assertEqual(stages_reached(file), set(), file)
 
     def test_port_includes_nothing_of_boards_and_tools(self):
         for file in sources("port"):

@@ -2,14 +2,9 @@
 // unknown mean and variance (paper, section III-B), and the centroid of its points. 24 bytes, O(1) a point.
 #pragma once
 
-namespace curbline {
+#include "curbline/cell_prior.hpp"
 
-/// Prior of a cell's variance: a scaled inverse chi-squared of `degrees` observations of `variance_m2`. The mean's
-/// prior is flat (kappa0 = 0), as in the paper's code.
-struct CellPrior {
-  float degrees = 3.0f;               ///< [1e-3, 1e6]
-  float variance_m2 = 0.02f * 0.02f;  ///< [1e-10, 100]
-};
+namespace curbline {
 
 /// Sufficient statistics. A point of weight w is a height with the variance (noise variance of the cell) / w, so that a
 /// noisier reading moves the mean less. Offsets are from the cell's centre: equally exact in float wherever the map is.
