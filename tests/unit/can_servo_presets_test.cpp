@@ -3,23 +3,17 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <numbers>
 
+#include "support/can_frame.hpp"
+
 using namespace curbline::can;
+using curbline::test::frame;
 
 namespace {
 
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-
-Frame frame(std::uint32_t id, bool extended, std::initializer_list<std::uint8_t> bytes) {
-  Frame f;
-  f.id = id;
-  f.extended = extended;
-  for (const std::uint8_t byte : bytes) f.data[f.length++] = byte;
-  return f;
-}
 
 }  // namespace
 

@@ -5,25 +5,19 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <random>
 
+#include "support/can_frame.hpp"
+
 using namespace curbline::can;
+using curbline::test::frame;
 
 namespace {
 
 /// Four bytes after a statusword.
 constexpr Signal position{.id = 0x181, .start_bit = 16, .scale = 1e-3};
 constexpr Signal turns{.id = 0x69, .is_float = true};
-
-Frame frame(std::uint32_t id, bool extended, std::initializer_list<std::uint8_t> bytes) {
-  Frame f;
-  f.id = id;
-  f.extended = extended;
-  for (const std::uint8_t byte : bytes) f.data[f.length++] = byte;
-  return f;
-}
 
 }  // namespace
 
