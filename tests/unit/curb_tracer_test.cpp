@@ -449,7 +449,7 @@ auto traced_gutter(double depth_m, float robot_x_m = 0.0f, float robot_y_m = 0.0
   return stages;
 }
 
-TEST_CASE("curb tracer: a step from a gutter that bears the road's plane is as high as from its bottom") {
+TEST_CASE("curb tracer: a step from a gutter labelled as the road is as high as from its bottom") {
   const auto up = traced_gutter(0.02), down = traced_gutter(0.02, 2.3f, 1.2f);
   REQUIRE(up->tracer.curbs().size() == 1);
   REQUIRE(down->tracer.curbs().size() == 1);

@@ -18,7 +18,7 @@ using test::small_settings;
 using test::Stages;
 
 /// The number of different planes that cells of the window have as labels, once these have settled.
-std::size_t borne_by(Stages<small_limits>& stages) {
+std::size_t label_count_of(Stages<small_limits>& stages) {
   stages.settle();
   std::set<int> labels;
   stages.dem.for_each_valid([&](int i, int j, int) { labels.insert(stages.label_at(i, j)); });
@@ -26,16 +26,16 @@ std::size_t borne_by(Stages<small_limits>& stages) {
 }
 
 template <typename Height>
-std::size_t borne_from(const Viewpoint& view, Height&& height_m) {
+std::size_t label_count_from(const Viewpoint& view, Height&& height_m) {
   Stages<small_limits> stages(small_settings());
   stages.view = view;
   fill(stages.dem, height_m);
-  return borne_by(stages);
+  return label_count_of(stages);
 }
 
 template <typename Height>
-std::size_t borne(Height&& height_m, float laser_z_m = 1.0f) {
-  return borne_from({0.0f, 0.0f, laser_z_m}, height_m);
+std::size_t label_count(Height&& height_m, float laser_z_m = 1.0f) {
+  return label_count_from({0.0f, 0.0f, laser_z_m}, height_m);
 }
 
 /// For a map of this ground: REQUIREs that there is a plane at a position. Returns whether it is ground that may be a
@@ -56,7 +56,7 @@ bool may_be_veil(const Viewpoint& view, double x_m, double y_m, Height&& height_
 //          |           the cells at 1.1 m contain points of both sides
 //  ________|
 TEST_CASE("ground: the cells in which a curb's face stands are left to both sides") {
-  CHECK(borne([](double x, double) { return x < 1.15 ? 0.0 : 0.12; }) == 2);
+  CHECK(label_count([](double x, double) { return x < 1.15 ? 0.0 : 0.12; }) == 2);
 }
 
 //           |
@@ -71,8 +71,8 @@ TEST_CASE("ground: the cells in which a curb's face stands are left to both side
       return x < 1.15 ? 0.0 : 0.06;
     };
   };
-  CHECK(borne(post(1.2)) == 2);
-  CHECK(borne(post(0.9)) == 2);
+  CHECK(label_count(post(1.2)) == 2);
+  CHECK(label_count(post(0.9)) == 2);
 }
 
 //           ______
@@ -98,7 +98,7 @@ TEST_CASE("ground: a strip that rises is ground, not the face of a curb, however
 //       _____|         a strip of three cells, level
 //  ____|
 TEST_CASE("ground: a strip that has cells of its own is ground") {
-  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.3 ? 0.07 : 0.14; }) == 3);
+  CHECK(label_count([](double x, double) { return x < 1.0 ? 0.0 : x < 1.3 ? 0.07 : 0.14; }) == 3);
 }
 
 //         |
@@ -110,8 +110,8 @@ TEST_CASE("ground: an obstacle, thin or wide, is left to the ground before it") 
       return x >= begin ? 0.2 + (static_cast<int>(y * 100) % 10 < 5 ? -0.15 : 0.15) : 0.0;
     };
   };
-  CHECK(borne(until(2.3)) == 1);
-  CHECK(borne(until(1.2)) == 1);
+  CHECK(label_count(until(2.3)) == 1);
+  CHECK(label_count(until(1.2)) == 1);
 }
 
 //
@@ -123,10 +123,10 @@ TEST_CASE("ground: wide ground is ground however rough it is, as long as it is l
       return x < begin || x >= end ? 0.0 : 0.05 + (static_cast<int>(y * 100) % 10 < 5 ? -half_m : half_m);
     };
   };
-  CHECK(borne(rough(1.2, 2.4, 0.05)) == 2);
-  CHECK(borne(rough(1.2, 2.1, 0.05)) == 2);
-  CHECK(borne(rough(1.2, 1.6, 0.05)) == 1);
-  CHECK(borne(rough(1.2, 2.4, 0.12)) == 1);
+  CHECK(label_count(rough(1.2, 2.4, 0.05)) == 2);
+  CHECK(label_count(rough(1.2, 2.1, 0.05)) == 2);
+  CHECK(label_count(rough(1.2, 1.6, 0.05)) == 1);
+  CHECK(label_count(rough(1.2, 2.4, 0.12)) == 1);
 }
 
 //           |
@@ -141,11 +141,11 @@ TEST_CASE(
   const auto before_wall = [&](double strip_m, double lean) {
     return [=](double x, double y) { return x >= 1.2 ? wall(x, y) : x < 1.0 ? 0.0 : strip_m + lean * (x - 1.1); };
   };
-  CHECK(borne(before_wall(0.04, 0.2)) == 1);
-  CHECK(borne(before_wall(0.4, 0.0)) == 1);    // the box itself
-  CHECK(borne(before_wall(0.08, 0.0)) == 2);   // a pavement
-  CHECK(borne(before_wall(-0.04, 0.2)) == 2);  // a gutter
-  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
+  CHECK(label_count(before_wall(0.04, 0.2)) == 1);
+  CHECK(label_count(before_wall(0.4, 0.0)) == 1);    // the box itself
+  CHECK(label_count(before_wall(0.08, 0.0)) == 2);   // a pavement
+  CHECK(label_count(before_wall(-0.04, 0.2)) == 2);  // a gutter
+  CHECK(label_count([](double x, double) { return x < 1.0 ? 0.0 : x < 1.2 ? 0.04 : 0.16; }) == 3);
 }
 
 //           |                               ______
@@ -162,13 +162,13 @@ TEST_CASE("ground: a bank before an obstacle, or a rough verge, that is wider th
       return x < 1.6 - width_m ? 0.0 : 0.2 * (x - 1.6 + width_m);
     };
   };
-  CHECK(borne(bank(0.3)) == 1);
-  CHECK(borne(bank(0.4)) == 2);
+  CHECK(label_count(bank(0.3)) == 1);
+  CHECK(label_count(bank(0.4)) == 2);
   const auto verge = [=](double width_m) {
     return [=](double x, double y) { return x >= 1.6 ? 0.12 : x < 1.6 - width_m ? 0.0 : one_of(y, 0.034, 0.086); };
   };
-  CHECK(borne(verge(0.3)) == 2);
-  CHECK(borne(verge(0.4)) == 3);
+  CHECK(label_count(verge(0.3)) == 2);
+  CHECK(label_count(verge(0.4)) == 3);
 }
 
 //  o_
@@ -179,10 +179,10 @@ TEST_CASE(
     "ground: a veil behind an obstacle's edge is left to the ground around it, the same slope seen from above is "
     "none") {
   const auto veil = [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; };
-  CHECK(borne(veil, 1.0f) == 2);  // the ground before it and behind
-  CHECK(borne(veil, 1.04f) == 2);
-  CHECK(borne(veil, 1.1f) == 3);  // ten standard deviations off the rays
-  CHECK(borne(veil, 3.0f) == 3);
+  CHECK(label_count(veil, 1.0f) == 2);  // the ground before it and behind
+  CHECK(label_count(veil, 1.04f) == 2);
+  CHECK(label_count(veil, 1.1f) == 3);  // ten standard deviations off the rays
+  CHECK(label_count(veil, 3.0f) == 3);
 }
 
 //        ___
@@ -192,9 +192,9 @@ TEST_CASE("ground: the top of a box is an obstacle, but one lower than a stair o
     return
         [=](double x, double y) { return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 1.5 ? height_m : 0.0; };
   };
-  CHECK(borne(block(0.28, 0.9)) == 1);
-  CHECK(borne(block(0.16, 0.9)) == 2);
-  CHECK(borne(block(0.28, 1.8)) == 2);
+  CHECK(label_count(block(0.28, 0.9)) == 1);
+  CHECK(label_count(block(0.16, 0.9)) == 2);
+  CHECK(label_count(block(0.28, 1.8)) == 2);
 }
 
 //     ||  wall, from end to end of the window     ___|  platform beyond it     ___   platform under the robot, which
@@ -203,13 +203,13 @@ TEST_CASE("ground: what is narrower than shoulders is a wall, unless it may go o
   const auto strip = [](double from_y_m, double to_y_m) {
     return [=](double, double y) { return y > from_y_m && y < to_y_m ? 0.28 : 0.0; };
   };
-  CHECK(borne(strip(0.9, 1.2)) == 2);  // the ground on both sides
-  CHECK(borne(strip(0.9, 1.6)) == 3);
-  CHECK(borne(strip(2.0, 9.0)) == 2);
+  CHECK(label_count(strip(0.9, 1.2)) == 2);  // the ground on both sides
+  CHECK(label_count(strip(0.9, 1.6)) == 3);
+  CHECK(label_count(strip(2.0, 9.0)) == 2);
   const auto aslant = [](double x, double y) { return y - 0.3 * x > 0.6 && y - 0.3 * x < 0.95 ? 0.28 : 0.0; };
-  CHECK(borne(aslant) == 2);
+  CHECK(label_count(aslant) == 2);
   const auto underfoot = [](double x, double) { return x < 0.6 ? std::nan("") : x < 0.9 ? 0.28 : 0.0; };
-  CHECK(borne_from({0.0f, 1.2f, 1.0f}, underfoot) == 2);
+  CHECK(label_count_from({0.0f, 1.2f, 1.0f}, underfoot) == 2);
 }
 
 //       __ . . .       a pavement of which the laser has seen only the front so far; a wall and what it hides
@@ -221,16 +221,17 @@ TEST_CASE("ground: a high pavement of which the laser has seen the front alone, 
     };
   };
   const Viewpoint driving{0.0f, 1.2f, 1.0f, 2.4f, 2.4f}, standing{0.0f, 1.2f, 1.0f};
-  CHECK(borne_from(driving, seen(1.5, 9.0)) == 2);
-  CHECK(borne_from(driving, seen(1.5, 2.0)) == 2);   // the ground before it and behind
-  CHECK(borne_from(standing, seen(1.5, 9.0)) == 1);  // it has looked everywhere: a wall that hides what is behind it
+  CHECK(label_count_from(driving, seen(1.5, 9.0)) == 2);
+  CHECK(label_count_from(driving, seen(1.5, 2.0)) == 2);  // the ground before it and behind
+  CHECK(label_count_from(standing, seen(1.5, 9.0)) ==
+        1);  // it has looked everywhere: a wall that hides what is behind it
 }
 
 //             ______
 //          __|         between two walls, 1.2 m apart
 //  _______|
 TEST_CASE("ground: the steps of a stair are as small as boxes, and the next one lies higher") {
-  CHECK(borne([](double x, double y) {
+  CHECK(label_count([](double x, double y) {
           if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
           return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : 0.42;
         }) == 4);
@@ -247,8 +248,8 @@ TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, 
       return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : x < 1.5 + gap_m ? 0.0 : 0.42;
     };
   };
-  CHECK(borne(steps(0.0)) == 4);
-  CHECK(borne(steps(0.3)) == 2);
+  CHECK(label_count(steps(0.0)) == 4);
+  CHECK(label_count(steps(0.3)) == 2);
 }
 
 //               ___
@@ -256,7 +257,7 @@ TEST_CASE("ground: the highest step of a stair that is seen is no top of a box, 
 //         __|
 //  ______|
 TEST_CASE("ground: a step of a stair beside a face that is blurred is no fringe of it") {
-  CHECK(borne([](double x, double y) {
+  CHECK(label_count([](double x, double y) {
           if (x < 0.9 || y < 0.6 || y > 1.8) return 0.0;
           if (x > 1.8) return std::nan("");  // not seen
           const double blur_m = static_cast<int>(y * 100) % 10 < 5 ? -0.1 : 0.1;
@@ -272,13 +273,15 @@ TEST_CASE("ground: readings in the shadow of a step down are left to both sides,
   const auto down = [](double slope) {
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - slope * (x - 1.55) : -0.2; };
   };
-  CHECK(borne(down(0.4)) == 2);
-  CHECK(borne(down(0.2)) == 3);  // less than half as steep as the rays
-  CHECK(borne(down(0.0)) == 3);
-  CHECK(borne([](double x, double) {
+  CHECK(label_count(down(0.4)) == 2);
+  CHECK(label_count(down(0.2)) == 3);  // less than half as steep as the rays
+  CHECK(label_count(down(0.0)) == 3);
+  CHECK(label_count([](double x, double) {
           return x < 1.4 ? -0.2 : x < 1.7 ? -0.1 + 0.4 * (x - 1.55) : 0.0;
         }) == 3);  // upward, seen from below
-  CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22; }) == 3);  // wider
+  CHECK(label_count([](double x, double) {
+          return x < 1.4 ? 0.0 : x < 1.9 ? -0.44 * (x - 1.4) : -0.22;
+        }) == 3);  // wider
 }
 
 TEST_CASE(
@@ -286,10 +289,10 @@ TEST_CASE(
   const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; };
   const auto ramp = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.9 ? -0.4 * (x - 1.4) : -0.2; };
   Viewpoint view{0.8f, 1.2f, 1.0f};
-  CHECK(borne_from(view, down) == 3);  // had it always been there: the shadow is narrower
+  CHECK(label_count_from(view, down) == 3);  // had it always been there: the shadow is narrower
   view.end_x_m = view.end_y_m = 2.4f;
-  CHECK(borne_from(view, down) == 2);
-  CHECK(borne_from(view, ramp) == 3);
+  CHECK(label_count_from(view, down) == 2);
+  CHECK(label_count_from(view, ramp) == 3);
 }
 
 //     ____ o ->          the robot has driven over the edge and no longer sees it
@@ -303,7 +306,7 @@ TEST_CASE("ground: readings in the shadow of a step stay what they are when the 
     fill(stages.dem, [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2; });
     stages.dem.look_from(robot_x_m, 1.2f);
     stages.view.x_m = robot_x_m;
-    return borne_by(stages);
+    return label_count_of(stages);
   };
   CHECK(borne_after(0.0f) == 2);
   CHECK(borne_after(1.55f) == 2);
@@ -347,7 +350,7 @@ TEST_CASE(
     see(false);
     look_from(robot_x_m);
     see(true);
-    return borne_by(stages);
+    return label_count_of(stages);
   };
   CHECK(borne_after(0.0f) == 2);
   CHECK(borne_after(2.2f) == 2);
@@ -360,7 +363,7 @@ TEST_CASE("ground: the face of a curb is one in a window that is longer than wid
       return (along < 0.55 ? 0.0 : 0.05) + (along > 1.2 && across > 0.55 ? 0.05 : 0.0);
     };
     fill(stages.dem, [&](double x, double y) { return rows > cols ? ground(x, y) : ground(y, x); });
-    return borne_by(stages);
+    return label_count_of(stages);
   };
   CHECK(borne_in(24, 12) == 3);
   CHECK(borne_in(12, 24) == 3);
@@ -374,19 +377,19 @@ TEST_CASE(
   const auto kerb = [](double x) { return 0.08 * std::clamp((x - 1.12) / 0.08, 0.0, 1.0); };
   const auto in_cell = [](double place_m, int cell) { return static_cast<int>(place_m * 10.0) % 4 == cell; };
   const auto on_face = [](double x) { return x > 1.1 && x < 1.2; };
-  CHECK(borne([&](double x, double y) { return in_cell(y, 0) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
-  CHECK(borne([&](double x, double) { return in_cell(x, 3) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
+  CHECK(label_count([&](double x, double y) { return in_cell(y, 0) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
+  CHECK(label_count([&](double x, double) { return in_cell(x, 3) || on_face(x) ? kerb(x) : std::nan(""); }) == 2);
 }
 
 //           ______
 //     ?    /           as a road is seen, a cell wide, beside what a parked car hides
 TEST_CASE("ground: a strip beside hidden ground on one side is no face, where most of it is beside that") {
   const auto kerb = [](double x) { return 0.08 * std::clamp((x - 1.12) / 0.08, 0.0, 1.0); };
-  CHECK(borne([&](double x, double y) { return x < 1.1 && y > 0.6 ? std::nan("") : kerb(x); }) == 3);
+  CHECK(label_count([&](double x, double y) { return x < 1.1 && y > 0.6 ? std::nan("") : kerb(x); }) == 3);
 }
 
 TEST_CASE("ground: the shadow of a step across the grid is as wide as the laser is far from its edge") {
-  CHECK(borne([](double x, double y) {
+  CHECK(label_count([](double x, double y) {
           const double d = x + y;
           return d < 2.0 ? 0.0 : d < 2.35 ? -0.1 - 0.36 * (d - 2.175) : -0.2;
         }) == 2);
@@ -401,8 +404,8 @@ TEST_CASE("ground: the veil of an edge that bends about the laser is left to bot
       return r < 1.4 ? 0.0 : r < 1.7 ? -0.15 - slope * (r - 1.55) : -0.3;
     };
   };
-  CHECK(borne(down(0.5)) == 2);
-  CHECK(borne(down(0.0)) == 3);
+  CHECK(label_count(down(0.5)) == 2);
+  CHECK(label_count(down(0.0)) == 3);
 }
 
 //  _____
@@ -415,10 +418,10 @@ TEST_CASE("ground: a tread that falls less than half as steeply as the rays is n
       return beyond_m < 0.0 ? 0.0 : beyond_m < 0.3 ? -0.15 - slope * (beyond_m - 0.15) : -0.3;
     };
   };
-  CHECK(borne(tread(1.4, 0.25)) == 3);  // the rays fall by 0.71
-  CHECK(borne(tread(0.9, 0.42)) == 3);  // by 1.11
-  CHECK(borne(tread(1.4, 0.4)) == 2);
-  CHECK(borne(tread(0.9, 0.6)) == 2);
+  CHECK(label_count(tread(1.4, 0.25)) == 3);  // the rays fall by 0.71
+  CHECK(label_count(tread(0.9, 0.42)) == 3);  // by 1.11
+  CHECK(label_count(tread(1.4, 0.4)) == 2);
+  CHECK(label_count(tread(0.9, 0.6)) == 2);
 }
 
 //  _____
@@ -426,21 +429,21 @@ TEST_CASE("ground: a tread that falls less than half as steeply as the rays is n
 //        ______
 TEST_CASE(
     "ground: a strip of a cell in the shadow of a step down is left to both sides, seen from below it is ground") {
-  CHECK(borne([](double x, double) { return x < 1.4 ? 0.0 : x < 1.5 ? -0.1 : -0.2; }) == 2);
-  CHECK(borne([](double x, double) { return x < 1.4 ? -0.2 : x < 1.5 ? -0.1 : 0.0; }) == 3);
+  CHECK(label_count([](double x, double) { return x < 1.4 ? 0.0 : x < 1.5 ? -0.1 : -0.2; }) == 2);
+  CHECK(label_count([](double x, double) { return x < 1.4 ? -0.2 : x < 1.5 ? -0.1 : 0.0; }) == 3);
 }
 
 TEST_CASE("ground: a row of cells at the window's end, of which the slope is not known, is no veil") {
-  CHECK(borne([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
+  CHECK(label_count([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
 
 //           o______     the origin of a cloud, on the pavement's plane; no laser has seen it from there
 //  ________|
 TEST_CASE("ground: a plane through the laser is ground if it is no higher above the ground than a curb") {
   const auto pavement = [](double kerb_m) { return [=](double x, double) { return x < 1.4 ? -kerb_m : 0.0; }; };
-  CHECK(borne(pavement(0.12), 0.0f) == 2);
-  CHECK(borne(pavement(0.28), 0.0f) == 2);
-  CHECK(borne(pavement(0.32), 0.0f) == 1);  // higher than any curb: a veil
+  CHECK(label_count(pavement(0.12), 0.0f) == 2);
+  CHECK(label_count(pavement(0.28), 0.0f) == 2);
+  CHECK(label_count(pavement(0.32), 0.0f) == 1);  // higher than any curb: a veil
 }
 
 //  o
@@ -486,7 +489,7 @@ TEST_CASE("ground: what falls by little of the step between the planes beside it
 TEST_CASE("ground: what is ground is so whatever way the window lies, and on whatever side of it the laser stands") {
   const int quarters = GENERATE(1, 2, 3);
   const auto borne_turned = [=](const Viewpoint& view, auto&& height_m) {
-    return borne_from(turned(view, quarters), turned_ground(height_m, quarters));
+    return label_count_from(turned(view, quarters), turned_ground(height_m, quarters));
   };
   const auto one_of = [](double y, double low_m, double high_m) {
     return static_cast<int>(y * 100) % 10 < 5 ? low_m : high_m;
@@ -529,16 +532,16 @@ TEST_CASE("ground: what lies in the shadow of a step down, but not between both 
   const auto strip = [](double z_m) {  // falls more than half as steeply as the rays
     return [=](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? z_m - 0.4 * (x - 1.4) : -0.2; };
   };
-  CHECK(borne(strip(-0.08)) == 2);  // a veil
-  CHECK(borne(strip(-0.23)) == 3);  // a gutter
-  CHECK(borne(strip(0.15)) == 3);   // a curb stone
+  CHECK(label_count(strip(-0.08)) == 2);  // a veil
+  CHECK(label_count(strip(-0.23)) == 3);  // a gutter
+  CHECK(label_count(strip(0.15)) == 3);   // a curb stone
 }
 
 //  ______        ______
 //        |_    /
 //          `-_|        a channel, of which one side is in the shadow and the other steep
 TEST_CASE("ground: the floor of a channel is no veil, as beyond it there is a side of the channel, not ground") {
-  CHECK(borne([](double x, double) {
+  CHECK(label_count([](double x, double) {
           if (x < 1.4 || x >= 2.0) return 0.0;
           return x < 1.7 ? -0.1 - 0.2 * (x - 1.55) : -0.4 + 2.0 * (x - 1.7);
         }) == 3);
@@ -548,14 +551,14 @@ TEST_CASE("ground: a strip in the shadow of a step down is a veil however high t
   const int quarters = GENERATE(0, 2);
   const auto down = [](double x, double) { return x < 1.4 ? 5.0 : x < 1.7 ? 4.9 - 0.4 * (x - 1.55) : 4.8; };
   const auto seen_from = [&](float z_m) {
-    return borne_from(turned({0.0f, 0.0f, z_m}, quarters), turned_ground(down, quarters));
+    return label_count_from(turned({0.0f, 0.0f, z_m}, quarters), turned_ground(down, quarters));
   };
   CHECK(seen_from(6.0f) == 2);
   CHECK(seen_from(7.0f) == 3);  // from higher up the shadow is narrower
 }
 
 TEST_CASE("ground: a veil that is mostly a cell wide is left to both sides, though here and there it is two") {
-  CHECK(borne([](double x, double y) {
+  CHECK(label_count([](double x, double y) {
           const bool wider = static_cast<int>(y * 10) % 3 == 0;
           return x < 1.4 ? 0.0 : x < 1.5 || (wider && x < 1.6) ? -0.1 : -0.2;
         }) == 2);
@@ -563,7 +566,7 @@ TEST_CASE("ground: a veil that is mostly a cell wide is left to both sides, thou
 
 TEST_CASE("ground: a step that the laser is straight above has no shadow") {
   const auto down = [](double x, double) { return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 : -0.2; };
-  CHECK(borne_from({1.55f, 1.2f, 1.0f}, down) == 3);
+  CHECK(label_count_from({1.55f, 1.2f, 1.0f}, down) == 3);
 }
 
 //  ________
@@ -578,9 +581,9 @@ TEST_CASE("ground: a strip that lies farther from a step's sides than a face is 
       return x < 1.4 ? 0.0 : x < 1.7 ? -0.1 - 0.4 * (x - 1.55) : -0.2;
     };
   };
-  CHECK(borne(apart(0.1, 0.1)) == 2);
-  CHECK(borne(apart(0.2, 0.0)) == 3);
-  CHECK(borne(apart(0.0, 0.2)) == 3);
+  CHECK(label_count(apart(0.1, 0.1)) == 2);
+  CHECK(label_count(apart(0.2, 0.0)) == 3);
+  CHECK(label_count(apart(0.0, 0.2)) == 3);
 }
 
 TEST_CASE("ground: an uneven row at the window's end is no face: what lies beyond it is not known") {
@@ -589,12 +592,12 @@ TEST_CASE("ground: an uneven row at the window's end is no face: what lies beyon
       return (first ? x < 0.1 : x > 2.3) ? 0.06 + (static_cast<int>(y * 100) % 10 < 5 ? -0.02 : 0.02) : 0.12;
     };
   };
-  CHECK(borne(row(true)) == 2);
-  CHECK(borne(row(false)) == 2);
+  CHECK(label_count(row(true)) == 2);
+  CHECK(label_count(row(false)) == 2);
 }
 
 TEST_CASE("ground: on a street that leans, too, a pavement before a wall is no fringe of it") {
-  CHECK(borne([](double x, double y) {
+  CHECK(label_count([](double x, double y) {
           const double street_m = 0.08 * x + 0.08 * y;
           if (x >= 1.2) return 0.7 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
           return x < 1.0 ? street_m : street_m + 0.08;
@@ -611,8 +614,8 @@ TEST_CASE("ground: level readings on a wall, higher than any curb, are assigned 
       return x < 0.8 ? 0.0 : x < 1.0 ? std::nan("") : ledge_m;
     };
   };
-  CHECK(borne(ledge(0.4)) == 1);
-  CHECK(borne(ledge(0.25)) == 2);
+  CHECK(label_count(ledge(0.4)) == 1);
+  CHECK(label_count(ledge(0.25)) == 2);
 }
 
 TEST_CASE("ground: a strip that does not touch an obstacle is no fringe of it") {
@@ -629,10 +632,10 @@ TEST_CASE("ground: a strip that does not touch an obstacle is no fringe of it") 
       return x < 1.0 ? std::nan("") : x > 1.2 ? 0.0 : 0.04 - 0.2 * (x - 1.1);
     };
   };
-  CHECK(borne(before(0.0)) == 1);
-  CHECK(borne(before(0.1)) == 2);
-  CHECK(borne_from({2.4f, 0.0f, 1.0f}, behind(0.0)) == 1);
-  CHECK(borne_from({2.4f, 0.0f, 1.0f}, behind(0.1)) == 2);
+  CHECK(label_count(before(0.0)) == 1);
+  CHECK(label_count(before(0.1)) == 2);
+  CHECK(label_count_from({2.4f, 0.0f, 1.0f}, behind(0.0)) == 1);
+  CHECK(label_count_from({2.4f, 0.0f, 1.0f}, behind(0.1)) == 2);
 }
 
 // Seen from above, from the left:   .  .  .  .  .  .
@@ -663,7 +666,7 @@ TEST_CASE("ground: a narrow ridge that is hardly seen past a post is no ground, 
     for (int k = 0; k < 3; ++k) {
       fill(stages.dem, [&](double x, double y) { return height_m(k >= ridge.times_seen, x, y); });
     }
-    return borne_by(stages);
+    return label_count_of(stages);
   };
   for (const bool along_y : {false, true}) {
     CHECK(planes({.along_y = along_y}) == 1);
@@ -677,7 +680,7 @@ TEST_CASE("ground: a narrow ridge that is hardly seen past a post is no ground, 
 }
 
 TEST_CASE("ground: of a cloud whose origin lies on the ground a fringe is left to it, too") {
-  CHECK(borne(
+  CHECK(label_count(
             [](double x, double y) {
               if (x >= 1.2) return 0.5 + (static_cast<int>(y * 100) % 10 < 5 ? -0.5 : 0.5);
               return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
@@ -773,13 +776,13 @@ TEST_CASE("ground: a strip before a wall that leans by more than 1 in 20 is a fr
 TEST_CASE("ground: a wall, whatever way it runs, is left to the ground, also if nothing is seen behind it") {
   const int quarters = GENERATE(0, 1, 2, 3);
   const auto wall = [=](double hidden_m) {
-    return borne_from(turned({0.0f, 1.2f, 1.0f}, quarters), turned_ground(
-                                                                [=](double x, double) {
-                                                                  if (x > 1.2 && x < 1.2 + hidden_m)
-                                                                    return std::nan("");
-                                                                  return x > 0.9 && x < 1.2 ? 0.28 : 0.0;
-                                                                },
-                                                                quarters));
+    return label_count_from(turned({0.0f, 1.2f, 1.0f}, quarters), turned_ground(
+                                                                      [=](double x, double) {
+                                                                        if (x > 1.2 && x < 1.2 + hidden_m)
+                                                                          return std::nan("");
+                                                                        return x > 0.9 && x < 1.2 ? 0.28 : 0.0;
+                                                                      },
+                                                                      quarters));
   };
   CHECK(wall(0.0) == 2);
   CHECK(wall(0.4) == 2);
@@ -792,10 +795,10 @@ TEST_CASE("ground: a block is no obstacle if a robot has room on it, if it leans
       return on_it ? height_m + lean * (x - from_x_m) : 0.0;
     };
   };
-  CHECK(borne(block(0.28, 0.6, 0.9)) == 1);
-  CHECK(borne(block(0.28, 0.6, 1.1)) == 2);  // more than a square metre
-  CHECK(borne(block(0.28, 0.6, 0.8, 0.2)) == 2);
-  for (const int quarters : {0, 1, 2, 3}) CHECK(borne(turned_ground(block(0.28, 1.8, 0.6), quarters), 3.0f) == 2);
+  CHECK(label_count(block(0.28, 0.6, 0.9)) == 1);
+  CHECK(label_count(block(0.28, 0.6, 1.1)) == 2);  // more than a square metre
+  CHECK(label_count(block(0.28, 0.6, 0.8, 0.2)) == 2);
+  for (const int quarters : {0, 1, 2, 3}) CHECK(label_count(turned_ground(block(0.28, 1.8, 0.6), quarters), 3.0f) == 2);
 }
 
 //              _____
@@ -809,8 +812,8 @@ TEST_CASE("ground: boxes beside each other are obstacles, low steps on a platfor
       return x > 0.9 && x < 1.4 ? 0.35 : x > 1.8 ? platform_m : 0.0;
     };
   };
-  CHECK(borne(steps(0.0)) == 1);
-  CHECK(borne(steps(0.22)) == 4);
+  CHECK(label_count(steps(0.0)) == 1);
+  CHECK(label_count(steps(0.22)) == 4);
 }
 
 TEST_CASE("ground: the next step of a stair may lie behind a face of two cells, whatever way the stair goes") {
@@ -822,8 +825,8 @@ TEST_CASE("ground: the next step of a stair may lie behind a face of two cells, 
       return x < 1.2 ? 0.14 : x < 1.5 ? 0.28 : x < 1.5 + face_m ? 0.0 : 0.42;
     };
   };
-  CHECK(borne_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.2), quarters)) == 4);
-  CHECK(borne_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.3), quarters)) == 2);
+  CHECK(label_count_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.2), quarters)) == 4);
+  CHECK(label_count_from(turned({0.0f, 0.0f, 1.0f}, quarters), turned_ground(steps(0.3), quarters)) == 2);
 }
 
 TEST_CASE("ground: a bank before rough grass that is lower than a curb is no fringe of it, before a hedge it is") {
@@ -833,8 +836,8 @@ TEST_CASE("ground: a bank before rough grass that is lower than a curb is no fri
       return x < 1.0 ? 0.0 : 0.04 + 0.2 * (x - 1.1);
     };
   };
-  CHECK(borne(before(0.075)) == 3);  // together with the grass
-  CHECK(borne(before(0.1)) == 1);
+  CHECK(label_count(before(0.075)) == 3);  // together with the grass
+  CHECK(label_count(before(0.1)) == 1);
 }
 
 TEST_CASE("ground: what stands on the ground is measured against the largest plane, whichever was there first") {
@@ -854,7 +857,7 @@ TEST_CASE("ground: what stands on the ground is measured against the largest pla
 }
 
 TEST_CASE("ground: a slope that a robot can stand on is ground") {
-  CHECK(borne([](double x, double) { return x < 1.0 ? 0.0 : 0.3 * (x - 1.0); }) == 2);
+  CHECK(label_count([](double x, double) { return x < 1.0 ? 0.0 : 0.3 * (x - 1.0); }) == 2);
 }
 
 }  // namespace

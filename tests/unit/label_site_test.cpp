@@ -59,7 +59,7 @@ TEST_CASE("label site: a certain site sends the whole coupling, an uncertain one
   CHECK(unsure[1] == Approx(LabelSite::message_scale * nats(0.25)).margin(0.5));
 }
 
-TEST_CASE("label site: one label is borne whatever is heard, and none by a site that knows none") {
+TEST_CASE("label site: a site that knows one label keeps it whatever is heard, and one that knows none has none") {
   LabelSite s;
   CHECK(s.decided());
   CHECK(s.most_likely({}) == no_label);

@@ -36,14 +36,14 @@ int creases(const test::Stages<limits>& stages) {
   return static_cast<int>(std::count_if(curbs.begin(), curbs.end(), [](const Curb& curb) { return !is_step(curb); }));
 }
 
-struct Borne {
+struct Labels {
   std::set<Label> planes, surfaces;
 };
 
 /// The labels of the cells whose middle is in a part of the window.
 template <typename Within>
-Borne borne(const test::Stages<limits>& stages, Within&& within) {
-  Borne out;
+Labels labels_of(const test::Stages<limits>& stages, Within&& within) {
+  Labels out;
   for (int i = 0; i < limits.rows; ++i) {
     for (int j = 0; j < limits.cols; ++j) {
       if (!within(0.1 * (i + 0.5), 0.1 * (j + 0.5))) continue;
@@ -66,7 +66,7 @@ TEST_CASE(
     const double away = across_x * (x - 2.0) + across_y * (y - 2.0);
     return creased ? -0.025 * std::abs(away) : -0.0125 * away * away;
   });
-  const Borne all = borne(*stages, everywhere);
+  const Labels all = labels_of(*stages, everywhere);
   CHECK(all.planes.size() >= 2);
   CHECK(all.surfaces.size() == (creased ? 2 : 1));
   CHECK((creases(*stages) > 0) == creased);
@@ -75,7 +75,7 @@ TEST_CASE(
 TEST_CASE("surfaces: three planes or more along a bend are one, by the lowest of their labels, a hollow as a crown") {
   const double sign = GENERATE(-1.0, 1.0);
   const auto stages = traced([=](double x, double) { return sign * 0.02 * (x - 2.0) * (x - 2.0); });
-  const Borne all = borne(*stages, everywhere);
+  const Labels all = labels_of(*stages, everywhere);
   CHECK(all.planes.size() >= 3);
   CHECK(all.surfaces == std::set<Label>{*all.planes.begin()});
   CHECK(creases(*stages) == 0);
@@ -85,8 +85,8 @@ TEST_CASE("surfaces: three planes or more along a bend are one, by the lowest of
 //     |__.--.__
 TEST_CASE("surfaces: a curb beside a cambered road parts it from the pavement, and is as high as the road is there") {
   const auto stages = traced([](double x, double) { return x > 3.0 ? 0.028 : -0.012 * (x - 2.0) * (x - 2.0); });
-  const Borne road = borne(*stages, [](double x, double) { return x < 2.8; });
-  const Borne pavement = borne(*stages, [](double x, double) { return x > 3.2; });
+  const Labels road = labels_of(*stages, [](double x, double) { return x < 2.8; });
+  const Labels pavement = labels_of(*stages, [](double x, double) { return x > 3.2; });
   CHECK(road.surfaces.size() == 1);
   CHECK(pavement.surfaces.size() == 1);
   CHECK(road.surfaces != pavement.surfaces);
@@ -111,8 +111,8 @@ TEST_CASE("surfaces: the foot of a ramp is the edge of a ramp, whatever the grou
     if (curb.kind == CurbKind::ramp_edge) edge_m += length_of(curb);
   }
   CHECK(edge_m == Approx(4.0).margin(0.3));
-  CHECK(borne(*stages, [](double x, double) { return x < 1.8; }).surfaces !=
-        borne(*stages, [](double x, double) { return x > 2.2; }).surfaces);
+  CHECK(labels_of(*stages, [](double x, double) { return x < 1.8; }).surfaces !=
+        labels_of(*stages, [](double x, double) { return x > 2.2; }).surfaces);
 }
 
 TEST_CASE("surfaces: planes that are told apart by a step, more than by a crease, are two, though the ground is bent") {
@@ -140,10 +140,10 @@ TEST_CASE("surfaces: planes that are told apart by a step, more than by a crease
 
 TEST_CASE("surfaces: what follows no bend any more has its own name again") {
   const auto stages = traced([](double x, double) { return -0.0125 * (x - 2.0) * (x - 2.0); });
-  const Borne before = borne(*stages, everywhere);
+  const Labels before = labels_of(*stages, everywhere);
   REQUIRE(before.surfaces.size() < before.planes.size());
   stages->tracer.init(small_settings().curbs);
-  CHECK(borne(*stages, everywhere).surfaces == before.planes);
+  CHECK(labels_of(*stages, everywhere).surfaces == before.planes);
   CHECK(stages->tracer.surfaces().name(no_label) == no_label);
 }
 

@@ -85,17 +85,17 @@ Map crop(const Map& map, const Grid& asked) {
   Map out;
   out.grid = asked;
   out.cells.resize(asked.cells());
-  std::set<int> borne;
+  std::set<int> labels;
   for (int i = 0; i < asked.rows; ++i) {
     for (int j = 0; j < asked.cols; ++j) {
       const MapCell& cell = map.cells[map.grid.at(static_cast<int>(first_i) + i, static_cast<int>(first_j) + j)];
       out.cells[asked.at(i, j)] = cell;
-      borne.insert(cell.label);
-      borne.insert(plane_label_of(cell));
+      labels.insert(cell.label);
+      labels.insert(plane_label_of(cell));
     }
   }
   std::copy_if(map.planes.begin(), map.planes.end(), std::back_inserter(out.planes),
-               [&](const MapPlane& plane) { return borne.contains(plane.label); });
+               [&](const MapPlane& plane) { return labels.contains(plane.label); });
   for (const MapCurb& curb : map.curbs) {
     const Share share = share_in(asked.bounds(), {curb.x0_m, curb.y0_m}, {curb.x1_m, curb.y1_m});
     if (share.any()) out.curbs.push_back(part_of(curb, share));

@@ -72,8 +72,8 @@ std::optional<std::int64_t> LineClock::time_of(std::int64_t stamp_ns) {
   stamps_.take(stamp_ns);
   const Turns turns = turns_to(stamp_ns);
   if (turns.count > 0) add(turns.count, stamp_ns);
-  const bool told = steady_ && size_ >= enough_ && mean_late_ns_ <= most_mean * to_float(turn_ns_);
-  if (!told || stamp_ns != newest().stamp_ns || !(turns.doubtful || newest_late_ns_ > exact_ns))
+  const bool known = steady_ && size_ >= enough_ && mean_late_ns_ <= most_mean * to_float(turn_ns_);
+  if (!known || stamp_ns != newest().stamp_ns || !(turns.doubtful || newest_late_ns_ > exact_ns))
     return time_ns_ = stamp_ns;
   const std::int64_t time_ns = stamp_ns - static_cast<std::int64_t>(newest_late_ns_);
   if (turns.doubtful || time_ns <= time_ns_) {

@@ -8,16 +8,17 @@ namespace {
 /// ln 20: a probability of 5 %.
 constexpr float sure = 3.0f;
 
-/// Log likelihood ratio of a jump that goes on at the old speed: always of a localisation's, but of those of simulated
-/// robots that climb curbs, one in 31 with poses of 50 Hz, one in 13 with 10 Hz (tools/streets --drive). Also the log
-/// odds that a localisation has not stepped during a climb: consecutive jumps are the robot's.
+/// Log likelihood ratio of the localisation to the robot, from poses that after a jump go on at the speed before it. A
+/// localisation's always do; of the jumps of simulated robots that climb curbs, one in 31 with poses of 50 Hz, one in
+/// 13 with 10 Hz (tools/streets --drive). Also the log odds, at first, that it was the robot in a climb, where one jump
+/// follows the other.
 constexpr float rarely = 3.0f;
 
 /// Variance of a step known from five poses, in units of that of one pose (PoseTrack).
 constexpr float poses_of_a_step = 2.625f;
 
 /// Three standard deviations of such a step, squared: poses show larger ones.
-constexpr float least_told = gate * poses_of_a_step;
+constexpr float least_detectable = gate * poses_of_a_step;
 
 /// Poses that a comparison depends on: of the line, and of those that mapped the ground.
 constexpr float poses_compared = 2.0f;
@@ -66,7 +67,7 @@ void PoseOffset::follow(const PoseStepNews& step) {
       // Nothing to decide for a localisation that was never found to step, or for exact poses.
       if (!localisation_steps_ || !(height_variance_m2_ + attitude_variance_ > 0.0f)) break;
       settle();
-      open(offset_, least_told * height_variance_m2_, least_told * attitude_variance_);
+      open(offset_, least_detectable * height_variance_m2_, least_detectable * attitude_variance_);
       confirmed_ = climbed_ = true;
       evidence_ = -rarely;
       break;
@@ -76,7 +77,7 @@ void PoseOffset::follow(const PoseStepNews& step) {
 PoseOffset PoseOffset::suspecting(const PoseJumps& jumps, bool climbs) const {
   PoseOffset suspect = *this;
   suspect.settle();
-  const float least = climbs ? least_told : 0.0f;
+  const float least = climbs ? least_detectable : 0.0f;
   suspect.open(suspect.offset_, jumps.height_m2 + least * height_variance_m2_,
                jumps.attitude_rad2 + least * attitude_variance_);
   return suspect;
@@ -180,8 +181,8 @@ PoseShift PoseOffset::end_line() {
 /// Is the step as large as one that poses would show?
 bool PoseOffset::large() const {
   const PoseShift by = stepped_ - offset_;
-  return square(by.height_m) > least_told * height_variance_m2_ ||
-         square(by.slope_x) + square(by.slope_y) > least_told * attitude_variance_;
+  return square(by.height_m) > least_detectable * height_variance_m2_ ||
+         square(by.slope_x) + square(by.slope_y) > least_detectable * attitude_variance_;
 }
 
 float PoseOffset::doubt_m2(float x_m, float y_m) const {

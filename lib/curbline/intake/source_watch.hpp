@@ -17,7 +17,7 @@ enum class SourceState : std::uint8_t {
   stale,  ///< the newest reading is older than the bound
 };
 
-/// What update() saw happen. Each is told once.
+/// What update() saw happen. Each is reported once.
 enum class SourceEvent : std::uint8_t {
   none,
   missing,    ///< no reading since the start, for longer than the bound
@@ -53,7 +53,7 @@ class SourceWatch {
   SourceEvent update_never(std::int64_t now_ns);
 
   SourceState state_ = SourceState::never;
-  bool fixed_ = false, started_ = false, missing_told_ = false;
+  bool fixed_ = false, started_ = false, missing_reported_ = false;
   std::int64_t stale_after_ns_ = 0;
   std::int64_t start_ns_ = 0;  ///< of the first update
   std::int64_t longest_silence_ns_ = 0;
@@ -78,8 +78,8 @@ inline SourceEvent SourceWatch::update_never(std::int64_t now_ns) {
     started_ = true;
     start_ns_ = now_ns;
   }
-  if (missing_told_ || now_ns - start_ns_ <= stale_after_ns_) return SourceEvent::none;
-  missing_told_ = true;
+  if (missing_reported_ || now_ns - start_ns_ <= stale_after_ns_) return SourceEvent::none;
+  missing_reported_ = true;
   return SourceEvent::missing;
 }
 

@@ -26,11 +26,11 @@ struct CleanFit {
   /// A narrower region is all rim: the spread in its cells may be that of a step on which they lie.
   static constexpr float rim_cells = 3.0f;
   /// Of so many points, in a cell half on each side of a step, all are of one side by chance once in 32 times.
-  static constexpr float telling_points = 6.0f;
+  static constexpr float conclusive_points = 6.0f;
 
   bool wanted = false;  ///< to be fitted again
   bool wide = false, steep = false;
-  bool told = false;                                 ///< at least one cell is clean beyond doubt
+  bool conclusive = false;                           ///< at least one cell is clean beyond doubt
   float slope_m2 = 0.0f;                             ///< Dem::slope_m2() of the region's plane
   float cells = 0.0f, points = 0.0f, weight = 0.0f;  ///< of the region
   float sure = 0.0f, precision_1_m2 = 0.0f;          ///< sums of look_at(), over cells
@@ -60,13 +60,13 @@ struct CleanFit {
     const bool by_step = step_m > 0.0f;
     (by_step ? beside : inner).add_cell(cell);
     bias_m2 += cell.weight * step_m * step_m * (1.0f / 12);
-    told = told || (!by_step && cell_points >= telling_points);
+    conclusive = conclusive || (!by_step && cell_points >= conclusive_points);
   }
   /// Replaces the plane of the region, if there are enough clean cells, or one beyond doubt. The region's variance
   /// stays, for labels. Cells beside a step are off by anything up to half of it, all alike: one observation together.
   void fit(Plane& plane, const PlanePrior& prior, float common_m2, float min_cells) {
     plane.points_a_cell = points / cells;
-    if (inner.cells + beside.cells < min_cells && !told) return;
+    if (inner.cells + beside.cells < min_cells && !conclusive) return;
     if (bias_m2 > prior.noise_m2) beside.scale(prior.noise_m2 / bias_m2);
     inner.add(beside);
     const float share_m2 = common_m2 * (1.0f + plane.rough_m2 / prior.noise_m2);
@@ -133,8 +133,8 @@ void CleanFits<limits>::fit(std::span<Plane, limits.planes> planes, const Wanted
     if (dem_.mixed(cell, fit.slope_m2, planes[label].rough_m2)) return;
     const bool is_crossed = crossed_.contains(s);
     if (fit.wide && is_crossed) return;
-    const Label borne = label_of(s);
-    if (borne != label && borne != no_label && lies_nearer(i, j, cell, planes[borne], planes[label])) return;
+    const Label own = label_of(s);
+    if (own != label && own != no_label && lies_nearer(i, j, cell, planes[own], planes[label])) return;
     fit.add(dem_.moments(i, j, cell), cell.points, fit.wide ? 0.0f : step_beside_m(i, j, s, is_crossed));
   });
   for (std::size_t l = 0; l < fits.size(); ++l) {

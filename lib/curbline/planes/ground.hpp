@@ -50,15 +50,15 @@ class Ground {
   void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
               const CellLabels<limits>& region_label, Changed&& changed);
 
-  bool is(int label) const { return borne(kind(label)); }
+  bool is(int label) const { return is_ground(kind(label)); }
   /// May a plane of ground be a veil?
   bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
   /// Is it an obstacle, a fringe or a wake?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
-  enum class Kind : std::uint8_t { ground, doubtful, mixture, cover };
-  static bool borne(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
+  enum class Kind : std::uint8_t { ground, doubtful, mixed, cover };
+  static bool is_ground(Kind kind) { return kind == Kind::ground || kind == Kind::doubtful; }
 
   /// Does a strip beside an obstacle hold readings of it? They lie above the ground, the higher the more of the
   /// obstacle they hold: the strip leans, or is higher than a curb as a whole. A level one below that is a surface.
@@ -87,7 +87,7 @@ class Ground {
 template <Limits limits>
 auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                              const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
-  if (tally.face()) return Kind::mixture;
+  if (tally.face()) return Kind::mixed;
   if (obstacles.is(label)) return Kind::cover;
   const Plane* ground = obstacles.ground();
   if (ground == nullptr || !plane.alive()) return Kind::ground;
@@ -99,8 +99,8 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   // A mixture of an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
-  if (fringe) return as_rays && steep ? Kind::mixture : Kind::cover;
-  if (tally.veil() || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixture;
+  if (fringe) return as_rays && steep ? Kind::mixed : Kind::cover;
+  if (tally.veil() || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixed;
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 
@@ -122,7 +122,7 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const Obstacles<limits> obstacles(dem, planes, view, region_label);
   const Kinds before = std::exchange(kind_, kinds(dem, planes, view, region_label, obstacles));
   for (std::size_t l = 0; l < kind_.size(); ++l) {
-    if (kind_[l] != before[l] && !(borne(kind_[l]) && borne(before[l]))) changed(static_cast<Label>(l));
+    if (kind_[l] != before[l] && !(is_ground(kind_[l]) && is_ground(before[l]))) changed(static_cast<Label>(l));
   }
 }
 
