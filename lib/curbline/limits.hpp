@@ -1,6 +1,12 @@
 // Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is all of its
-// memory: nothing is allocated later. The stack of a call, 3 KiB for 16 planes (tools/budget), grows by 140 bytes for
-// each more, beyond 64 by 2 for each pair of planes: 255 need 130 KiB.
+// memory: nothing is allocated later. The stack of a call holds a bit for each cell (those that steps cross), a byte
+// for each region (its rank) and 140 bytes for each plane, beyond 64 planes also 2 for each pair: 255 need 130 KiB. On
+// a Cortex-M7, with regions in proportion to the cells:
+//
+//   cells a side        40      80     120     200     400
+//   stack, bytes     2,904   3,464   6,384  15,736  60,080
+//
+// (tools/boards/stack.py, of the drive.elf of board/_template with these limits in board/common/drive.hpp.)
 #pragma once
 
 namespace curbline {
