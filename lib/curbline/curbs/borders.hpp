@@ -44,8 +44,8 @@ class Borders {
     }
   };
 
-  /// Consecutive borders of a chain. Those of one shadow err alike: all open ones together weigh as one observation,
-  /// unless there are no others.
+  /// Consecutive borders of a chain. Open ones err alike, as the obstacle before them hides the edge from all: together
+  /// they count as one observation, each of k as 1 / k. If all are open, each counts as one.
   class Part {
    public:
     struct Iterator {

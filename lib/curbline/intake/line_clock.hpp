@@ -74,7 +74,7 @@ class LineClock {
   bool steady_ = true;                             ///< turns take no other time than a motor's may
   std::int64_t usual_turns_ = 1, last_turns_ = 1;  ///< from line to line
   std::int64_t lost_turns_ = 0;                    ///< that were taken for lost before the newest
-  int waited_ = 0;                ///< lines for which one may have waited: so many ago one had, by whole turns
+  int waited_ = 0;                ///< arrivals for which one that came whole turns late is still among those kept
   int late_ = 0, turn_late_ = 0;  ///< consecutive arrivals later than usual, and by a turn and more
   RisingTimes stamps_{};
   std::int64_t time_ns_ = INT64_MIN;  ///< the newest that was given

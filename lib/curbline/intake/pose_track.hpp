@@ -103,16 +103,16 @@ class PoseTrack {
   std::size_t place(int age) const { return static_cast<std::size_t>(next_ + limits.poses - 1 - age) % limits.poses; }
   const Pose& back(int age) const { return poses_[place(age)]; }
 
-  /// Is the pose of this age, the second since a jump, off the way before the jump too? If not, the first one was off
-  /// by its own error, as one in seventy is.
+  /// Is the pose of this age, the one after a jump, off the way from before the jump too? If not, there was none: the
+  /// pose that jumped was in error, as one in seventy is.
   bool lies_off_before(int age) const { return residual(age + 2, poses_of_a_way, age + 2, age).jumps(); }
 
   /// Has the newest pose come within 12 ms of the one before, so that the next one replaces it?
   bool open() const { return size_ > 1 && back(0).time_ns - back(1).time_ns < least_spacing_ns; }
 
-  /// How far the pose of `age` deviates from going on from that of age `before`, at the speed from the pose `most`
-  /// before that of age `last`, or the oldest, to it; nothing if there are too few. Not inlined: it is called from
-  /// three places.
+  /// How far the pose of `age` is from where the robot would be if it had gone on from the pose of age `before`, at the
+  /// mean speed of the `most` steps up to the pose of age `last` (fewer if there are not as many; nothing if there is
+  /// none). The newest pose has age 0. Not inlined: it is called from three places.
   [[gnu::noinline]] detail::PoseResidual residual(int last, int most, int before, int age) const {
     if (last + 1 >= size_) return {};
     const int first = last + most < size_ ? last + most : size_ - 1;

@@ -191,10 +191,13 @@ class Dem : public Window<limits> {
 
   /// Mean growth of its points' heights with the tilt's latency.
   float growth_m_s(int slot) const { return mean_of(growth_[slot]); }
-  /// Its parts, by points of this sweep, of the last one, and of the one before. A point X ahead grows by -X times the
-  /// tilt's rate, so that mean growth and mean X tell how much of it has cancelled between the directions. Ground that
-  /// this sweep has seen, too, is divided as if what earlier ones saw had cancelled: seen for long, hardly any of it is
-  /// this sweep's.
+  /// Its parts, G = G_now + G_last + G_before, by the points of this sweep, of the last one, and of the one before,
+  /// which turned the other way. A point X ahead grows by -w X in a sweep that turns at w. So, with the rates w of the
+  /// last sweep and v of the one before and the mean X of the cell's points (lib/formulas.md, Tilt latency):
+  ///   G_last = w (G + v X) / (w - v), G_before + G_now = v (G + w X) / (v - w).
+  /// G_now = 0 in ground that this sweep has not seen, or whose G has the sign of the last one's growths. Else G_now =
+  /// G, as if the earlier growths had cancelled: of ground seen for long, whose G is about 0, hardly any is this
+  /// sweep's.
   BySweep growths_m_s(int slot, const SweepRates& rates) const {
     const float all_m_s = growth_m_s(slot), uncancelled_m_s = -rates.last_rad_s * mean_ahead_m(slot);
     const float this_way_m_s = rates.this_share * (all_m_s - uncancelled_m_s);

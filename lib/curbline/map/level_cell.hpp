@@ -13,9 +13,9 @@
 
 namespace curbline {
 
-/// Scatter that a plane's slope makes in a cell, per point. Points are spread evenly over the ground, but those of a
-/// cell less than over its length, the less the farther their centroid is off its middle: a single scan line crosses it
-/// anywhere.
+/// Scatter that a plane's slope makes in a cell, per point. Points spread evenly over a cell of side a have the
+/// variance a^2 / 12 along it; those of a single scan line, which crosses the cell anywhere, lie in one place. A
+/// centroid d off the cell's middle is a sign of that: a^2 / 12 - d^2.
 template <Limits limits>
 float slope_scatter_m2(const Dem<limits>& dem, const Cell& cell, const Plane& plane) {
   const auto along_m2 = [](float slope, float side_m, float offset_m) {
@@ -25,8 +25,9 @@ float slope_scatter_m2(const Dem<limits>& dem, const Cell& cell, const Plane& pl
          cell.weight / cell.points;
 }
 
-/// Twice the log of the likelihood ratio of level ground to the slope, for the scatter of a cell: each with the noise
-/// that suits it best, as the sensor's is not known so well. 0 where heights spread as far as the slope makes them.
+/// Twice the log of the likelihood ratio of level ground to the slope, by the scatter of a cell: n (r - 1 - ln r), for
+/// n degrees of freedom and a scatter that is r times what the slope alone makes; 0 from r = 1 on. Level ground is
+/// given the noise that explains the scatter best, since the sensor's is not known so well.
 template <Limits limits>
 float level_likelihood(const Dem<limits>& dem, const Cell& cell, const Plane& plane) {
   const float freedom = cell.points - 1.0f;

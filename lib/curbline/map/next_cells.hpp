@@ -26,8 +26,8 @@ class NextCells {
   /// Call when a cell has just become valid; valid(slot) tells which others are.
   template <typename Valid>
   void enter(const Window<limits>& window, int i, int j, Valid&& valid);
-  /// Call when a cell leaves. What lies beyond it leaves too, so that its neighbours have none in that direction any
-  /// more.
+  /// Call when a cell leaves the window. All cells between it and the window's end leave in the same move, so that a
+  /// neighbour that stays has no valid cell on that side any more.
   void leave(const Window<limits>& window, int slot);
 
  private:

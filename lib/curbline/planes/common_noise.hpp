@@ -5,8 +5,9 @@
 // for a first-order autoregression). It is estimated in patches of 10 x 10 cells, each about a plane of its own, so
 // that a step that does not divide planes yet affects only the patches that it crosses. Independent noise of a cell's
 // points is included, the less the more there are. The uncertainty of the tilt's latency, which a single sweep does not
-// show, is added. Errors of tilt and poses are those of whole scan lines: so each patch also yields its variance as if
-// its cells had one point each, since a plane seen in a few lines errs by more than the evenest patches show.
+// show, is added. Errors of tilt and poses are those of whole scan lines, and average out over the lines that see a
+// cell: a plane seen in a few lines errs by more than the evenest patches, seen in many, show. So line_m2() is the
+// variance for cells of one point, from which Dem::common_m2(plane) is that for cells of as many as the plane's have.
 #pragma once
 
 #include <array>

@@ -16,11 +16,12 @@
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
 // veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their
 // heights say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a
-// curb: one that falls away as rays do, perhaps with a little of the ground behind in the window; and one that falls
-// away more steeply than a ramp, relative to the ground's slope, and is no wider than the laser's spot, from where it
-// was last seen, and the cells that an edge crosses, at whatever angle the rays cross it: it blurs that edge, unless it
-// falls by too little of the step, as the tread of a stair does, or stands above both its sides. Cost: three passes
-// over the window.
+// curb:
+//   - one that falls away as rays do, perhaps with a little of the ground behind in the window;
+//   - a blurred edge: it falls away more steeply than a ramp, relative to the ground's slope, and is no wider than the
+//     laser's spot was when it was last seen and the cells that an edge at this angle to the grid crosses. No blur
+//     falls by as little of the step as the tread of a stair does, or stands above the ground on both its sides.
+// Cost: three passes over the window.
 #pragma once
 
 #include <array>

@@ -83,9 +83,12 @@ struct StripTally {
  private:
   bool all(float of_cells) const { return cells > 0.0f && of_cells >= cells; }
   bool most(float in_strips) const { return cells > 0.0f && 2.0f * in_strips >= cells; }
-  /// A face between two rows of cells, of which each holds more of the plane beside it than of the face. Heights on a
-  /// slope of w cells scatter less than those of two levels would, by w / 6 of step^2 in all, wherever cells part
-  /// it. On an even slope that is 2 w^2 times as much as they do scatter, on a level tread many times.
+  /// Is it a face that lies on the border of two rows of cells, each of which holds more of the plane beside it than of
+  /// the face? The cells of an even slope from height a to height b, w cells wide, with mean heights h and variances
+  /// s^2, have
+  ///   sum((h - a) (b - h) - s^2) = w (b - a)^2 / 6,
+  /// wherever its cells begin: this tells w. And it is 2 w^2 times sum(s^2); on a level tread between a and b, whose
+  /// cells do not scatter, many times as much.
   bool stands_between_cells(float step_m2) const {
     const float lacking_m2 = two_levels_m2 - strip_spread_m2;
     return lacking_m2 <= 2.0f * narrow * narrow * strip_spread_m2 &&

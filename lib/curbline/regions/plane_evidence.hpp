@@ -47,12 +47,13 @@ class PlaneEvidence {
   }
 
   /// Are two planes parted by more than bent ground explains? Planes along one bent surface meet between their
-  /// centroids, at the angle that its curvature makes over the distance between them. They are parted by a step if one
-  /// lies above the other by more than two standard deviations of the noise that points of one place share, either at
-  /// both centroids, by three standard deviations; or at the mean of both, while the ground rises that way from cell to
-  /// cell along their border beyond the planes' slopes, by one standard deviation of the shared noise and three of its
-  /// own. They are parted by a crease if they meet at an angle that is larger by three standard deviations. About 250
-  /// operations.
+  /// centroids, at the angle that its curvature makes over the distance between them. With s, the standard deviation of
+  /// the noise that points of one place share, they are parted
+  ///   - by a step, if one lies above the other at both centroids, by 2 s and by three standard deviations of the
+  ///     difference; or if it does in the mean of both, by 2 s, and the cells along the border jump the same way,
+  ///     beyond the planes' slopes, by s and by three standard deviations of that jump;
+  ///   - by a crease, if they meet at an angle that is larger by three standard deviations.
+  /// About 250 operations.
   bool parted(const PlaneMoments& a, const PlaneMoments& b, const BorderRise& border) const;
 
  private:
