@@ -23,8 +23,8 @@ struct WindowSettings {
   static constexpr float furthest_m = 1e5f;  ///< of the corner along each axis: float tells a centimetre there
   int rows = 40;                             ///< cells along x, a multiple of 4, at most Limits::rows
   int cols = 40;                             ///< cells along y, a multiple of 4, at most Limits::cols
-  float cell_x_m = 0.1f;                     ///< [0.001, 10]
-  float cell_y_m = 0.1f;                     ///< [0.001, 10]
+  float cell_x_m = 0.1f;                     ///< [0.001, 10]; as in the paper, and as far as lines of a nodding
+  float cell_y_m = 0.1f;                     ///< laser lie apart 3 m away (tools/robots/README.md); the same
   float origin_x_m = 0.0f;                   ///< lowest corner, [-furthest_m, furthest_m]
   float origin_y_m = -2.0f;                  ///< the same along y
   bool fixed = false;                        ///< true: the window never moves
@@ -74,7 +74,9 @@ struct TiltSettings {
   /// Of one reading, [0, 1]: its step / sqrt(12), 0.44 mrad with 4096 counts a turn, and the play of the gear, say 3
   /// arc minutes, 0.87 mrad: together 1.
   float angle_sd_rad = 0.001f;
-  float time_sd_s = 0.0f;  ///< jitter of its time stamp, an angle error by the tilt's rate; [0, 1]
+  /// Jitter of its time stamp, [0, 1], by the tilt's rate an error of the angle. 0: of a drive that samples on a SYNC
+  /// frame; a frame that waits for another on a bus of 125 kbit/s is a millisecond late.
+  float time_sd_s = 0.0f;
   /// [0, 10]: beams later than the newest reading by more are dropped. Two periods of a servo of 50 Hz, one frame of
   /// which is lost, and a latency of 10 ms. The two readings that show the rate lie at least half as far apart: the
   /// angle errs by up to sqrt(3^2 + 2^2) angle_sd_rad.
@@ -83,8 +85,10 @@ struct TiltSettings {
   /// is lost. Less is better for faster ones: while the servo reverses, accelerating by a, the line between readings T
   /// apart is off by up to a T^2 / 8, at 3 rad/s^2 15 mrad in 0.2 s, but 1 mrad in 0.05 s.
   float max_gap_s = 0.2f;
-  float roll_sd_rad = 0.0f;   ///< of the mount about an x axis through the tilt axis' origin, [0, 1]
-  float pitch_sd_rad = 0.0f;  ///< the same about y
+  /// Of the mount about an x axis through the tilt axis' origin, and about y, [0, 1]. 0: it is rigid, so that its error
+  /// tilts the map as a whole; while the robot drives that of its pitch is found (PoseSettings::lean_sd_rad).
+  float roll_sd_rad = 0.0f;
+  float pitch_sd_rad = 0.0f;
 };
 
 /// The robot's pose, T_map_base. A robot that stands gives none. One that drives must state both deviations: with 0
