@@ -438,6 +438,15 @@ TEST_CASE("border finder: a step down is told, however wide what it hides") {
   CHECK((turned ? 2.4f - curbs[0].y0_m : curbs[0].x0_m) == Approx(edge).margin(0.05));
 }
 
+TEST_CASE("border finder: a step down is told, though the first cells that it does not hide have not been seen") {
+  const bool turned = GENERATE(false, true);
+  const double edge = GENERATE(1.2, 1.25), unseen = GENERATE(0.1, 0.15);
+  const auto curbs = curbs_of_platform(edge, 0.5, 0.5 * edge + unseen, turned);
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].kind == CurbKind::step_down);
+  CHECK(curbs[0].height_m == Approx(-0.5).margin(0.01));
+}
+
 TEST_CASE("border finder: planes farther apart than a step can hide make no step") {
   const bool turned = GENERATE(false, true);
   CHECK(curbs_of_platform(1.2, 0.05, 0.6, turned).empty());

@@ -154,6 +154,26 @@ TEST_CASE("pose offset: it fades, and no faster in four hundred lines than poses
   CHECK_FALSE(offset.offset().any());
 }
 
+TEST_CASE("pose offset: though lines and the ground before lie off by poses' own errors, few steps are misjudged") {
+  test::Noise lot(15);
+  const bool localisations = GENERATE(false, true);
+  constexpr int runs = 300;
+  int misjudged = 0;
+  for (int run = 0; run < runs; ++run) {
+    PoseOffset offset = made();
+    step(offset, jump);
+    const auto error = [&](double sd) {
+      return static_cast<float>(std::sqrt(2.0) * sd * lot.normal());
+    };  // of two poses
+    for (int line = 0; line < 10 && offset.undecided(); ++line) {
+      const PoseShift off{error(0.003), error(0.001), error(0.001)};
+      see_line(offset, 1.0, localisations ? off + jump : off, lot);
+    }
+    misjudged += offset.offset().any() != localisations;
+  }
+  CHECK(misjudged < 0.05 * runs);
+}
+
 /// After a localisation has been found to step, by `jump`, and the robot has then climbed.
 PoseOffset climbed_after_a_step(test::Noise& lot) {
   PoseOffset offset = made();
