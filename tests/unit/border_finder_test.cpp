@@ -1,10 +1,9 @@
-// Where edges are found, and how far they lie before their shadow.
+// Where edges are found.
 #include "curbline/curbs/border_finder.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -14,6 +13,7 @@
 namespace curbline {
 namespace {
 
+using test::fill;
 using test::small_limits;
 using test::small_settings;
 using test::Stages;
@@ -35,44 +35,6 @@ FoundBorders found_borders(Stages<small_limits>& stages) {
     for (int k = 0; k < length; ++k) ++(borders.at(k).other == no_label ? found.one_sided : found.between_planes);
   }
   return found;
-}
-
-/// A line perpendicular to the direction `angle`, `away` from the origin.
-LineFit::Segment line_at(double angle, double away) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  const auto at = [&](double along) {
-    return std::array{static_cast<float>(away * c - along * s), static_cast<float>(away * s + along * c)};
-  };
-  return {at(0.5)[0], at(0.5)[1], at(2.0)[0], at(2.0)[1], static_cast<float>(c), static_cast<float>(s)};
-}
-
-TEST_CASE("shadow: a line in the middle of the shadow moves to the edge that casts it, in any direction") {
-  for (const double angle : {0.0, 0.7, 2.0, -1.9}) {
-    const double edge = 1.5, width = edge * 0.12 / 0.9;
-    LineFit::Segment line = line_at(angle, edge + width / 2);
-    CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.12f, 0.9f, 1.0f}) == Approx(width));
-    const LineFit::Segment expected = line_at(angle, edge);
-    CHECK(line.x0_m == Approx(expected.x0_m).margin(1e-5));
-    CHECK(line.y0_m == Approx(expected.y0_m).margin(1e-5));
-    CHECK(line.x1_m == Approx(expected.x1_m).margin(1e-5));
-    CHECK(line.y1_m == Approx(expected.y1_m).margin(1e-5));
-  }
-}
-
-TEST_CASE("shadow: the side to which a line's normal points does not matter") {
-  LineFit::Segment line = line_at(0.0, 1.6);
-  line.normal_x = -1.0f;
-  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.12f, 0.9f, 1.0f}) == Approx(0.2));
-  CHECK(line.x0_m == Approx(1.5));
-}
-
-TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no higher above the step than it falls") {
-  LineFit::Segment line = line_at(0.0, 2.0);
-  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.2f, 0.4f}) == 0.0f);
-  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, -0.1f, 0.4f}) == 0.0f);
-  CHECK(line.x0_m == Approx(2.0));
-  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.5f, 0.4f}) == Approx(0.4));
-  CHECK(line.x0_m == Approx(1.8));
 }
 
 /// The only curb of ground that falls by `drop` from x = `from` to `to`, seen from x = 0 one metre up. Between them
@@ -453,23 +415,6 @@ TEST_CASE("border finder: planes farther apart than a step can hide make no step
   CHECK(curbs_of_platform(1.2, -0.05, 0.6, turned).empty());
 }
 
-TEST_CASE("borders: one that lies before the window or beyond it is found from its neighbour") {
-  Stages<small_limits> stages(small_settings());
-  Borders<small_limits> borders;
-  const float before = -0.12f, beyond = 2.52f;
-  for (const float x : {before, beyond}) {
-    borders.clear();
-    for (const float y : {0.05f, 0.15f}) {
-      Borders<small_limits>::Border border{};
-      border.x_m = y < 0.1f ? x : x < 0.0f ? 0.02f : 2.38f;
-      border.y_m = y;
-      border.other = 1;
-      REQUIRE(borders.add(stages.dem, border));
-    }
-    CHECK(borders.chain(stages.dem, 0, 5) == 2);
-  }
-}
-
 TEST_CASE("border finder: a face that the window cuts has no end on any side, of one that is longer than wide, too") {
   CHECK(Street{.from = 2.1, .to = 9.0, .turned = true}.ends().empty());
   const auto one_sided = [](int rows, int cols) {  // the window's end cuts the face, along its shorter side
@@ -712,43 +657,6 @@ TEST_CASE("border finder: where few scan lines cross the cells beside a face it 
 TEST_CASE("border finder: a face lies where it is seen, however many cells before it no scan line has met") {
   for (const int empty : {1, 2, 3}) {
     for (const bool turned : {false, true}) CHECK(found_m({0.03, empty}, turned) == Approx(Face::edge_m).margin(0.012));
-  }
-}
-
-TEST_CASE("borders: a chain goes on to the next border within reach, of the same planes alone") {
-  Stages<small_limits> stages(small_settings());
-  Borders<small_limits> borders;
-  const auto chained = [&](const std::vector<std::array<double, 2>>& places, bool of_others) {
-    borders.clear();
-    for (const auto& [x, y] : places) {
-      Borders<small_limits>::Border border{};
-      border.x_m = static_cast<float>(x);
-      border.y_m = static_cast<float>(y);
-      border.one = of_others && borders.size() == 1 ? 1 : 0;
-      border.other = 2;
-      REQUIRE(borders.add(stages.dem, border));
-    }
-    return borders.chain(stages.dem, 0, 5);
-  };
-  for (const bool along_x : {false, true}) {
-    for (const double from : {0.35, 1.95}) {
-      const auto two = [&](double apart, bool of_others = false) {
-        const double to = from < 1.0 ? from + apart : from - apart;
-        using Places = std::vector<std::array<double, 2>>;
-        return chained(along_x ? Places{{from, 1.25}, {to, 1.25}} : Places{{1.25, from}, {1.25, to}}, of_others);
-      };
-      CHECK(two(0.1) == 2);
-      CHECK(two(0.5) == 2);
-      CHECK(two(0.6) == 1);
-      CHECK(two(1.6) == 1);
-      CHECK(two(0.1, true) == 1);
-      // One between them, from which the chain starts: what is beyond the reach of one end does not belong to it.
-      const double toward = from < 1.0 ? 0.1 : -0.1, next = from + toward, away = from + 7.0 * toward;
-      using Places = std::vector<std::array<double, 2>>;
-      CHECK(chained(along_x ? Places{{next, 1.25}, {from, 1.25}, {away, 1.25}}
-                            : Places{{1.25, next}, {1.25, from}, {1.25, away}},
-                    false) == 2);
-    }
   }
 }
 

@@ -707,39 +707,6 @@ TEST_CASE("ground: a slope that is no longer than the shadow of its own fall is 
   }));
 }
 
-TEST_CASE("strip: an edge blurs the cells that it crosses and those of the spot from where they were last seen") {
-  const Run none, run(Label{1}, 11, Cell{});
-  const Strip strip{none, run, none};
-  const float spot = 0.01f * (1.1f * 1.1f + 1.4f * 1.4f) / (1.1f * 0.1f);
-  const auto cells = [&](float askew, float divergence_rad = 0.01f, float laser_z_m = 1.1f) {
-    const Viewpoint view{.x_m = -0.3f, .z_m = laser_z_m, .end_x_m = 8.0f, .divergence_rad = divergence_rad};
-    return strip.blurred_cells({view, view.x_m, 0.1f, view.end_x_m, 0.0f}, askew);
-  };
-  CHECK(cells(0.0f) == Approx(1.0f + spot));
-  CHECK(cells(0.0f, 0.015f) == Approx(1.0f + 1.5f * spot));
-  CHECK(cells(-0.5f) == Approx(1.5f + spot));
-  CHECK(cells(5.0f) == Approx(2.0f + spot));  // it lies along the row: columns tell
-  CHECK(cells(0.0f, 0.01f, -0.1f) == 0.0f);
-}
-
-TEST_CASE("strip: it is half hidden if its cells are seen less than half as often as those on both its sides") {
-  const auto run_of = [](Label label, int first, int times_seen) {
-    Cell cell;
-    for (int k = 0; k < times_seen; ++k) cell.add(0.0f, 0.0f, 0.1f, 1.0f);
-    Run run(label, first, cell);
-    run.add(first + 1, cell);
-    return run;
-  };
-  const auto half_hidden = [&](int before, int seen, int next) {
-    const Run first = run_of(Label{1}, 8, before), strip = run_of(Label{2}, 10, seen),
-              last = run_of(Label{1}, 12, next);
-    return Strip{first, strip, last}.half_hidden();
-  };
-  CHECK(half_hidden(5, 2, 5));
-  CHECK_FALSE(half_hidden(4, 2, 5));  // just half as often, before it
-  CHECK_FALSE(half_hidden(5, 2, 4));  // behind it
-}
-
 TEST_CASE("ground: from afar, too, a slope that is no steeper than a ramp is no blurred edge") {
   const auto falls = [](double slope) {
     return may_be_veil({1.2f, -5.0f, 2.0f}, 1.25, 1.75, [=](double, double y) {
