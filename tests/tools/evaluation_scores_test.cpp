@@ -232,6 +232,18 @@ TEST_CASE("scores: up told as down is an error of twice the height, for a robot 
   CHECK(score_curbs({{}, down, {}}, truth, everything).height_m.median == Approx(0).margin(1e-9));
 }
 
+//   2 |  /      the true step goes on past the robot on its right, the piece found on its left
+//     | /
+//   0 |/
+//     /  the robot at x = 1.97
+//  -4
+TEST_CASE("scores: the far side of a curb is that of its own line, though the true step turns the other to the robot") {
+  MapCurb found = piece(2, 0, 2, -0.1, "step_down");
+  found.x0_m = 1.98;
+  found.x1_m = 2.02;
+  CHECK(score_curbs({{}, {found}, Point2{1.97, -4}}, truth, everything).height_m.median == Approx(0).margin(1e-9));
+}
+
 TEST_CASE("scores: calibration is by each piece's own sd, and by length") {
   // 3 m deviate by half an sd, 1 m by one and a half
   const Calibration c = scores_of({piece(2, -2, 1, 0.105), piece(2, 1, 2, 0.085)}).calibration;

@@ -23,14 +23,22 @@ struct FoundSample {
   double height_error_m = nan;  ///< found minus true
 };
 
+/// Across a curb's line, away from the robot.
+Point2 to_far_side(const MapCurb& c, Point2 robot) {
+  const Point2 left{c.y0_m - c.y1_m, c.x1_m - c.x0_m};
+  const bool left_is_near = dot(robot - Point2{c.x0_m, c.y0_m}, left) > 0;
+  return left_is_near ? Point2{-left.x, -left.y} : left;
+}
+
 /// Finds the nearest of the truth's samples, each of which covers 5 cm along its step.
 class Nearest {
  public:
   Nearest(const std::vector<TruthSample>& samples, const std::optional<Point2>& robot)
       : samples_(samples), robot_(robot) {}
 
-  FoundSample of(Point2 p, double height_m) const {
-    FoundSample out{height_m};
+  /// Of a place on a curb. Its far side is that of its own line: at a bend the true step's may be another.
+  FoundSample of(Point2 p, const MapCurb& curb) const {
+    FoundSample out{curb.height_m};
     for (const TruthSample& s : samples_) {
       const double dx = p.x - s.at.x, dy = p.y - s.at.y;
       if (std::abs(dx) > reach_m || std::abs(dy) > reach_m) continue;
@@ -41,7 +49,8 @@ class Nearest {
       out.distance_m = distance;
       TruthSample there = s;
       there.step_m += s.rise * on_sample;
-      out.height_error_m = robot_ ? height_m - signed_step_m(there, *robot_) : std::abs(height_m) - there.height_m();
+      out.height_error_m = robot_ ? curb.height_m - signed_step_m(there, to_far_side(curb, *robot_))
+                                  : std::abs(curb.height_m) - there.height_m();
     }
     return out;
   }
@@ -56,7 +65,7 @@ std::vector<FoundSample> found_samples(const Found& found, const Nearest& neares
   for (const MapCurb& c : found.curbs) {
     if (!is_step(c)) continue;
     for (const auto& [p, share] : samples_of(line_of(c))) {
-      if (seen(p.x, p.y)) out.push_back(nearest.of(p, c.height_m));
+      if (seen(p.x, p.y)) out.push_back(nearest.of(p, c));
     }
   }
   return out;
@@ -122,7 +131,7 @@ void calibrate(const Found& found, const Nearest& nearest, const Seen& seen, Cur
   for (const MapCurb& c : found.curbs) {
     const Point2 middle{(c.x0_m + c.x1_m) / 2, (c.y0_m + c.y1_m) / 2};
     if (!is_step(c) || !seen(middle.x, middle.y)) continue;
-    const FoundSample sample = nearest.of(middle, c.height_m);
+    const FoundSample sample = nearest.of(middle, c);
     if (sample.distance_m > band_tolerance_m || std::abs(sample.height_error_m) >= std::abs(c.height_m)) continue;
     const double length_m = std::hypot(c.x1_m - c.x0_m, c.y1_m - c.y0_m);
     if (c.height_sd_m > 0) height.add(sample.height_error_m / c.height_sd_m, length_m);

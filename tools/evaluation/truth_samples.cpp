@@ -34,8 +34,8 @@ bool visible(const TruthSample& s, const Seen& seen) {
   return seen(s.at.x, s.at.y) && seen(left.x, left.y) && seen(right.x, right.y);
 }
 
-double signed_step_m(const TruthSample& s, Point2 robot) {
-  return dot(robot - s.at, s.to_left) > 0 ? -s.step_m : s.step_m;
+double signed_step_m(const TruthSample& s, Point2 toward) {
+  return dot(toward, s.to_left) < 0 ? -s.step_m : s.step_m;
 }
 
 Detections::Detections(const Truth& truth) : samples_(truth_samples(truth)), of_curbs_(truth.curbs.size()) {}

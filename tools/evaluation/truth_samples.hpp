@@ -30,8 +30,8 @@ std::vector<TruthSample> truth_samples(const Truth& truth);
 /// A step can be found if the robot saw the ground on both sides of it, 0.2 m away.
 bool visible(const TruthSample& sample, const Seen& seen);
 
-/// Height of the far side minus that of the near side, as seen by a robot.
-double signed_step_m(const TruthSample& sample, Point2 robot);
+/// Height of the step toward a direction that leads across it: above 0 if it leads up.
+double signed_step_m(const TruthSample& sample, Point2 toward);
 
 /// When each true step was first seen and first reported, along a drive.
 class Detections {
