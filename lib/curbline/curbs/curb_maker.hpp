@@ -100,7 +100,7 @@ template <Limits limits>
 float CurbMaker<limits>::place_variance_m2(const Piece& piece, const Curb& curb, float height_variance_m2) {
   if (!is_step(curb) || piece.one_sided()) return piece.borders_variance_m2;
   const float cell_variance_m2 = 0.5f * (piece.planes.one.fit_variance_m2 + piece.planes.other.fit_variance_m2);
-  return piece.told_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
+  return piece.located_variance_m2 + piece.shifted_m2(curb.height_m, height_variance_m2, cell_variance_m2);
 }
 
 /// Sets the ends, in the map frame, with the near side to the right looking from the first to the second.

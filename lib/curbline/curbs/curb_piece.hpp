@@ -40,7 +40,7 @@ struct CurbPiece {
   float observations;                   ///< the number that they weigh as, Borders::Part
   float place_variance_m2 = 0.0f;       ///< of a border, across the line
   float borders_variance_m2 = 0.0f;     ///< of the line's middle, across it, if each border is anywhere in its gap
-  float told_variance_m2 = 0.0f;        ///< the same for a step, which the cells of the gap locate
+  float located_variance_m2 = 0.0f;     ///< the same for a step, which the cells of the gap locate
   float gap_m = 0.0f, cell_m = 0.0f;    ///< across it: distance of the cells' centres, size of a cell
   bool one_is_near = false;             ///< the robot is on the side of plane `one`
   bool one_is_right = false;            ///< of the line, from its first end to its second
@@ -138,14 +138,14 @@ void CurbPiece<limits>::take_means(const Part& part) {
 
 template <Limits limits>
 void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit) {
-  float told = 0.0f, open = 0.0f;
+  float located = 0.0f, open = 0.0f;
   bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
     if (border.open) {
       open += part.share(border) / border.half_gap_m;
     } else {
       const float pitch_m = dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
-      told += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
+      located += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
       open += border.weight() * 0.5f * empty_m;
     }
     alike = alike && (border.open || one_sided());
@@ -159,7 +159,7 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
   // Each cell of a gap shows how much of it is before the edge, with an independent error of anything within the cell.
   // Open borders are anywhere in their gaps, all alike; so are others in empty cells, of a shadow or between two scan
   // lines.
-  told_variance_m2 = ((1.0f / 12) * told + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
+  located_variance_m2 = ((1.0f / 12) * located + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
 }
 
 template <Limits limits>
