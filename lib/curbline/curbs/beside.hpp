@@ -30,6 +30,15 @@ struct Beside {
   }
 };
 
+/// The share of a deviation that chance does not explain: 1 less the variance that it would have by chance over its
+/// square. (Of values scattered by a variance A about 0, found with an error of variance t^2, the best estimate is the
+/// share A / (A + t^2) of what is found, and the square of what is found estimates A + t^2: empirical Bayes, Efron and
+/// Morris 1973, for a single one.)
+inline float share_beyond(float chance_m2, float found_m) {
+  const float found_m2 = square(found_m);
+  return found_m2 > chance_m2 ? 1.0f - chance_m2 / found_m2 : 0.0f;
+}
+
 /// Height of the ground of a side above its plane, by cells a little farther from the border than those that may mix
 /// both sides. A plane may hold more than one surface, parted by a crease too weak to be found, and deviate from both
 /// all along a curb.
@@ -37,8 +46,8 @@ struct GroundAlong {
   /// Cells used, counted from the border's own.
   static constexpr int nearest = 2, farthest = 5;
 
-  float above_m = 0.0f;      ///< shrunk by chance, two standard deviations
-  float share = 0.0f;        ///< share left by that; the same share of the plane's variance is replaced by variance_m2
+  float above_m = 0.0f;      ///< the share of the cells' mean beyond two standard deviations of chance
+  float share = 0.0f;        ///< that share; the same share of the plane's variance is replaced by variance_m2
   float variance_m2 = 0.0f;  ///< of the cells' mean
 
   /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane.
@@ -46,8 +55,7 @@ struct GroundAlong {
   /// observation: what the cells behind one are off from the ground there, they are off alike.
   static GroundAlong of(float cells, float borders, float above_m, const Plane& plane) {
     if (!(cells > 0.0f)) return {};
-    const float mean_m = above_m / cells, variance_m2 = plane.fit_variance_m2 / cells;
-    const float share = square(mean_m) > 4.0f * variance_m2 ? 1.0f - 4.0f * variance_m2 / square(mean_m) : 0.0f;
+    const float mean_m = above_m / cells, share = share_beyond(4.0f * plane.fit_variance_m2 / cells, mean_m);
     return {share * mean_m, share, plane.fit_variance_m2 / borders};
   }
 };
@@ -59,13 +67,8 @@ struct Deviation {
   float shared_m2 = 0.0f;  ///< variance that all borders share, in addition
   float borders = 0.0f;    ///< borders that show it
 
-  /// The share of it that is the ground's. Ground that deviates by a variance of A beside borders, found by A + t^2
-  /// with t^2 the variances above, deviates by A / (A + t^2) of what is found here; the deviation itself is the
-  /// estimate of A + t^2 (empirical Bayes: Efron and Morris 1973, for a single deviation).
-  float share() const {
-    const float by_chance_m2 = variance_m2 + shared_m2, found_m2 = square(away_m);
-    return away_m > 0.0f && found_m2 > by_chance_m2 ? 1.0f - by_chance_m2 / found_m2 : 0.0f;
-  }
+  /// The share of it that is the ground's.
+  float share() const { return away_m > 0.0f ? share_beyond(variance_m2 + shared_m2, away_m) : 0.0f; }
   /// Variance of the side's height there: that of the share. Without one, the plane may be wrong by anything up to half
   /// of what exceeds two standard deviations, what chance makes of it.
   float height_variance_m2() const {

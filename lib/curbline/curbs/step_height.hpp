@@ -61,8 +61,7 @@ class StepHeight {
   struct Deviations {
     Deviation one, other;
   };
-  // Not inlined: three times inlined it takes 320 bytes of flash more.
-  [[gnu::noinline]] Deviations deviations() const;
+  Deviations deviations() const;
   float plane_variance_m2(const Plane& plane) const;
   [[gnu::cold]] float lower_m2(typename Piece::End end) const;
   float ground_share_of_slope(const Viewpoint& view) const;
