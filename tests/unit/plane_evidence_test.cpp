@@ -40,6 +40,13 @@ double evidence_by_definition(const std::vector<Point>& points, const PlanePrior
          std::lgamma(a) - std::lgamma(a0) + 0.5 * n * std::log(V0);
 }
 
+/// By how much one plane is more evident than two, if nothing is seen of the border between them.
+float gain_of_one(const PlaneEvidence& evidence, const PlaneMoments& first, const PlaneMoments& second) {
+  PlaneMoments both = first;
+  both.add(second);
+  return evidence.gain(first, evidence.score(first), second, evidence.score(second), both, [] { return BorderRise{}; });
+}
+
 TEST_CASE("plane evidence: agrees with its definition, from one point to as many as a window has") {
   const double spacing = GENERATE(2.0, 0.9, 0.5, 0.1, 0.04);
   const double sd = GENERATE(0.002, 0.01, 0.1);
@@ -81,10 +88,7 @@ TEST_CASE("plane evidence: a low curb along two wide pavements parts them, groun
   const auto gain = [&](auto&& height_m) {
     const PlaneMoments first = of_points(test::sample({0, 2, 0, 4}, 0.1, 0.007, noise, height_m));
     const PlaneMoments second = of_points(test::sample({2, 4, 0, 4}, 0.1, 0.007, noise, height_m));
-    PlaneMoments both = first;
-    both.add(second);
-    return evidence.gain(first, evidence.score(first), second, evidence.score(second), both,
-                         [] { return BorderRise{}; });
+    return gain_of_one(evidence, first, second);
   };
   const auto kerb = [](double height_m) {
     return [=](double x, double) { return 0.02 * x + (x < 2.0 ? 0.0 : height_m); };
@@ -126,9 +130,7 @@ TEST_CASE("plane evidence: a crease parts two planes, ground that bends over the
   const auto gain = [&](auto&& height_m) {
     const PlaneMoments face = of_points(test::sample({0, 0.3, 0, 2.0}, 0.1, 0.012, noise, height_m));
     const PlaneMoments above = of_points(test::sample({0.3, 0.7, 0, 2.0}, 0.1, 0.012, noise, height_m));
-    PlaneMoments both = face;
-    both.add(above);
-    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, [] { return BorderRise{}; });
+    return gain_of_one(evidence, face, above);
   };
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.35 * x : 0.105 + 0.07 * (x - 0.3); }) < 0.0f);
   CHECK(gain([](double x, double) { return x < 0.3 ? 0.07 * x : 0.021 - 0.20 * (x - 0.3); }) < 0.0f);
@@ -174,9 +176,7 @@ TEST_CASE("plane evidence: a crease parts two planes whatever way it runs") {
       if (at > -0.3 && at < 0.4) points[at < 0.0 ? 0 : 1].push_back(p);
     }
     const PlaneMoments face = of_points(points[0]), above = of_points(points[1]);
-    PlaneMoments both = face;
-    both.add(above);
-    return evidence.gain(face, evidence.score(face), above, evidence.score(above), both, [] { return BorderRise{}; });
+    return gain_of_one(evidence, face, above);
   };
   CHECK(gain(0.35, 0.07) < 0.0f);
   CHECK(gain(0.07, 0.07) > 0.0f);

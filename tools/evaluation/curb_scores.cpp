@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "evaluation/scores.hpp"
@@ -39,6 +40,7 @@ class Nearest {
   /// Of a place on a curb. Its far side is that of its own line: at a bend the true step's may be another.
   FoundSample of(Point2 p, const MapCurb& curb) const {
     FoundSample out{curb.height_m};
+    const std::optional<Point2> far = robot_ ? std::optional(to_far_side(curb, *robot_)) : std::nullopt;
     for (const TruthSample& s : samples_) {
       const double dx = p.x - s.at.x, dy = p.y - s.at.y;
       if (std::abs(dx) > reach_m || std::abs(dy) > reach_m) continue;
@@ -49,8 +51,8 @@ class Nearest {
       out.distance_m = distance;
       TruthSample there = s;
       there.step_m += s.rise * on_sample;
-      out.height_error_m = robot_ ? curb.height_m - signed_step_m(there, to_far_side(curb, *robot_))
-                                  : std::abs(curb.height_m) - there.height_m();
+      out.height_error_m =
+          far ? curb.height_m - signed_step_m(there, *far) : std::abs(curb.height_m) - there.height_m();
     }
     return out;
   }
