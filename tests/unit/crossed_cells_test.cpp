@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <vector>
 
 #include "support/small_map.hpp"
@@ -57,6 +58,24 @@ TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: those in which a part of the 
     CHECK(std::includes(crossed.begin(), crossed.end(), walked.begin(), walked.end()));
     CHECK(crossed.size() <= walked.size() + 1);  // a corner that it only touches
   }
+}
+
+TEST_CASE_METHOD(CrossedCellsTest,
+                 "crossed cells: also those that the curb may cross, by the deviation of its position") {
+  const auto columns_of = [this](Curb curb, double position_sd_m) {
+    curb.position_sd_m = static_cast<float>(position_sd_m);
+    return crossed_by(curb).size() / 10;
+  };
+  // Between two columns of cells, and in the middle of one.
+  const Curb between = step(1.301, 0.501, 1.301, 1.499), within = step(1.35, 0.501, 1.35, 1.499);
+  const Curb row_between = step(0.501, 1.301, 1.499, 1.301);
+  CHECK(columns_of(between, 0.0) == 1);
+  CHECK(columns_of(between, 0.03) == 2);
+  CHECK(columns_of(row_between, 0.03) == 2);
+  CHECK(columns_of(within, 0.03) == 1);
+  CHECK(columns_of(within, 0.06) == 3);
+  CHECK(columns_of(within, INFINITY) == 3);  // at most a cell
+  CHECK(columns_of(within, NAN) == 3);
 }
 
 TEST_CASE_METHOD(CrossedCellsTest, "crossed cells: the same wherever the window lies in the map") {

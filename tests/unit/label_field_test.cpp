@@ -62,7 +62,7 @@ double height_of(const Tiny& tiny, int label) {
   return tiny.plane(label).z_m;
 }
 
-/// Student t with 6 degrees of freedom around the plane, up to a constant.
+/// Student t with 2 degrees of freedom around the plane, up to a constant.
 double log_node(const Tiny& tiny, const Site& site, int label) {
   const Plane& plane = tiny.plane(label);
   const Cell& cell = tiny.dem.cell(tiny.dem.slot(site.i, site.j));
@@ -70,7 +70,7 @@ double log_node(const Tiny& tiny, const Site& site, int label) {
   const double residual =
       site.height_m - static_cast<double>(plane.height_m(0.1f * static_cast<float>(site.i) + 0.05f,
                                                          0.1f * static_cast<float>(site.j) + 0.05f));
-  return -0.5 * std::log(variance) - 3.5 * std::log(1.0 + residual * residual / (6.0 * variance));
+  return -0.5 * std::log(variance) - 1.5 * std::log(1.0 + residual * residual / (2.0 * variance));
 }
 
 /// Marginals of the field, by summation over all labellings: [site][label].

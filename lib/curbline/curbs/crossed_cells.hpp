@@ -1,5 +1,7 @@
-// The cells that steps cross, by the curbs of the last call. They hold readings of both sides, although, if the step is
-// low, their heights do not show it. Cost: 30 operations for each row or column of cells that a curb goes through.
+// The cells that steps cross, by the curbs of the last call, within the standard deviation of their positions. They
+// hold readings of both sides, although, if the step is low, their heights do not show it. (Without that deviation,
+// where all cells of a mixed column bear the lower side's label, the curb lies beside them and they would tilt its
+// plane.) Cost: 30 operations for each row or column of cells that a curb goes through.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +16,10 @@
 
 namespace curbline {
 
-/// Calls visit(x, y) for each cell crossed by a curb from (x0, y0) to (x1, y1), in cells of the window, x being the
-/// axis along which it is longer: x from 0 to end_x - 1, y unbounded.
+/// Calls visit(x, y) for each cell crossed by a curb from (x0, y0) to (x1, y1), or by one up to `aside` beside it in y,
+/// in cells of the window, x being the axis along which it is longer: x from 0 to end_x - 1, y unbounded.
 template <typename Visit>
-void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&& visit) {
+void for_each_crossed(float x0, float y0, float x1, float y1, float aside, int end_x, Visit&& visit) {
   if (x0 > x1) std::swap(x0, x1), std::swap(y0, y1);
   const float slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0.0f;
   if (!(x1 >= 0.0f)) return;
@@ -25,8 +27,8 @@ void for_each_crossed(float x0, float y0, float x1, float y1, int end_x, Visit&&
     const float enters = static_cast<float>(x), leaves = enters + 1.0f;
     const float a = y0 + slope * (std::max(x0, enters) - x0);
     const float b = y0 + slope * (std::min(x1, leaves) - x0);
-    const int last = floor_to_int(std::max(b, a));
-    for (int y = floor_to_int(std::min(b, a)); y <= last; ++y) visit(x, y);
+    const int last = floor_to_int(std::max(b, a) + aside);
+    for (int y = floor_to_int(std::min(b, a) - aside); y <= last; ++y) visit(x, y);
   }
 }
 
@@ -43,7 +45,9 @@ CellSet<limits> crossed_cells(const Dem<limits>& dem, std::span<const Curb> curb
     if (!near(x0) || !near(y0) || !near(x1) || !near(y1)) continue;
     const int axis = square(x1 - x0) >= square(y1 - y0) ? 0 : 1;
     if (axis == 1) std::swap(x0, y0), std::swap(x1, y1);
-    for_each_crossed(x0, y0, x1, y1, dem.cells_along(axis), [&](int x, int y) {
+    // Aslant to the cells the deviation is up to sqrt(2) times as long along y. At most a cell: more are not a border.
+    const float aside = std::min(1.0f, curb.position_sd_m * (axis == 0 ? cells_y : cells_x));
+    for_each_crossed(x0, y0, x1, y1, aside, dem.cells_along(axis), [&](int x, int y) {
       const int i = axis == 0 ? x : y, j = axis == 0 ? y : x;
       if (dem.contains(i, j)) crossed.insert(dem.slot(i, j));
     });

@@ -26,7 +26,7 @@ class PlanesNearBy {
 
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
-  /// The candidates of a valid cell, as of the last follow(). Node potentials: Student t with 6 degrees of freedom
+  /// The candidates of a valid cell, as of the last follow(). Node potentials: Student t with 2 degrees of freedom
   /// about each plane. A plane along a flight of stairs passes near the heights of all its treads, but a cell that lies
   /// level is not on it, whatever its neighbours say (three standard deviations at most).
   LabelSite::Candidates candidates(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j,
@@ -90,10 +90,9 @@ LabelSite::Candidates PlanesNearBy<limits>::candidates(const Dem<limits>& dem, c
     if (!plane.alive() || !mixture.ground(k)) return;
     const float variance = plane.variance_m2 + cell_variance;
     const float residual = cell.height_m - plane.height_m(x, y);
-    float u = 1.0f + residual * residual / (6.0f * variance);
-    if (u > 1e4f) u = 1e4f;  // its seventh power, and a ratio of two, must stay finite
-    const float u3 = u * u * u;
-    float doubt = variance * u3 * u3 * u;
+    float u = 1.0f + residual * residual / (2.0f * variance);
+    if (u > 1e10f) u = 1e10f;  // its cube, and a ratio of two, must stay finite
+    float doubt = variance * u * u * u;
     if (plane.steeper_than_ground()) doubt *= exp(std::min(level_likelihood(dem, cell, plane), gate));
     candidates.consider(static_cast<Label>(k), doubt);
   };
