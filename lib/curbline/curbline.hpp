@@ -86,6 +86,7 @@
 #include "curbline/curbs/curb_piece.hpp"        // borders on one line
 #include "curbline/curbs/corner.hpp"            // where a chain of borders goes on along another line
 #include "curbline/curbs/shadow.hpp"            // of a step down
+#include "curbline/curbs/line_weights.hpp"      // what a plane owes to each scan line
 #include "curbline/curbs/step_height.hpp"       // the height of a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next

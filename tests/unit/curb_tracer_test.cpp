@@ -634,19 +634,43 @@ TEST_CASE("curb tracer: the height of a step is less certain where few points te
   CHECK(deviation_m(1) == Approx(2.0 * deviation_m(4)).epsilon(0.1));
 }
 
-TEST_CASE(
-    "curb tracer: however large the errors of scan lines, a height counts as many cells as its planes have lines") {
-  const auto stages = traced(up, 0.0f, 1.2f);
-  const auto deviation_m = [&](float line_m2) {
-    stages->dem.set_common(1e-8f, line_m2);
-    stages->trace(0.0f, 1.2f);
-    REQUIRE(stages->tracer.curbs().size() == 1);
-    return stages->tracer.curbs()[0].height_sd_m;
+//  x ^   ===========   lines that run along the step see one side each        |   those that cross it see both, and
+//    |   -----------   with errors of their own                           ----+---  their errors cancel
+TEST_CASE("curb tracer: a step is as uncertain as the scan lines along it, not as those that cross it") {
+  struct Found {
+    double errors_m2 = 0.0, told_m2 = 0.0;
   };
-  const float known = deviation_m(0.0f);
-  // Planes of 14 and 10 rows of 24 cells: 336 and 240 cells count as much as 18 and 15 do.
-  CHECK(deviation_m(1.0f) > std::sqrt(15.0f) * 0.98f * known);
-  CHECK(deviation_m(1.0f) < std::sqrt(18.4f) * known);
+  const float line_sd_m = 0.001f;
+  const auto found = [&](bool along) {
+    Found sum;
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      Noise noise(seed);
+      std::array<double, 24> line{};
+      for (double& off_m : line) off_m = static_cast<double>(line_sd_m) * noise.normal();
+      Stages<> stages(small_settings());
+      fill(stages.dem, [&](double x, double y) {
+        return line[static_cast<std::size_t>(10.0 * x)] + ((along ? x : y) < 1.4 ? 0.0 : 0.12);
+      });
+      const float points = stages.dem.cell(stages.dem.slot(0, 0)).points;
+      stages.dem.set_common(1e-8f, points * line_sd_m * line_sd_m);
+      stages.settle();
+      stages.trace(0.0f, along ? 1.2f : 0.0f);
+      const double all_m = total_length_m(stages.tracer.curbs());
+      REQUIRE(all_m > 2.0);
+      for (const Curb& curb : stages.tracer.curbs()) {
+        sum.errors_m2 += length_m(curb) / all_m * std::pow(static_cast<double>(curb.height_m) - 0.12, 2) / 40;
+        sum.told_m2 += length_m(curb) / all_m * std::pow(static_cast<double>(curb.height_sd_m), 2) / 40;
+      }
+    }
+    return sum;
+  };
+  const Found along = found(true), across = found(false);
+  INFO("mm: along " << 1e3 * std::sqrt(along.errors_m2) << ", told " << 1e3 * std::sqrt(along.told_m2) << "; across "
+                    << 1e3 * std::sqrt(across.errors_m2) << ", told " << 1e3 * std::sqrt(across.told_m2));
+  CHECK(along.errors_m2 > 20.0 * across.errors_m2);
+  CHECK(along.told_m2 > 0.4 * along.errors_m2);  // 0.06 if cells erred each on its own
+  CHECK(along.told_m2 < 2.0 * along.errors_m2);
+  CHECK(across.told_m2 < 0.1 * along.told_m2);
 }
 
 TEST_CASE("curb tracer: of a plane of four cells, whose fit does not show it, what scan lines err is counted in full") {

@@ -84,8 +84,7 @@ TEST_CASE("dem: what the points of a cell were found to share is no less, as evi
   dem.set_common(1e-6f, 2e-5f);
   CHECK(dem.common_m2() == 1e-6f);
   CHECK(dem.prior().common_m2() == Approx(prior.texture_m2));
-  CHECK(dem.common_m2(Plane{.points_a_cell = 50.0f}) == 1e-6f);  // by scan lines less
-  CHECK(dem.common_m2(Plane{.points_a_cell = 2.0f}) == Approx(1e-5f));
+  CHECK(dem.line_m2() == 2e-5f);
 }
 
 TEST_CASE("dem: every cell of the window has a slot of its own") {

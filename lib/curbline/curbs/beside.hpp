@@ -17,16 +17,22 @@ struct Beside {
   float off_m = 0.0f;       ///< height above the plane, at the border
   float rise_m = 0.0f;      ///< rise beyond the plane's, per cell toward the border
   float away_cells = 0.0f;  ///< distance of the nearer cell's middle from the border
+  float few = 0.0f;         ///< 1 / points of a cell, mean of both
 
-  /// Of one border: heights of the two cells above the plane, the nearer one's middle `away` cells from the border.
-  static Beside of(float nearer_m, float farther_m, float away) {
-    return {1.0f, nearer_m + away * (nearer_m - farther_m), nearer_m - farther_m, away};
+  struct Shown {
+    float above_m, points;  ///< height above the plane
+  };
+  /// Of one border, by its two cells, the nearer one's middle `away` cells from it.
+  static Beside of(const Shown& nearer, const Shown& farther, float away) {
+    const float rise_m = nearer.above_m - farther.above_m;
+    return {1.0f, nearer.above_m + away * rise_m, rise_m, away, 0.5f / nearer.points + 0.5f / farther.points};
   }
   void add(const Beside& other) {
     borders += other.borders;
     off_m += other.off_m;
     rise_m += other.rise_m;
     away_cells += other.away_cells;
+    few += other.few;
   }
 };
 
@@ -64,7 +70,7 @@ struct GroundAlong {
 /// it is nearer.
 struct Deviation {
   float away_m = 0.0f, variance_m2 = 0.0f;
-  float shared_m2 = 0.0f;  ///< variance that all borders share, in addition
+  float shared_m2 = 0.0f;  ///< variance by what all borders err alike, in addition
   float borders = 0.0f;    ///< borders that show it
 
   /// The share of it that is the ground's.
@@ -83,15 +89,18 @@ struct Deviation {
 };
 
 /// The deviation of a side that begins `further_cells` beyond the borders, at the near end of a step down's shadow.
-/// `away` is 1 if the other side is below, -1 if above. Each cell is one observation. Of common_m2, the variance that
-/// points of one place share, all borders share half: all of it if scan lines run along them, none if across. 0 without
+/// `away` is 1 if the other side is below, -1 if above. Each cell is one observation; besides, all borders err alike by
+/// half of common_m2, the variance that points of one place share, and their nearer and their farther cells, each on
+/// their own, by the scan lines along the borders, with the variance line_m2 over the points of a cell. 0 without
 /// borders.
-inline Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2) {
+inline Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2,
+                           float line_m2) {
   const float n = beside.borders;
   if (!(n > 0.0f)) return {};
   const float away_m = away * (beside.off_m + further_cells * beside.rise_m) / n;
   const float q = beside.away_cells / n + further_cells;
-  return {away_m, plane.fit_variance_m2 * (square(1.0f + q) + square(q)) / n, 0.5f * common_m2, n};
+  const float both = square(1.0f + q) + square(q);
+  return {away_m, both * plane.fit_variance_m2 / n, 0.5f * common_m2 + both * line_m2 * beside.few / n, n};
 }
 
 }  // namespace curbline

@@ -123,7 +123,8 @@ Beside BorderFinder<limits>::beside(const Gap& gap, float border_m, int toward, 
   const int farther = nearer + toward;
   if (!lies_alone(nearer) || !lies_alone(farther)) return {};
   const float away = static_cast<float>(toward) * (static_cast<float>(nearer) + 0.5f - border);
-  return Beside::of(line.above_m(nearer, side.plane), line.above_m(farther, side.plane), away);
+  const auto shown = [&](int along) { return Beside::Shown{line.above_m(along, side.plane), line.cell(along).points}; };
+  return Beside::of(shown(nearer), shown(farther), away);
 }
 
 }  // namespace curbline

@@ -10,6 +10,7 @@
 #include "curbline/curbs/borders.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/curb_stages.hpp"
+#include "curbline/curbs/line_weights.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/shadow.hpp"
 #include "curbline/grid.hpp"
@@ -62,7 +63,10 @@ class StepHeight {
     Deviation one, other;
   };
   Deviations deviations() const;
+  float line_m2_along() const;
+  LineWeights line_weights(const Plane& plane) const;
   float plane_variance_m2(const Plane& plane) const;
+  float covariance_m2() const;
   [[gnu::cold]] float lower_m2(typename Piece::End end) const;
   float ground_share_of_slope(const Viewpoint& view) const;
 
@@ -96,7 +100,7 @@ void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at
   if (is_step) {
     follow_ground(part);
   } else {
-    variance_m2_ += plane_variance_m2(one) + plane_variance_m2(other);
+    variance_m2_ += plane_variance_m2(one) + plane_variance_m2(other) - 2.0f * covariance_m2();
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
@@ -250,6 +254,7 @@ template <Limits limits>
 void StepHeight<limits>::follow_ground(const Part& part) {
   const Deviations beside = deviations();
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
+  float planes_share = 1.0f;  // of both planes' errors
   for (const bool other : {false, true}) {
     const Deviation& next = other ? beside.other : beside.one;
     const GroundAlong along =
@@ -258,7 +263,9 @@ void StepHeight<limits>::follow_ground(const Part& part) {
     height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
     const float plane_m2 = plane_variance_m2(other ? piece_.planes.other : piece_.planes.one);
     variance_m2_ += next.height_variance_m2() + rest * (plane_m2 + along.share * (along.variance_m2 - plane_m2));
+    planes_share *= rest * (1.0f - along.share);
   }
+  variance_m2_ -= 2.0f * planes_share * covariance_m2();
 }
 
 /// Deviation of the ground from its planes beside the piece. Both sides begin at the near end of a shadow; the borders
@@ -267,20 +274,39 @@ template <Limits limits>
 auto StepHeight<limits>::deviations() const -> Deviations {
   const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
   const float beyond_cells = shadow_m_ > 0.0f ? -0.5f * up * shadow_m_ / piece_.cell_m : 0.0f;  // cell_m may be 0
-  const float common_m2 = stages_.dem.common_m2();
-  return {deviation(piece_.beside_one, piece_.planes.one, -up, -beyond_cells, common_m2),
-          deviation(piece_.beside_other, piece_.planes.other, up, beyond_cells, common_m2)};
+  const float common_m2 = stages_.dem.common_m2(), line_m2 = line_m2_along();
+  return {deviation(piece_.beside_one, piece_.planes.one, -up, -beyond_cells, common_m2, line_m2),
+          deviation(piece_.beside_other, piece_.planes.other, up, beyond_cells, common_m2, line_m2)};
 }
 
-/// Variance of a plane's height beside the piece. Its fit takes the shared noise of cells for equal everywhere; here it
-/// is at least that of cells seen in as few lines. Scan lines err independently: even if all cells of one erred alike,
-/// a plane of n cells would know as much as its lines, sqrt(n) in a square one, which bounds the factor. With four
-/// cells or fewer the fit does not show the error of lines, and there is no bound.
+/// Dem::line_m2() of the mean over the piece: all of it if scan lines run along it. Where it leads ahead, each cell's
+/// length of it is seen by others.
+template <Limits limits>
+float StepHeight<limits>::line_m2_along() const {
+  const SinCos& ahead = stages_.dem.ahead_is();
+  const float x_m = piece_.line.x1_m - piece_.line.x0_m, y_m = piece_.line.y1_m - piece_.line.y0_m;
+  return stages_.dem.line_m2() / (1.0f + magnitude(x_m * ahead.cos + y_m * ahead.sin) / stages_.pitch_m());
+}
+
+template <Limits limits>
+LineWeights StepHeight<limits>::line_weights(const Plane& plane) const {
+  return {plane, stages_.dem.ahead_is(), stages_.pitch_m(), piece_.middle_x_m(), piece_.middle_y_m()};
+}
+
+/// Variance of a plane's height beside the piece: as its fit states, of cells that err each on its own, and by scan
+/// lines.
 template <Limits limits>
 float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
-  float times = stages_.dem.common_m2(plane) / plane.fit_variance_m2;
-  if (plane.cells > 4.0f) times = std::min(times, square_root(plane.cells));
-  return std::max(1.0f, times) * piece_.variance_m2(plane);
+  const LineWeights lines = line_weights(plane);
+  return piece_.variance_m2(plane) + stages_.dem.line_m2() / plane.points_a_cell * lines.times(lines);
+}
+
+/// Covariance of the planes' heights there, by the lines that have seen both.
+template <Limits limits>
+float StepHeight<limits>::covariance_m2() const {
+  const auto [one, other] = piece_.planes;
+  const float line_m2 = stages_.dem.line_m2() / square_root(one.points_a_cell * other.points_a_cell);
+  return line_m2 * line_weights(one).times(line_weights(other));
 }
 
 }  // namespace curbline

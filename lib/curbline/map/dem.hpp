@@ -111,9 +111,9 @@ class Dem : public Window<limits> {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }
-  /// The same for the cells of a plane: scan lines err too, and the fewer points these cells have, the less of that
-  /// averages out. At least common_m2().
-  float common_m2(const Plane& plane) const { return std::max(common_m2_, line_m2_ / plane.points_a_cell); }
+  /// Variance of what the cells of a row err alike, if they have one point each, by the errors in tilt and pose of the
+  /// scan line that has seen them. More points are of more lines: over their number.
+  float line_m2() const { return line_m2_; }
   /// Sets both as estimated; in evidences the shared part counts as at least the ground's texture.
   void set_common(float found_m2, float found_line_m2) {
     common_m2_ = found_m2;
@@ -178,6 +178,8 @@ class Dem : public Window<limits> {
     view.y_m = from.y_m - origin_y_m();
     return view;
   }
+  /// What is ahead, as of look_from(). Scan lines on level ground run across it.
+  const SinCos& ahead_is() const { return ahead_is_; }
   /// How far ahead of the tilt axis a place in the map frame lies: by how much a radian more of tilt lowers it. What
   /// lies beyond 30 m counts as there.
   float ahead_m(float x_m, float y_m) const {

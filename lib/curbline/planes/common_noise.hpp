@@ -5,11 +5,12 @@
 // for a first-order autoregression). It is estimated in patches of 10 x 10 cells, each about a plane of its own, so
 // that a step that does not divide planes yet affects only the patches that it crosses. Independent noise of a cell's
 // points is included, the less the more there are. The uncertainty of the tilt's latency, which a single sweep does not
-// show, is added. Errors of tilt and poses are those of whole scan lines, and average out over the lines that see a
-// cell: a plane seen in a few lines errs by more than the evenest patches, seen in many, show. So line_m2() is the
-// variance for cells of one point, from which Dem::common_m2(plane) is that for cells of as many as the plane's have.
+// show, is added. Errors of tilt and poses are those of whole scan lines, which run across the way ahead: what the
+// cells of a row across it err alike is found by an analysis of variance (Fisher 1925). It averages out over the lines
+// that see the row, so line_m2() is that for cells of one point, from which Dem::line_m2() is that for a plane's.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -31,8 +32,15 @@ struct PatchResiduals {
     float pairs = 0.0f, sum_m = 0.0f, squares_m2 = 0.0f;
   };
   std::array<Rises, 2> rises{};
+  /// The cells that lie equally far ahead: the same scan lines have seen them.
+  struct Row {
+    float cells = 0.0f, x = 0.0f, y = 0.0f, off_m = 0.0f;
+  };
+  static constexpr std::size_t most_rows = side * 3 / 2;  ///< along the diagonal
+  std::array<Row, most_rows> rows{};
 
-  void add(float x_cells, float y_cells, float above_m);
+  /// A cell above its plane. `ahead`: of at most unit length.
+  void add(float x_cells, float y_cells, float above_m, const SinCos& ahead);
   void add_rise(std::size_t axis, float rise_m) {
     rises[axis].pairs += 1.0f;
     rises[axis].sum_m += rise_m;
@@ -41,6 +49,16 @@ struct PatchResiduals {
   /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the best plane of
   /// the patch. Needs at least least_cells.
   float common_m2() const;
+  /// Variance of what the cells of a row err alike, beyond what each does, about the same plane; below 0 by chance.
+  float line_m2() const;
+
+ private:
+  struct Fit {
+    float level_m;     ///< at the origin
+    float slope_m[2];  ///< a cell along x, along y
+    float left_m2;     ///< mean square residual
+  };
+  Fit fit() const;
 };
 
 template <Limits limits>
@@ -48,7 +66,7 @@ class CommonNoise {
  public:
   void init() { *this = CommonNoise{}; }
 
-  /// Examines the next row of patches; after the last, the first again. About 45 operations for each cell of these ten
+  /// Examines the next row of patches; after the last, the first again. About 60 operations for each cell of these ten
   /// rows.
   void follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture);
 
@@ -56,9 +74,9 @@ class CommonNoise {
   /// both sides of a street and the end of a ramp may cross all others. Between PlanePrior::least_common_share and
   /// PlanePrior::common_share of the expected noise; the latter as long as there is no plane.
   float common_m2(const PlanePrior& prior, float latency_sd_s) const;
-  /// Variance of the height of a cell of one point, by a scan line's error in tilt and pose: the shared variance times
-  /// the points of a cell. Where these are many, uneven ground makes it large, so patches are weighted by cells over
-  /// points, as in a ratio of sums. The median, as no curb is missed for it; 0 as long as there is no plane.
+  /// Variance of what cells of one point in a row err alike, by a scan line's error in tilt and pose: PatchResiduals'
+  /// times the points of a cell. Where these are many, uneven ground makes it large, so patches are weighted by cells
+  /// over points, as in a ratio of sums. The median, as no curb is missed for it; 0 as long as there is no plane.
   float line_m2() const;
 
  private:
@@ -73,7 +91,7 @@ class CommonNoise {
   };
   struct Patch {
     float cells = 0.0f;  ///< 0: too few
-    float common_m2 = 0.0f;
+    float common_m2 = 0.0f, line_m2 = 0.0f;
     float points_a_cell = 1.0f;
     float growth_m2_s2 = 0.0f;  ///< sum of squares of Dem::growth_m_s()
   };
@@ -110,7 +128,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     const PatchSums& sums = row.patch[k];
     const float cells = sums.residuals.cells;
     if (cells < PatchResiduals::least_cells) continue;
-    *patch = {cells, sums.residuals.common_m2(), sums.points / cells, sums.growth_m2_s2};
+    *patch = {cells, sums.residuals.common_m2(), sums.residuals.line_m2(), sums.points / cells, sums.growth_m2_s2};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -127,7 +145,7 @@ void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<lim
   if (dem.mixed(cell, dem.slope_m2(plane))) return;
   const Seen now{label, i, dem.above_m(i, j, cell, plane)};
   PatchSums& sums = row.patch[static_cast<std::size_t>(j / side)];
-  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m);
+  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m, dem.ahead_is());
   sums.growth_m2_s2 += square(dem.growth_m_s(slot));
   sums.points += cell.points;
   const auto column = static_cast<std::size_t>(j);
@@ -159,9 +177,9 @@ float CommonNoise<limits>::line_m2() const {
   std::array<Shown, patches> shown;
   for (std::size_t k = 0; k < patches; ++k) {
     const float points = patches_[k].points_a_cell;
-    shown[k] = {patches_[k].common_m2 * points, patches_[k].cells / points};
+    shown[k] = {patches_[k].line_m2 * points, patches_[k].cells / points};
   }
-  return quantile(shown, 0.5f);
+  return std::max(0.0f, quantile(shown, 0.5f));
 }
 
 /// Weighted quantile; 0 if there is no weight.
