@@ -41,6 +41,19 @@ bool is_left_over(const std::string& path) {
   return refused;
 }
 
+/// -1 on failure, with the reason in errno.
+int listen_at(const addrinfo& address, int most_waiting) {
+  const int socket = ::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket < 0) return -1;
+  const int on = 1;
+  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (::bind(socket, address.ai_addr, address.ai_addrlen) == 0 && ::listen(socket, most_waiting) == 0) return socket;
+  const int error = errno;
+  ::close(socket);
+  errno = error;
+  return -1;
+}
+
 std::uint16_t port_of(int socket) {
   sockaddr_storage bound{};
   socklen_t size = sizeof bound;
@@ -89,14 +102,11 @@ void CurbServer::listen_tcp(const std::string& host, std::uint16_t port) {
   if (const int failed = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found); failed != 0) {
     throw BadInput(address_ + ": " + ::gai_strerror(failed) + "; expected tcp:HOST:PORT of this machine");
   }
-  listener_ = ::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const int on = 1;
-  if (listener_ >= 0) ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const bool listens = listener_ >= 0 && ::bind(listener_, found->ai_addr, found->ai_addrlen) == 0 &&
-                       ::listen(listener_, max_clients) == 0;
+  for (const addrinfo* address = found; address != nullptr && listener_ < 0; address = address->ai_next)
+    listener_ = listen_at(*address, max_clients);
   const int error = errno;
   ::freeaddrinfo(found);
-  if (!listens) throw BadInput(address_ + ": " + std::strerror(error) + "; expected a free port of this machine");
+  if (listener_ < 0) throw BadInput(address_ + ": " + std::strerror(error) + "; expected a free port of this machine");
   address_ = address_.substr(0, address_.rfind(':') + 1) + std::to_string(port_of(listener_));
 }
 

@@ -29,7 +29,8 @@ class CurbServer {
   CurbServer(const CurbServer&) = delete;
   CurbServer& operator=(const CurbServer&) = delete;
 
-  /// Listens at unix:PATH or tcp:HOST:PORT (port 0: any). A socket file without a listener is replaced. Throws
+  /// Listens at unix:PATH or tcp:HOST:PORT (port 0: any), of a name with several addresses at the first that can be
+  /// listened at: localhost is ::1 too where IPv6 is off. A socket file without a listener is replaced. Throws
   /// BadInput.
   void open(const std::string& address);
 

@@ -2,14 +2,28 @@
 #include "curb_server.hpp"
 
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstring>
 
 #include "heap_trap.hpp"
 #include "tools/formats_support.hpp"
+
+extern "C" {
+int __real_getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found);
+
+/// The linker replaces getaddrinfo by this. Whatever this machine resolves, two.test is first 192.0.2.1, which no
+/// machine has (RFC 5737), then 127.0.0.1: as localhost is ::1 first, where IPv6 is off.
+int __wrap_getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found) {
+  if (std::strcmp(host, "two.test") != 0) return __real_getaddrinfo(host, service, wanted, found);
+  const int failed = __real_getaddrinfo("192.0.2.1", service, wanted, found);
+  return failed != 0 ? failed : __real_getaddrinfo("127.0.0.1", service, wanted, &(*found)->ai_next);
+}
+}
 
 namespace curbline::daemon {
 namespace {
@@ -31,15 +45,21 @@ std::string read_some(int socket) {
   return {text.data(), got > 0 ? static_cast<std::size_t>(got) : 0};
 }
 
-TEST_CASE("curb server: every client reads every line, over TCP as over a Unix socket") {
-  CurbServer server;
-  server.open("tcp:127.0.0.1:0");
+/// To the port at the end of `server`, on 127.0.0.1.
+int connect_tcp(const std::string& server) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(server.address().substr(14))));
-  const int client = ::socket(AF_INET, SOCK_STREAM, 0);
-  REQUIRE(::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(server.substr(server.rfind(':') + 1))));
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  return socket;
+}
+
+TEST_CASE("curb server: every client reads every line, over TCP as over a Unix socket") {
+  CurbServer server;
+  server.open("tcp:127.0.0.1:0");
+  const int client = connect_tcp(server.address());
   int number = -1;
   for (int i = 0; i < 1000 && number < 0; ++i) number = server.accept_client();
   REQUIRE(number >= 0);
@@ -47,6 +67,16 @@ TEST_CASE("curb server: every client reads every line, over TCP as over a Unix s
   CHECK(read_some(client) == "hello\n");
   server.send("line\n");
   CHECK(read_some(client) == "line\n");
+  ::close(client);
+}
+
+TEST_CASE("curb server: of a name with several addresses the first that this machine has is listened at") {
+  CurbServer server;
+  server.open("tcp:two.test:0");
+  const int client = connect_tcp(server.address());
+  int number = -1;
+  for (int i = 0; i < 1000 && number < 0; ++i) number = server.accept_client();
+  CHECK(number >= 0);
   ::close(client);
 }
 
