@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <utility>
 
 #include "curbline/can/curb_frames.hpp"
@@ -29,11 +30,14 @@ constexpr float least_stale_s = 0.5f;
 constexpr float half_way_m = 0.4f;
 constexpr int most_batches = 16;  ///< of frames, before other work gets its turn
 
+/// SIGHUP says that the terminal has closed; nohup has it ignored, but a blocked signal would come here all the same.
 int signal_descriptor() {
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGTERM);
   sigaddset(&stop, SIGINT);
+  struct sigaction hang_up {};
+  if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) sigaddset(&stop, SIGHUP);
   ::pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   return ::signalfd(-1, &stop, SFD_CLOEXEC | SFD_NONBLOCK);
 }
@@ -135,7 +139,7 @@ bool Daemon::wait() {
   if ((ready[0].revents & POLLIN) == 0) return true;
   signalfd_siginfo signal{};
   if (::read(signals_, &signal, sizeof signal) != sizeof signal) return true;
-  say("stopped by ", signal.ssi_signo == SIGINT ? "SIGINT" : "SIGTERM");
+  say("stopped by SIG", std::string_view(::sigabbrev_np(static_cast<int>(signal.ssi_signo))));
   return false;
 }
 

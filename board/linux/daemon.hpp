@@ -44,13 +44,13 @@ struct Options {
 
 class Daemon {
  public:
-  /// Opens everything. Blocks SIGTERM and SIGINT, for which run() waits. Throws BadInput.
+  /// Opens everything. Blocks SIGTERM, SIGINT and SIGHUP, for which run() waits. Throws BadInput.
   Daemon(const tools::Robot& robot, const Options& options);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  /// Runs until SIGTERM or SIGINT, or to the end of a log of scan lines.
+  /// Runs until SIGTERM, SIGINT or SIGHUP, or to the end of a log of scan lines.
   void run();
 
   /// The current status line. Valid until the next call.

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   using namespace curbline;
   CLI::App app(
       "Finds curbs while the robot runs: tilt angles from a CAN interface and scan lines in, curbs out. Runs until "
-      "SIGINT, SIGTERM or the end of a log, then prints its last status.",
+      "SIGINT, SIGTERM, SIGHUP or the end of a log, then prints its last status.",
       "curblined");
   std::string robot;
   daemon::Options options;

@@ -1,0 +1,98 @@
+// curblined as a service manager or a shell starts and stops it.
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "formats/decimals.hpp"
+#include "program.hpp"
+
+namespace curbline::tools::testing {
+namespace {
+
+/// A log of 3 s: 40 lines a second of a laser at a fixed tilt.
+std::string scan_log(const TemporaryDirectory& directory) {
+  std::string ranges = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081", log;
+  for (int i = 0; i < 1081; ++i) ranges += " 1.500";
+  for (std::int64_t i = 0; i < 120; ++i) {
+    const std::string time = seconds(1'700'000'000'000'000'000 + i * 25'000'000, 6);
+    log += ranges + " 0 " + time + " host " + time + "\n";
+  }
+  return directory.write("scans.carmen", log);
+}
+
+Words arguments_of(const TemporaryDirectory& directory) {
+  return {"--robot", directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n"),
+          "--scans", scan_log(directory),
+          "--curbs", "unix:" + directory.path("curbs")};
+}
+
+/// Runs it by a line of the shell, "$0" "$@".
+Outcome by_shell(const std::string& line, const TemporaryDirectory& directory) {
+  return run("/bin/sh", Words{"-c", line, CURBLINE_PROGRAM} + arguments_of(directory));
+}
+
+TEST_CASE("curblined: a terminal that closes ends it as SIGTERM does, and not under nohup") {
+  for (const std::string signal : {"HUP", "INT", "TERM"}) {
+    INFO(signal);
+    const TemporaryDirectory directory;
+    const Outcome outcome = by_shell("exec timeout --preserve-status -s " + signal + " 1 \"$0\" \"$@\"", directory);
+    INFO("standard error: " << outcome.err);
+    CHECK(outcome.status == 0);
+    CHECK(outcome.err.find("curblined: stopped by SIG" + signal + "\n") != std::string::npos);
+    CHECK(outcome.out.starts_with("{\"status\":"));
+    CHECK_FALSE(std::filesystem::exists(directory.path("curbs")));
+  }
+  const TemporaryDirectory directory;
+  const Outcome outcome = by_shell(
+      "exec timeout --preserve-status -s HUP 1 sh -c 'trap \"\" HUP; exec \"$0\" \"$@\"' \"$0\" \"$@\"", directory);
+  INFO("standard error: " << outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err.find("the log of scan lines has ended") != std::string::npos);
+}
+
+/// A socket like that on which systemd hears from its services.
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    REQUIRE(path.size() < sizeof address.sun_path);
+    std::copy(path.begin(), path.end(), address.sun_path);
+    REQUIRE(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    ::setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  }
+  ~NotifySocket() {
+    ::unsetenv("NOTIFY_SOCKET");
+    ::close(socket_);
+  }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  Words heard() const {
+    Words all;
+    std::array<char, 256> text{};
+    for (ssize_t got; (got = ::recv(socket_, text.data(), text.size(), MSG_DONTWAIT)) > 0;)
+      all.emplace_back(text.data(), static_cast<std::size_t>(got));
+    return all;
+  }
+
+ private:
+  int socket_;
+};
+
+TEST_CASE("curblined: it tells systemd that it is ready, alive once a second, how it is, and that it stops") {
+  const TemporaryDirectory directory;
+  const NotifySocket systemd(directory.path("notify"));
+  REQUIRE(curbline(arguments_of(directory)).status == 0);
+  const Words heard = systemd.heard();
+  REQUIRE(heard.size() >= 4);
+  CHECK(heard.front() == "READY=1");
+  CHECK(heard.back() == "STOPPING=1");
+  CHECK(std::count(heard.begin(), heard.end(), "STATUS=ok") >= 1);
+  CHECK(std::count(heard.begin(), heard.end(), "WATCHDOG=1") >= 2);
+}
+
+}  // namespace
+}  // namespace curbline::tools::testing
