@@ -346,6 +346,14 @@ TEST_CASE("program: an unknown scene is refused with those that ship, and no dir
   CHECK(names_in(dir.path("")).empty());
 }
 
+TEST_CASE("program: a name that is too long for any file is refused like that of a missing one") {
+  const TemporaryDirectory dir;
+  const std::string name(300, 'a');  // longer than the 255 bytes of Linux
+  check_refused(curbline({"simulate", "--scene", name, "--robot", shipped_robot("utm30lx"), "--out", dir.path("o")}),
+                "no scene '" + name + "'; expected", "street");
+  check_refused(curbline({"evaluate", name}), name + "/truth.json: ", "expected what simulate wrote");
+}
+
 TEST_CASE("program: evaluate prints nothing where its picture is refused") {
   const Recording logs = standing();
   for (const std::string name : {"none/map.png", "map.gif"})

@@ -1,5 +1,7 @@
 #include "formats/shipped.hpp"
 
+#include "formats/file_exists.hpp"
+
 namespace curbline::tools {
 
 namespace fs = std::filesystem;
@@ -16,7 +18,7 @@ std::vector<fs::path> shipped_folders(const std::string& kind) {
 std::string shipped_file(const std::string& kind, const std::string& name) {
   for (const fs::path& folder : shipped_folders(kind)) {
     const fs::path file = folder / (name + ".toml");
-    if (fs::exists(file)) return file.string();
+    if (file_exists(file)) return file.string();
   }
   return {};
 }

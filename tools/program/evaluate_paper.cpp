@@ -9,6 +9,7 @@
 #include "evaluation/labels.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/cloud.hpp"
+#include "formats/file_exists.hpp"
 #include "formats/regions.hpp"
 #include "formats/shipped.hpp"
 #include "program/evaluate.hpp"
@@ -114,7 +115,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   for (const PaperCloud& cloud : clouds) {
     if (!cloud.same_place) continue;
     const ReplayLogs logs{data + "/" + cloud.name + ".carmen", data + "/" + cloud.name + ".candump", {}};
-    if (!std::filesystem::exists(logs.scans) || !std::filesystem::exists(logs.can)) return {};
+    if (!file_exists(logs.scans) || !file_exists(logs.can)) return {};
     Replay replay(robot, logs, std::move(pipeline));
     Sweep& sweep = sweeps.emplace_back();
     while (replay.step(&sweep.points)) continue;

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/curbs.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
+#include "formats/file_exists.hpp"
 #include "picture/picture.hpp"
 #include "program/evaluate.hpp"
 #include "program/recorded_run.hpp"
@@ -48,7 +48,7 @@ void take_results(const std::string& dir, Evaluation& e) {
 /// Throws BadInput if there are neither results nor logs.
 Evaluation evaluate_recording(const EvaluateOptions& options) {
   const std::string& dir = options.dir;
-  const bool results = std::filesystem::exists(dir + "/labels.csv") && std::filesystem::exists(dir + "/curbs.csv");
+  const bool results = file_exists(dir + "/labels.csv") && file_exists(dir + "/curbs.csv");
   Evaluation e;
   e.truth = read_truth(dir);
   if (has_logs(dir)) e.run = replay_recording(dir, e.truth);

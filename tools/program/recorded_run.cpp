@@ -1,8 +1,8 @@
 #include "program/recorded_run.hpp"
 
 #include <cmath>
-#include <filesystem>
 
+#include "formats/file_exists.hpp"
 #include "program/map_cloud.hpp"
 #include "program/replay.hpp"
 
@@ -13,7 +13,7 @@ constexpr std::int64_t interval_ns = 100'000'000;  ///< between evaluations of w
 
 Robot robot_of(const std::string& dir) {
   Robot robot = read_robot(dir + "/robot.toml");
-  if (std::filesystem::exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever robot.toml says
+  if (file_exists(dir + "/poses.tum")) robot.pose.still = false;  // it drove, whatever robot.toml says
   return robot;
 }
 
@@ -60,7 +60,7 @@ class Record {
 }  // namespace
 
 bool has_logs(const std::string& dir) {
-  return std::filesystem::exists(dir + "/scans.carmen") && std::filesystem::exists(dir + "/robot.toml");
+  return file_exists(dir + "/scans.carmen") && file_exists(dir + "/robot.toml");
 }
 
 RecordedRun replay_recording(const std::string& dir, const Truth& truth) {

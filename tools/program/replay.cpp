@@ -8,6 +8,7 @@
 
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
+#include "formats/file_exists.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -191,7 +192,7 @@ std::string Replay::remarks() const {
   }
   const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
   if (robot_.tilt.fixed && !logs_.can.empty()) say(logs_.can, "not read; the tilt is fixed");
-  if (std::error_code none; logs_.poses.empty() && !is_scanner(logs_.scans) && std::filesystem::exists(poses, none))
+  if (logs_.poses.empty() && !is_scanner(logs_.scans) && file_exists(poses))
     say(poses.string(), "not read, the robot was taken to stand; expected --poses");
   return text;
 }

@@ -3,6 +3,7 @@
 #include "formats/atomic_file.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
+#include "formats/file_exists.hpp"
 #include "formats/regions.hpp"
 #include "formats/toml_table.hpp"
 #include "formats/trajectory.hpp"
@@ -16,18 +17,13 @@
 namespace curbline::tools {
 namespace {
 
-bool exists(const std::string& path) {
-  std::error_code none;
-  return std::filesystem::exists(path, none);
-}
-
 /// The files of one recording. Files of an earlier recording that this one does not have are removed, and so are the
 /// results derived from the earlier one. The presence of truth.json shows that there was an earlier recording; without
 /// it, existing files are refused.
 class Recording {
  public:
   Recording(const std::string& dir, const Robot& robot, bool with_poses)
-      : dir_(dir), laser_(robot.laser), after_another_(exists(dir + "/truth.json")) {
+      : dir_(dir), laser_(robot.laser), after_another_(file_exists(dir + "/truth.json")) {
     std::error_code failed;
     std::filesystem::create_directories(dir, failed);
     if (failed) {
@@ -91,7 +87,7 @@ class Recording {
   }
 
   void check_own(const char* name) const {
-    if (!after_another_ && exists(dir_ + "/" + name))
+    if (!after_another_ && file_exists(dir_ + "/" + name))
       throw BadInput(dir_ + "/" + name + ": no file of a simulation, for no truth.json is beside it; expected a " +
                      "directory without it");
   }
