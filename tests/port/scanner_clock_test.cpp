@@ -74,6 +74,16 @@ TEST_CASE("clock: without an anchor the least delay of a line is taken as stated
   CHECK(worst_error_ns(clock, 0.0, 20, 5 * s) < 2 * ms);
 }
 
+TEST_CASE("clock: after an hour of silence the drift of that hour is made up for by the first line") {
+  for (const std::int64_t drift_ns : {180 * ms, -180 * ms}) {  // 50 ppm
+    scanner::DeviceClock clock(20 * ms);
+    for (std::int64_t t_ns = 0; t_ns < 7 * s; t_ns += 25 * ms) clock.follow(t_ns, epoch_ns + t_ns + 20 * ms);
+    const std::int64_t after_ns = 3600 * s;
+    clock.follow(after_ns - drift_ns, epoch_ns + after_ns + 20 * ms);
+    CHECK(clock.to_steady(after_ns - drift_ns) == epoch_ns + after_ns);
+  }
+}
+
 TEST_CASE("turn clock: lines that wait in a driver and come in bunches keep their distance") {
   lms200::TurnClock clock;
   std::mt19937 random(5);

@@ -357,6 +357,15 @@ TEST_CASE("xilinx_can: the interrupt's line is up while a frame waits, and falls
   CHECK(b.bus.counters().frames == 20);
 }
 
+TEST_CASE("xilinx_can: errors of the bus and bus-off do not interrupt, receive() finds them") {
+  Bench b;
+  REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
+  b.controller.break_frame();
+  b.controller.flag_bus_off();
+  REQUIRE(b.bus.send(frame_of_id(0x181)) == Status::ok);
+  CHECK_FALSE(b.controller.line());
+}
+
 TEST_CASE("xilinx_can: beside an interrupt that takes the frames, the main loop ends bus-off and takes none") {
   Bench b;
   REQUIRE(b.bus.open(b.settings, {}) == Status::ok);
