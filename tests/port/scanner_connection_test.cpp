@@ -233,5 +233,27 @@ TEST_CASE("connection: a serial line that is opened anew has the scanner's speed
   ::close(ours);
 }
 
+TEST_CASE("connection: a serial line is raw, whatever was set before: no flow control, one stop bit, no echo") {
+  int ours = -1, theirs = -1;
+  std::array<char, 64> name{};
+  REQUIRE(::openpty(&ours, &theirs, name.data(), nullptr, nullptr) == 0);
+  termios line{};
+  constexpr tcflag_t control = CRTSCTS | CSTOPB, local = ECHO | ICANON;
+  ::tcgetattr(theirs, &line);
+  line.c_cflag |= control;
+  line.c_lflag |= local;
+  ::tcsetattr(theirs, TCSANOW, &line);
+  ::tcgetattr(theirs, &line);
+  REQUIRE((line.c_cflag & control) == control);
+  REQUIRE((line.c_lflag & local) == local);
+  port::ByteStream stream = port::ByteStream::serial(name.data());
+  REQUIRE(stream.connect(1s) == 0);
+  ::tcgetattr(theirs, &line);
+  CHECK((line.c_cflag & control) == 0);
+  CHECK((line.c_lflag & local) == 0);
+  ::close(theirs);
+  ::close(ours);
+}
+
 }  // namespace
 }  // namespace curbline::test
