@@ -185,6 +185,21 @@ TEST_CASE("connection: bytes without a line do not hold a reader longer than its
   noise.join();
 }
 
+TEST_CASE("connection: a command to a scanner that has closed fails, and no SIGPIPE ends the program") {
+  const Listener listener;
+  port::ByteStream stream = stream_to(listener.port());
+  REQUIRE(stream.connect(1s) == 0);
+  Accepted(listener).close();
+  const Bytes command{1, 2, 3};
+  bool written = true;
+  for (int i = 0; i < 100 && written; ++i) {  // the first may still be taken
+    written = stream.write(command, 1s);
+    std::this_thread::sleep_for(10ms);
+  }
+  CHECK_FALSE(written);
+  CHECK_FALSE(stream.is_open());
+}
+
 TEST_CASE("connection: a look without waiting gives the line that is there") {
   const Listener listener;
   cola::Session session;
