@@ -80,6 +80,23 @@ TEST_CASE("curb server: of a name with several addresses the first that this mac
   ::close(client);
 }
 
+TEST_CASE("curb server: a daemon that is started again has its port at once, though connections to it linger") {
+  std::string address;
+  int client = -1;
+  {
+    CurbServer first;
+    first.open("tcp:127.0.0.1:0");
+    address = first.address();
+    client = connect_tcp(address);
+    for (int i = 0; i < 1000 && first.accept_client() < 0; ++i) continue;
+    REQUIRE(first.clients() == 1);
+  }
+  CHECK(read_some(client).empty());
+  ::close(client);
+  CurbServer second;
+  CHECK_NOTHROW(second.open(address));
+}
+
 TEST_CASE("curb server: a client that does not read is dropped, without a wait, and the others read on") {
   const TemporaryDirectory directory;
   CurbServer server;
