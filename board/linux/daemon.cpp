@@ -28,6 +28,10 @@ constexpr float longest_wait_s = 1.0f;
 constexpr float least_stale_s = 0.5f;
 /// Half width of the way ahead, for a robot that drives on pavements and through doors.
 constexpr float half_way_m = 0.4f;
+/// Two lines lost in a row, as by damage, are no silence.
+float silent_after_s(const tools::Robot& robot) {
+  return std::max(3.0f / static_cast<float>(robot.scan_rate_hz), least_stale_s);
+}
 constexpr int most_batches = 16;  ///< of frames, before other work gets its turn
 
 /// SIGHUP says that the terminal has closed; nohup has it ignored, but a blocked signal would come here all the same.
@@ -67,7 +71,7 @@ Daemon::~Daemon() {
 void Daemon::open_scans(const tools::Robot& robot, const Options& options) {
   if (tools::is_scanner(options.scans)) {
     scanner_ = std::make_unique<ScannerThread>(options.scans, tools::scanner_link(options.scans, robot.laser),
-                                               robot.laser, inbox_);
+                                               robot.laser, inbox_, silent_after_s(robot));
     return;
   }
   log_.emplace(options.scans, robot.laser);

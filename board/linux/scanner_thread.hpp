@@ -17,8 +17,8 @@ namespace curbline::daemon {
 
 struct ScannerState {
   std::string_view name{};     ///< as given to --scans; lives as long as the thread
-  bool connected = false;      ///< and has sent a line since
-  int error = 0;               ///< errno of the last failure; 0: the scanner closed the connection
+  bool connected = false;      ///< and sends lines of the robot's laser
+  int error = 0;               ///< errno of the last failure, ETIMEDOUT: no lines; 0: it closed the connection
   std::string_view problem{};  ///< what the scanner refused or reported; static text
   std::uint64_t connections = 0;
   std::uint64_t other_beams = 0;  ///< lines dropped because their number of beams is not that of the robot's laser
@@ -27,7 +27,10 @@ struct ScannerState {
 
 class ScannerThread {
  public:
-  ScannerThread(std::string name, tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox);
+  /// A scanner without a line for `silent_after_s` is told as lost at once. Its connection has longer, the link's
+  /// `silence`, since setting it up anew takes time too.
+  ScannerThread(std::string name, tools::ScannerLink link, const LaserSettings& laser, LineInbox& inbox,
+                float silent_after_s);
   /// Stops the scanner's stream and the thread, within the 2 s that an attempt to connect may take.
   ~ScannerThread();
   ScannerThread(const ScannerThread&) = delete;
@@ -38,13 +41,14 @@ class ScannerThread {
 
  private:
   void run();
-  void take_line();
+  bool take_line();
 
   std::string name_;
   tools::ScannerLink link_;
   scanner::LiveScanner scanner_;
   LaserSettings laser_;
   LineInbox& inbox_;
+  std::int64_t silent_after_ns_;
   mutable std::mutex mutex_;
   ScannerState state_{};
   std::atomic<bool> stop_{false};
