@@ -140,6 +140,33 @@ TEST_CASE("daemon: a flood of other ids, requests and error messages changes no 
   CHECK(times_said(flooded.outcome.err, "errors on the CAN bus") == 1);
 }
 
+TEST_CASE("daemon: what the controller reports is told in its own words, and bus-off is a state until it is back",
+          "[daemon]") {
+  Service service(daemon_words());
+  SocketCan controller;
+  REQUIRE(controller.open("vcan0", {}) == socketcan::Status::ok);
+  const auto state_is = [&](const char* state) {
+    return service.gives([state](const nlohmann::json& line) {
+      return line.contains("status") && line.at("status").at("state") == state;
+    });
+  };
+  const auto report = [&](canid_t what, std::uint8_t data, const std::string& words) {
+    socketcan::testing::say_error(controller, what, data);
+    INFO(words);
+    CHECK(service.says(words + " (1 so far)\n"));
+  };
+  report(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW, "the CAN controller lost frames");
+  report(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE, "the CAN controller is error-passive");
+  report(CAN_ERR_ACK, 0, "errors on the CAN bus");
+  report(CAN_ERR_BUSOFF, 0, "the CAN controller has left the bus (bus-off)");
+  CHECK(state_is("bus_off"));
+  report(CAN_ERR_RESTARTED, 0, "the CAN controller is back on the bus");
+  service.signal(SIGTERM);
+  const nlohmann::json status = status_of(service.end());
+  CHECK(status.at("state") == "tilt_missing");
+  CHECK(status.at("can").at("bus") == "active");
+}
+
 TEST_CASE(
     "daemon: an interface that is cut and comes back is told once, and the curbs are those of the frames that came",
     "[daemon]") {

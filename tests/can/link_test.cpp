@@ -1,6 +1,8 @@
 // The interface goes down or away, and comes back.
 #include <poll.h>
 
+#include <thread>
+
 #include "bus.hpp"
 
 namespace curbline::socketcan::testing {
@@ -72,6 +74,33 @@ TEST_CASE("socketcan: an interface that is removed and made anew is read again, 
     check_carries(bus, anew.name());
   }
   CHECK(bus.descriptor() == descriptor);
+}
+
+TEST_CASE("socketcan: a wait ends soon after an interface that was gone or down is back", "[link]") {
+  using Clock = std::chrono::steady_clock;
+  SocketCan bus;
+  std::array<can::Frame, 2> frames{};
+  const auto seconds_of_wait = [&] {
+    const auto before = Clock::now();
+    CHECK(bus.receive(frames, 5000) == 0);
+    CHECK(bus.link() == LinkState::up);
+    return std::chrono::duration<double>(Clock::now() - before).count();
+  };
+  {
+    const Interface interface;
+    REQUIRE(bus.open(interface.name(), tilt) == Status::ok);
+  }
+  REQUIRE(reaches(bus, LinkState::gone));
+  const Interface anew;
+  CHECK(seconds_of_wait() < 1.0);
+  REQUIRE(vcan::set_link(anew.name(), false) == 0);
+  REQUIRE(reaches(bus, LinkState::down));
+  std::thread up([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    vcan::set_link(anew.name(), true);
+  });
+  CHECK(seconds_of_wait() < 2.0);
+  up.join();
 }
 
 TEST_CASE("socketcan: an interface that is made anew before anyone looked is read again", "[link]") {
