@@ -234,6 +234,28 @@ Words driven_words(const std::string& poses) {
           "--poses", poses};
 }
 
+TEST_CASE("daemon: a curb beside the way is no curb ahead on CAN", "[daemon]") {
+  const TemporaryDirectory directory;
+  const Recording beside(directory.write("beside.toml",
+                                         "[ground]\nz = 0.0\n[[region]]\n"
+                                         "rectangle = [-2.0, 0.7, 14.0, 12.0]\nz = 0.1\n"),
+                         "utm30lx", {"--duration", "4"});
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_ahead_id, 0x7FF, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
+  Service service(
+      {"--can", "vcan0", "--scans", beside.path("scans.carmen"), "--robot", beside.path("robot.toml"), "--can-out"});
+  play(beside.path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  CHECK(status_of(service.end()).at("pipeline").at("curbs") == 1);
+  const auto frames = socketcan::testing::receive_all(receiver);
+  CHECK(frames.size() > 100);
+  for (const can::Frame& frame : frames) {
+    std::optional<CurbAhead> ahead;
+    REQUIRE(can::read_curb_ahead(frame, ahead));
+    CHECK_FALSE(ahead);
+  }
+}
+
 TEST_CASE("daemon: a robot that drives through a log has the curbs of replay, every one", "[daemon]") {
   Service service(driven_words(driven().path("poses.tum")));
   std::this_thread::sleep_for(800ms);  // the log begins with the first frame
