@@ -1,6 +1,8 @@
 // The daemon on the kernel's CAN: it gives the same curbs as replay of the logs, and survives what may happen on a bus.
 #include <linux/can/error.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -232,6 +234,36 @@ class Localisation {
 Words driven_words(const std::string& poses) {
   return {"--can",   "vcan0", "--scans", driven().path("scans.carmen"), "--robot", driven().path("robot.toml"),
           "--poses", poses};
+}
+
+int connect_late(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::copy(path.begin(), path.end(), address.sun_path);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  return socket;
+}
+
+TEST_CASE("daemon: a client that comes late has the status and all curbs at once, though nothing changes", "[daemon]") {
+  Service service(daemon_words());
+  int late = -1;
+  play(recording().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    if (since_s < 3.5) send_well(bus, frame);
+    if (since_s > 5.0 && late < 0) late = connect_late(service.socket());  // lines wait a second for their tilt
+  });
+  status_of(service.end());
+  std::string text;
+  std::array<char, 65536> some{};
+  for (ssize_t got; (got = ::read(late, some.data(), some.size())) > 0;)
+    text.append(some.data(), static_cast<std::size_t>(got));
+  ::close(late);
+  const Words lines = lines_of(text);
+  REQUIRE(lines.size() >= 2);
+  CHECK(nlohmann::json::parse(lines[0]).contains("status"));
+  REQUIRE(nlohmann::json::parse(lines[1]).contains("curbs"));
+  CHECK(nlohmann::json::parse(lines[1]).at("curbs") == last_curbs(service.lines()));
+  CHECK(last_curbs(service.lines()).size() > 0);
 }
 
 TEST_CASE("daemon: a curb beside the way is no curb ahead on CAN", "[daemon]") {

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 import unittest
 import unittest.mock
 
@@ -147,6 +148,32 @@ class Scripts(unittest.TestCase):
                 error = self.stopped(script, os.path.join(folder, script), 130, program, interrupted_at=program + ".began")
                 self.assertEqual(error, f"{script}: interrupted\n")
                 os.remove(program + ".began")
+
+    def simulated_by_streets(self, *words):
+        """The words of the first simulation that tools/streets asks for, and the description of its robot."""
+        with tempfile.TemporaryDirectory() as folder:
+            program = program_in(folder, f'echo "$*" >{folder}/words\nwhile [ "$1" != --robot ]; do shift; done\n'
+                                 f'cp "$2" {folder}/robot.toml\nexit 1\n')
+            subprocess.run([sys.executable, os.path.join(TOOLS, "streets"), *words, "--out", os.path.join(folder, "out")],
+                           env={**os.environ, "CURBLINE": program}, capture_output=True, timeout=5)
+            with open(os.path.join(folder, "words")) as asked, open(os.path.join(folder, "robot.toml"), "rb") as robot:
+                return asked.read(), tomllib.load(robot)["simulated"]
+
+    def test_streets_are_those_of_the_readme(self):
+        asked, errors = self.simulated_by_streets("1", "7")
+        self.assertIn(" --scene random:7 ", asked)
+        self.assertIn(" --seed 7 ", asked)
+        self.assertEqual(errors["dropout"], 0.005)
+        self.assertTrue(0 < errors["tilt_latency_s"] < 0.02)
+        self.assertNotIn("pose_jump_every_s", errors)
+        self.assertNotEqual(errors["tilt_latency_s"], self.simulated_by_streets("1", "8")[1]["tilt_latency_s"])
+        self.assertEqual(self.simulated_by_streets("1", "7", "--latency", "0")[1]["tilt_latency_s"], 0)
+        for words, jumps in [(["--drive"], False), (["--jumps"], True), (["--drive", "--jumps"], True)]:
+            asked, errors = self.simulated_by_streets("1", "7", *words)
+            self.assertIn(" --scene random-drive:7 ", asked)
+            jumped = [errors.get(f"pose_jump_{key}") for key in ["every_s", "height_m", "attitude_rad"]]
+            self.assertEqual(jumped, [1.5, 0.02, 0.007] if jumps else [None] * 3)
+            self.assertTrue(0 < errors["tilt_latency_s"] < 0.02)
 
     def test_who_reads_no_more_gets_no_traceback(self):
         with tempfile.TemporaryDirectory() as folder:
