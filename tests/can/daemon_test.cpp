@@ -65,6 +65,12 @@ nlohmann::json status_of(const Outcome& outcome) {
   return status;
 }
 
+can::Frame first_frame_of(const Recording& recording) {
+  const auto frame = CanLogReader(recording.path("can.log")).next();
+  REQUIRE(frame);
+  return *frame;
+}
+
 void send_well(SocketCan& bus, const can::Frame& frame) {
   REQUIRE(bus.send(frame) == socketcan::Status::ok);
 }
@@ -493,6 +499,28 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   CHECK(dropped >= status.at("pipeline").at("lines_dropped").get<int>());
   CHECK(sent.count(SourceState::stale) == 1);
   check_alike(last_curbs(service.lines()), end_of(recording()));
+}
+
+TEST_CASE("daemon: sources that may be silent for longer, by the robot's description, are not told as silent sooner",
+          "[daemon]") {
+  const TemporaryDirectory directory;
+  const std::string slow = directory.write("slow.toml", "[tilt]\nmax_gap_s = 2.0\n[pose]\nmax_extrapolation_s = 2.0\n");
+  const std::string fifo = directory.path("fifo");
+  REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+  Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", slow, "--poses", fifo});
+  std::ofstream localisation(fifo);
+  localisation << "1700000000 0 0 0 0 0 0 1" << std::endl;
+  SocketCan servo;
+  REQUIRE(servo.open("vcan0", {}) == socketcan::Status::ok);
+  send_well(servo, first_frame_of(recording()));
+  CHECK(service.says("the tilt servo reports\n"));
+  CHECK(service.says("the localisation gives poses\n"));
+  std::this_thread::sleep_for(1200ms);
+  CHECK(times_said(service.said(), "silent") == 0);
+  CHECK(service.says("the tilt servo is silent\n"));
+  CHECK(service.says("the localisation is silent\n"));
+  service.signal(SIGTERM);
+  status_of(service.end());
 }
 
 TEST_CASE("daemon: repeated, swapped, late, cut and damaged frames are survived, reported once, and leave no trace",
