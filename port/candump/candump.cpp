@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "text/part.hpp"
+
 namespace curbline::candump {
 namespace {
 
@@ -24,7 +26,7 @@ int hex_value(char c) {
 /// Removes the first blank-free word and the one blank after it from `text`; returns the word.
 std::string_view take_word(std::string_view& text) {
   const std::size_t end = std::min(text.find(' '), text.size());
-  const std::string_view word = text.substr(0, end);
+  const std::string_view word = port::part(text, 0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return word;
 }
@@ -78,17 +80,17 @@ std::string_view parse_remote(std::string_view length, can::Frame& frame) {
 /// above 8.
 void cut_length_code(std::string_view& text) {
   if (text.size() < 2 || text[text.size() - 2] != '_' || hex_value(text.back()) <= 8) return;
-  const std::string_view frame = text.substr(0, text.size() - 2);
+  const std::string_view frame = port::part(text, 0, text.size() - 2);
   if (frame == "R8" || (frame.size() == 16 && frame[0] != '#')) text = frame;
 }
 
 std::string_view parse_frame(std::string_view text, can::Frame& frame) {
   const std::size_t hash = text.find('#');
   if (hash == std::string_view::npos) return "no frame; expected ID#DATA";
-  if (const auto error = parse_id(text.substr(0, hash), frame); !error.empty()) return error;
+  if (const auto error = parse_id(port::part(text, 0, hash), frame); !error.empty()) return error;
   text.remove_prefix(hash + 1);
   cut_length_code(text);
-  if (!text.empty() && text[0] == 'R') return parse_remote(text.substr(1), frame);
+  if (!text.empty() && text[0] == 'R') return parse_remote(port::part(text, 1), frame);
   if (!text.empty() && text[0] == '#') {
     if (text.size() < 2 || hex_value(text[1]) < 0) return "no CAN FD flags; expected one hexadecimal digit after ##";
     frame.fd = true;
@@ -161,12 +163,12 @@ std::optional<std::int64_t> parse_time(std::string_view seconds) {
 ParsedLine parse_line(std::string_view line) {
   ParsedLine parsed;
   const auto refuse = [](std::string_view error) { return ParsedLine{.error = error}; };
-  line = line.substr(0, line.find_last_not_of(' ') + 1);
+  line = port::part(line, 0, line.find_last_not_of(' ') + 1);
   if (is_for_the_screen(line)) return refuse("what candump writes for the screen; expected a log of candump -L");
   const std::string_view time = take_word(line);
   if (time.size() < 3 || time.front() != '(' || time.back() != ')')
     return refuse("no time; expected (SECONDS.DECIMALS)");
-  const auto time_ns = parse_time(time.substr(1, time.size() - 2));
+  const auto time_ns = parse_time(port::part(time, 1, time.size() - 2));
   if (!time_ns || time.find('.') == std::string_view::npos) return refuse("bad time; expected (SECONDS.DECIMALS)");
   parsed.frame.time_ns = *time_ns;
   line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));

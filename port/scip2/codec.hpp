@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "text/part.hpp"
+
 namespace curbline::scip2 {
 
 /// Checksum of a string: the low six bits of its sum, as a character.
@@ -18,7 +20,7 @@ constexpr char sum_of(std::string_view text) {
 
 /// True if the last character is the checksum of those before it.
 constexpr bool sum_is_right(std::string_view line) {
-  return line.size() >= 2 && line.back() == sum_of(line.substr(0, line.size() - 1));
+  return line.size() >= 2 && line.back() == sum_of(port::part(line, 0, line.size() - 1));
 }
 
 /// A number of 2, 3 or 4 characters. Characters outside the code also give a number: check the checksum first.

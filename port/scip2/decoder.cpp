@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scip2/codec.hpp"
+#include "text/part.hpp"
 
 namespace curbline::scip2 {
 namespace {
@@ -15,7 +16,7 @@ bool all_digits(std::string_view text) {
 
 bool is_scan_echo(std::string_view line) {
   return line.size() >= scan_echo_size && line[0] == 'M' && (line[1] == 'D' || line[1] == 'S') &&
-         all_digits(line.substr(2, scan_echo_size - 2));
+         all_digits(port::part(line, 2, scan_echo_size - 2));
 }
 
 /// Whether all characters belong to the code. Flipping one of a character's two highest bits does not change the
@@ -31,7 +32,7 @@ bool is_status(std::string_view text) {
 /// "DMIN:23;7": the semicolon before a checksum may be excluded from it.
 bool body_sum_is_right(std::string_view line) {
   const bool has_semicolon = line.size() >= 3 && line[line.size() - 2] == ';';
-  return sum_is_right(line) || (has_semicolon && sum_of(line.substr(0, line.size() - 2)) == line.back());
+  return sum_is_right(line) || (has_semicolon && sum_of(port::part(line, 0, line.size() - 2)) == line.back());
 }
 
 int number(std::string_view digits) {
@@ -95,14 +96,14 @@ Decoder::Event Decoder::take_line(std::string_view line) {
     case State::stamp:
     case State::ranges:
       if (sum_is_right(line) && all_encoded(line)) {
-        take_ranges(line.substr(0, line.size() - 1));
+        take_ranges(port::part(line, 0, line.size() - 1));
       } else {
         drop(counters_.bad_checksum, line);
       }
       break;
     case State::body:
       if (body_sum_is_right(line)) {
-        take_body(line.substr(0, line.size() - 1));
+        take_body(port::part(line, 0, line.size() - 1));
       } else {
         drop(counters_.bad_checksum, line);
       }
@@ -125,11 +126,11 @@ void Decoder::take_echo(std::string_view line) {
 void Decoder::take_status(std::string_view line) {
   if (line.size() != 3) {
     drop(counters_.wrong_length, line);
-  } else if (!sum_is_right(line) || !is_status(line.substr(0, 2))) {
+  } else if (!sum_is_right(line) || !is_status(port::part(line, 0, 2))) {
     drop(counters_.bad_checksum, line);
   } else {
     std::copy_n(line.begin(), status_.size(), status_.begin());
-    const bool scan = is_scan_echo(echo()) && line.substr(0, 2) == "99";
+    const bool scan = is_scan_echo(echo()) && port::part(line, 0, 2) == "99";
     state_ = scan ? State::stamp : State::body;
   }
 }
@@ -166,7 +167,7 @@ void Decoder::drop(std::uint64_t& counter, std::string_view line) {
 
 bool Decoder::begin_scan_echo(std::string_view line) {
   if (line.size() < scan_echo_size) return false;
-  const std::string_view end = line.substr(line.size() - scan_echo_size);
+  const std::string_view end = port::part(line, line.size() - scan_echo_size);
   if (!is_scan_echo(end)) return false;
   take_echo(end);
   return true;
@@ -193,9 +194,9 @@ Decoder::Event Decoder::end_reply() {
 }
 
 Decoder::Event Decoder::end_scan() {
-  scan_.first_step = number(echo().substr(2, 4));
-  scan_.last_step = number(echo().substr(6, 4));
-  const int cluster = std::max(1, number(echo().substr(10, 2)));
+  scan_.first_step = number(port::part(echo(), 2, 4));
+  scan_.last_step = number(port::part(echo(), 6, 4));
+  const int cluster = std::max(1, number(port::part(echo(), 10, 2)));
   const std::size_t width = echo_[1] == 'D' ? 3 : 2;
   if (cluster != 1) {
     ++counters_.unsupported;
@@ -208,7 +209,7 @@ Decoder::Event Decoder::end_scan() {
   }
   const std::string_view text(text_.data(), text_size_);
   for (std::size_t i = 0; i < static_cast<std::size_t>(steps); ++i)
-    ranges_mm_[i] = decode(text.substr(width * i, width));
+    ranges_mm_[i] = decode(port::part(text, width * i, width));
   scan_.ranges_mm = std::span(ranges_mm_).first(static_cast<std::size_t>(steps));
   return Event::scan;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "scip2/codec.hpp"
+#include "text/part.hpp"
 
 namespace curbline::scip2 {
 namespace {
@@ -161,7 +162,7 @@ void Session::take_parameters(const Reply& reply) {
 
 void Session::take_time(const Reply& reply, const scanner::Now& now) {
   if (reply.status == "00" && reply.body.size() == 5) {
-    if (const auto device_ns = stamps_.unwrap(decode(reply.body.substr(0, 4))))
+    if (const auto device_ns = stamps_.unwrap(decode(port::part(reply.body, 0, 4))))
       clock_.anchor(*device_ns, now.steady_ns);
   }
   go_to(++clock_asked_ < clock_questions ? Step::clock_ask : Step::clock_off);
