@@ -77,6 +77,43 @@ TEST_CASE("scores: perfect labels and curbs score 1 without error") {
   CHECK(curbs.position_m.most == Approx(0).margin(1e-9));
 }
 
+TEST_CASE("scores: a step counts from 1 cm on, and in the bands of 2 to 4 cm, and of 4 cm and more") {
+  struct Expected {
+    double height_m;
+    bool counts, low, high;
+  };
+  for (const auto& [height_m, counts, low, high] : {Expected{0.009, false, false, false},
+                                                    {0.011, true, false, false},
+                                                    {0.019, true, false, false},
+                                                    {0.021, true, true, false},
+                                                    {0.039, true, true, false},
+                                                    {0.041, true, false, true},
+                                                    {0.3, true, false, true}}) {
+    INFO(height_m);
+    const CurbScores curbs = scores_of({piece(2, -2, 2, height_m)}, step_of(height_m));
+    CHECK((curbs.at[0].recall == 1) == counts);
+    for (const auto& [band, in] : {std::pair{curbs.band[0], low}, {curbs.band[1], high}}) {
+      CHECK((band.truth > 0) == in);
+      CHECK((band.found > 0) == in);
+    }
+  }
+}
+
+TEST_CASE("scores: errors are told as their median and the one that 95 of 100 do not exceed") {
+  std::vector<double> errors;
+  for (int i = 100; i >= 0; --i) errors.push_back(i);
+  CHECK(errors_of(errors).median == 50);
+  CHECK(errors_of(errors).most == 95);
+  CHECK(std::isnan(errors_of({}).median));
+}
+
+TEST_CASE("scores: a step up told for one down is an error of height, and none of its deviation") {
+  const CurbScores curbs = scores_of({piece(2, -2, 2, -0.1)});
+  CHECK(curbs.height_m.median == Approx(0.2));
+  CHECK(curbs.calibration.pieces == 0);
+  CHECK(scores_of({piece(2, -2, 2, 0.11)}).calibration.pieces == 1);
+}
+
 TEST_CASE("scores: cells of half the usual size are as many parts as the planes") {
   std::vector<LabelledCell> fine;
   for (LabelledCell cell : cells_of(truth)) {

@@ -64,7 +64,8 @@ TEST_CASE("robot dbc: a multiplexed signal keeps its multiplexor") {
 }
 
 TEST_CASE("robot dbc: what DBC has no word for is said in a comment") {
-  CHECK(text_of(dbc_of(robot_of("[tilt.signal]\nservo = \"robstride\"\n"))).find("in the bits 0x1f00ff00.") !=
+  CHECK(text_of(dbc_of(robot_of("[tilt.signal]\nservo = \"robstride\"\n")))
+            .find("\"Angle of the tilt servo of robot. Any id that agrees with this one in the bits 0x1f00ff00.\"") !=
         std::string::npos);
   const Dbc synced = dbc_of(robot_of("[tilt.signal]\nsync_id = 0x80\n"));
   REQUIRE(synced.size() == 2);
@@ -80,7 +81,9 @@ TEST_CASE("robot dbc: degrees and turns become radians, and a unit that is no an
   const auto scale = [&](const std::string& unit) { return robot_of(toml(unit)).tilt_signal.scale; };
   CHECK(scale("rad") == 0.5);
   CHECK(scale("deg") == Approx(0.5 * std::numbers::pi / 180).epsilon(1e-15));
-  CHECK(scale("\xC2\xB0") == scale("deg"));
+  for (const char* degrees : {"Deg", "degree", "degrees", "\xB0", "\xC2\xB0"}) CHECK(scale(degrees) == scale("deg"));
+  CHECK(scale("mrad") == Approx(0.0005).epsilon(1e-15));
+  for (const char* turns : {"rev", "turn"}) CHECK(scale(turns) == scale("turns"));
   CHECK(scale("turns") == Approx(std::numbers::pi).epsilon(1e-15));
   CHECK(robot_of(toml("deg")).tilt_signal.offset == Approx(2 * std::numbers::pi / 180).epsilon(1e-15));
   CHECK(toml("rad").find("Not known") == std::string::npos);

@@ -327,8 +327,16 @@ TEST_CASE("simulation: a localisation that corrects itself does so at its interv
     if (std::abs(z_m - last_z_m) < 1e-9) continue;
     CHECK(std::abs(z_m - last_z_m) == Approx(0.02));
     CHECK(std::fmod(seconds_of(pose.time_ns), 2.0) < 0.06);  // shows in the next pose
-    last_z_m = z_m;
+    // The robot drives along x on level ground: roll and pitch are multiples of 0.01, odd ones after an odd jump.
     ++jumps;
+    const Eigen::Matrix3d& R = pose.T_map_base.linear();
+    const double roll_rad = std::atan2(R(2, 1), R(2, 2)), pitch_rad = std::asin(-R(2, 0));
+    for (const double angle_rad : {roll_rad, pitch_rad}) {
+      const double times = angle_rad / 0.01;
+      CHECK(times == Approx(std::round(times)).margin(0.01));
+      CHECK(std::fmod(std::abs(std::round(times)), 2.0) == std::fmod(jumps, 2.0));
+    }
+    last_z_m = z_m;
   }
   CHECK(jumps == 4);
 }
