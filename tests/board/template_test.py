@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that feeds it a drive, informs the motors after each
-scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead. While the servo is silent
+scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead, of a robot that stands and of
+one that drives. While the servo is silent
 for a second, each line is dropped and the counter does not advance; nor does it while the laser is covered, though the lines are taken."""
+import math
 import os
 import struct
 import subprocess
@@ -19,7 +21,8 @@ COUNTERS = 4 * (Path(__file__).resolve().parents[2] / "lib/curbline/counters.hpp
 AHEAD, STATUS, OK, STALE = 0x6A0, 0x6A1, 1, 2  # from lib/curbline/can/curb_frames.hpp
 HALF_WIDTH, LONGEST_AWAY_NS = 0.5, 4e9  # from template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # offsets in the record of a frame
-SCAN_LINE, RANGES = 4, 8 + 8  # RecordKind of port/drive_log; the offset in the record of a line
+POSE, SCAN_LINE, RANGES = 3, 4, 8 + 8  # RecordKinds of port/drive_log; the offset in the record of a line
+ORIGIN = (0.0, 0.0, 0.0)  # x, y and heading of a robot that stands
 
 
 def ahead_at(x0, y0, x1, y1):
@@ -36,10 +39,26 @@ def ahead_at(x0, y0, x1, y1):
     return min(x0 + low * (x1 - x0), x0 + high * (x1 - x0)) if low <= high else None
 
 
-def told_by_results(path):
+def poses_at_lines(drive):
+    """x, y and heading of the newest pose at each scan line."""
+    pose = ORIGIN
+    for kind, record in run_bus.records(drive):
+        if kind == POSE:
+            _, x, y, _, qx, qy, qz, qw = struct.unpack_from("<q7f", record, 8)
+            pose = x, y, math.atan2(2 * (qx * qy + qz * qw), 1 - 2 * (qy * qy + qz * qz))
+        if kind == SCAN_LINE:
+            yield pose
+
+
+def in_base(x, y, pose):
+    dx, dy, cos, sin = x - pose[0], y - pose[1], math.cos(pose[2]), math.sin(pose[2])
+    return cos * dx + sin * dy, cos * dy - sin * dx
+
+
+def told_by_results(path, drive):
     """(curbs, height of the nearest ahead in mm or None) after each line of a laser that sees: see lib/curbline/intake/sight_watch.hpp."""
     before, seen_ns = (0, 0, 0), None
-    for _, record in run_bus.records(path):
+    for (_, record), pose in zip(run_bus.records(path), poses_at_lines(drive)):
         time_ns, _, *counted = struct.unpack_from("<qI3I", record, 8)  # lines, points, outside
         taken, inside, outside = (now != then for now, then in zip(counted, before))
         before, seen_ns = counted, time_ns if inside else seen_ns
@@ -49,7 +68,7 @@ def told_by_results(path):
         on_the_way = []
         for k in range(count):
             x0, y0, x1, y1, height, *_ = CURB.unpack_from(record, count_at + 4 + CURB.size * k)
-            at = ahead_at(x0, y0, x1, y1)
+            at = ahead_at(*in_base(x0, y0, pose), *in_base(x1, y1, pose))
             if at is not None:
                 on_the_way.append((height == 0.0, at, height))  # steps come before creases
         if sees:
@@ -128,21 +147,27 @@ def check_cover(program, drive, folder):
     print(f"{len(tilts)} lines saw nothing while the laser was covered")
 
 
+def check_curbs(build, program, drive, folder):
+    sent = folder / f"{drive.stem}.sent"
+    run(program, drive, sent)
+    ours = list(told_by_frames(sent))
+    theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / f"{drive.stem}.results", drive))
+    for line, (a, b) in enumerate(zip(ours, theirs)):
+        if a[0] != b[0] or (a[1] is None) != (b[1] is None) or (a[1] is not None and abs(a[1] - b[1]) > 1):
+            sys.exit(f"{drive.stem}, line {line}: the template's loop tells {a}, and the desk has {b}")
+    if len(ours) != len(theirs) or not any(height for _, height in ours):
+        sys.exit(f"{drive.stem}: the template's loop told of {len(ours)} lines, and the desk of {len(theirs)}, or never of a curb")
+    print(f"{drive.stem}: {len(ours)} lines, {sum(height is not None for _, height in ours)} of them with a curb ahead")
+
+
 def main(build, program):
     folder = run_drives.results_folder(build, "template")
     folder.mkdir(parents=True, exist_ok=True)
-    drive, sent = drives.folder(build) / "steps.drive", folder / "steps.sent"  # they lie across the robot's way
-    run(program, drive, sent)
-    check_silence(program, drive, folder)
-    check_cover(program, drive, folder)
-    ours = list(told_by_frames(sent))
-    theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / "steps.results"))
-    for line, (a, b) in enumerate(zip(ours, theirs)):
-        if a[0] != b[0] or (a[1] is None) != (b[1] is None) or (a[1] is not None and abs(a[1] - b[1]) > 1):
-            sys.exit(f"line {line}: the template's loop tells {a}, and the desk has {b}")
-    if len(ours) != len(theirs) or not any(height for _, height in ours):
-        sys.exit(f"the template's loop told of {len(ours)} lines, and the desk of {len(theirs)}, or never of a curb")
-    print(f"{len(ours)} lines, {sum(height is not None for _, height in ours)} of them with a curb ahead")
+    steps = drives.folder(build) / "steps.drive"  # they lie across the robot's way
+    check_silence(program, steps, folder)
+    check_cover(program, steps, folder)
+    check_curbs(build, program, steps, folder)
+    check_curbs(build, program, drives.folder(build) / "random-drive-9001.drive", folder)
 
 
 if __name__ == "__main__":
