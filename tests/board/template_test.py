@@ -150,6 +150,9 @@ def check_cover(program, drive, folder):
 def check_curbs(build, program, drive, folder):
     sent = folder / f"{drive.stem}.sent"
     run(program, drive, sent)
+    counter = next(status[0] for ahead, status in lines_told(sent) if ahead is not None)
+    if counter != 0:
+        sys.exit(f"{drive.stem}: the first curb ahead has the counter {counter}, and not 0, which follows the 255 of before")
     ours = list(told_by_frames(sent))
     theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / f"{drive.stem}.results", drive))
     for line, (a, b) in enumerate(zip(ours, theirs)):
