@@ -123,6 +123,26 @@ TEST_CASE("lms200: a scanner that refuses a command is told as such, and asked a
   }
 }
 
+TEST_CASE("lms200: a reply to another command is not taken for that to the last, which is sent again") {
+  const Bytes variant_reply{0xBB, 1, 180, 0, 100, 0}, mode_reply{0xA0, 0};
+  for (const auto& [command, reply] : {std::pair{start, variant_reply},
+                                       {start, configuration_of(0)},
+                                       {variant, mode_reply},
+                                       {configuration, mode_reply},
+                                       {stop, variant_reply}}) {
+    INFO(int{command[0]} << " answered by " << int{reply[0]});
+    Sick sick;
+    sick.scripted = command;
+    sick.reply = reply;
+    CHECK(sick.talk().back() == command);
+    CHECK_FALSE(sick.hear(scan_of(181)));
+    sick.scripted.clear();
+    sick.now_ns += 500 * ms;
+    CHECK(sick.talk().front() == command);
+    CHECK(sick.hear(scan_of(181)));
+  }
+}
+
 TEST_CASE("lms200: what was refused is forgotten with its connection") {
   Sick sick;
   sick.scripted = start;
