@@ -113,6 +113,8 @@ def late_robot(laser, directory, errors):
     """Writes the shipped robot with these lines in its [simulated] to DIRECTORY/late.toml; returns the path."""
     with open(robot(laser)) as file:
         text = file.read()
+    if "[simulated]\n" not in text:
+        sys.exit(f"{robot(laser)}: no [simulated]; expected that table, to state the errors in")
     path = os.path.join(directory, "late.toml")
     with whole_file(path) as file:
         file.write(text.replace("[simulated]\n", f"[simulated]\n{errors}\n"))

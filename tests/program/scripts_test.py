@@ -149,6 +149,16 @@ class Scripts(unittest.TestCase):
                 self.assertEqual(error, f"{script}: interrupted\n")
                 os.remove(program + ".began")
 
+    def test_a_robot_without_the_table_of_errors_is_no_robot_without_errors(self):
+        sys.path.insert(0, TOOLS)
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(sys, "dont_write_bytecode", True):
+            import scoring
+            path = os.path.join(folder, "plain.toml")
+            with open(path, "w") as file:
+                file.write("[laser]\n")
+            with unittest.mock.patch.object(scoring, "robot", lambda name: path), self.assertRaisesRegex(SystemExit, "plain.toml: no .simulated"):
+                scoring.late_robot("plain", folder, "tilt_latency_s = 0.01")
+
     def simulated_by_streets(self, *words):
         """The words of the first simulation that tools/streets asks for, and the description of its robot."""
         with tempfile.TemporaryDirectory() as folder:
