@@ -63,6 +63,31 @@ TEST_CASE("scanner thread: a scanner without lines for half a second is lost, th
   CHECK(at[2] - at[1] < 1.9s);
 }
 
+TEST_CASE("scanner thread: damaged telegrams of every kind are counted, and cost their lines alone") {
+  const TemporaryDirectory directory;
+  const std::string log = scan_log(directory, 40);
+  tools::ServerOptions options;
+  options.damage = [](tools::Bytes& telegram, long line) {
+    const auto first_block = telegram.begin() + 16 + 4 + 6;  // behind echo, status and stamp
+    if (line == 10) *(first_block + 5) ^= 1;
+    if (line == 20) telegram.erase(first_block, first_block + 66);  // whole, with its checksum
+  };
+  tools::ScannerServer server(tools::Protocol::scip2, tools::ScanFeed::from_log(log), log, options);
+  std::atomic<bool> stop{false};
+  std::thread serving([&] { server.run(stop); });
+  const tools::Robot robot;
+  const auto inbox = std::make_unique<LineInbox>();
+  inbox->init(robot, 1.0f);
+  ScannerThread scanner(server.address(), tools::scanner_link(server.address(), robot.laser), robot.laser, *inbox,
+                        0.5f);
+  scanner.start();
+  for (int i = 0; i < 500 && inbox->counters().pushed < 38; ++i) std::this_thread::sleep_for(10ms);
+  stop = true;
+  serving.join();
+  CHECK(inbox->counters().pushed == 38);
+  CHECK(scanner.state().damaged == 2);
+}
+
 TEST_CASE("scanner thread: a scanner with other beams than the robot's laser gives no scan lines") {
   const TemporaryDirectory directory;
   const std::string log = scan_log(directory, 40);
