@@ -37,7 +37,13 @@ TEST_CASE("shadow: the side to which a line's normal points does not matter") {
   CHECK(line.x0_m == Approx(1.5));
 }
 
-TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no higher above the step than it falls") {
+TEST_CASE("shadow: a drop deeper than the laser is high casts one, too") {
+  LineFit::Segment line = line_at(0.0, 2.75);
+  CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {1.5f, 0.9f, 4.0f}) == Approx(2.5));
+  CHECK(line.x0_m == Approx(1.5));
+}
+
+TEST_CASE("shadow: none is wider than the gap, and there is none for a laser no higher above than a low step falls") {
   LineFit::Segment line = line_at(0.0, 2.0);
   CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, 0.2f, 0.4f}) == 0.0f);
   CHECK(move_before_shadow(line, {0.0f, 0.0f, 1.0f}, {0.3f, -0.1f, 0.4f}) == 0.0f);

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "curbline/math.hpp"
+#include "curbline/planes/obstacles.hpp"
 
 namespace curbline {
 
 float move_before_shadow(LineFit::Segment& line, const Viewpoint& view, const Shadow& shadow) {
-  if (!(shadow.above_m > shadow.drop_m)) return 0.0f;
+  if (!(shadow.above_m > std::min(shadow.drop_m, highest_step_m))) return 0.0f;
   const float away_m = line.normal_x * (0.5f * (line.x0_m + line.x1_m) - view.x_m) +
                        line.normal_y * (0.5f * (line.y0_m + line.y1_m) - view.y_m);
   // The edge is away_m / (1 + drop / (2 above)) away.

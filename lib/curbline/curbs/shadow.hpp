@@ -19,8 +19,8 @@ struct Shadow {
 };
 
 /// Moves a line from the middle of a shadow to the edge that casts it, and returns the shadow's width. Returns 0 and
-/// leaves the line unless the laser is above the upper plane by more than the drop: a robot's is, and a cloud whose
-/// origin is not its laser shows no shadows.
+/// leaves the line unless the laser is above the upper plane by more than the drop, or than any curb is high: a robot's
+/// is, and a cloud whose origin is not its laser shows no shadows.
 float move_before_shadow(LineFit::Segment& line, const Viewpoint& view, const Shadow& shadow);
 
 }  // namespace curbline
