@@ -263,6 +263,12 @@ TEST_CASE("scores: steps belong to the band of their own height") {
   CHECK(std::isnan(low.band[1].recall));
 }
 
+TEST_CASE("scores: the upper band has no end, and a quay of 1.5 m belongs to it") {
+  const CurbScores quay = scores_of({piece(2, -2, 2, 1.5)}, step_of(1.5));
+  CHECK(quay.band[1].recall == Approx(1));
+  CHECK(quay.band[1].precision == Approx(1));
+}
+
 TEST_CASE("scores: up told as down is an error of twice the height, for a robot that stands") {
   const std::vector<MapCurb> down{piece(2, -2, 2, -0.1, "step_down")};
   CHECK(scores_of(down).height_m.median == Approx(0.2));

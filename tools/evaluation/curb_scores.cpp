@@ -194,7 +194,7 @@ CurbScores score_curbs(const Found& found, const Truth& truth, const Seen& seen)
     const double f1 = precision + recall == 0 ? 0 : 2 * precision * recall / (precision + recall);
     out.at[k] = {tolerances_m[k], precision, recall, f1};
   }
-  out.band = {BandRates{low_m, high_m}, BandRates{high_m, 1.0}};
+  out.band = {BandRates{low_m, high_m}, BandRates{high_m, std::numeric_limits<double>::infinity()}};
   for (BandRates& band : out.band) {
     const auto within = [&](const auto& s) {
       return std::abs(s.height_m) >= band.from_m && std::abs(s.height_m) < band.to_m;

@@ -51,7 +51,7 @@ struct StepRates {
 
 /// The same for a band of heights: truth by its own step, found pieces by theirs. NaN if there is none.
 struct BandRates {
-  double from_m = 0, to_m = 0;
+  double from_m = 0, to_m = 0;  ///< to_m of the last band is infinite, null in JSON
   double precision = 0, recall = 0;
   int found = 0, truth = 0;  ///< samples
 };
