@@ -130,7 +130,7 @@ struct Strip {
     return 2.0f * a_cell * static_cast<float>(before.cells) < before.weight &&
            2.0f * a_cell * static_cast<float>(next.cells) < next.weight;
   }
-  /// For a strip between two planes (between(widest_gap), rises_between()): if the step leads down as the laser sees
+  /// For a strip between two planes (between(), rises_between()): if the step leads down as the laser sees
   /// it, and the strip is no wider than its shadow (shadow.hpp) and a cell, as those at its ends hold some of the
   /// planes, how far the strip falls. Inlined: calls would cost the worst line of a Cortex-M7 20,000 instructions
   /// (tools/budget).

@@ -132,12 +132,11 @@ StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane>
       // A step up onto an obstacle is no curb, nor does a veil end at one.
       const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between() &&
                          !obstacles.is(before.label) && !obstacles.is(next.label);
-      const bool carries_step = rises && strip.between(widest_gap);
-      if (carries_step || drops[run.label]) {
+      if (rises || drops[run.label]) {
         const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
         const float tangent = askew(planes[run.label], axis);
         const Sight across = Sight::along(axis, line, dem, from).across(tangent);
-        if (carries_step) {
+        if (rises) {
           if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
         }
         if (drops[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent);
