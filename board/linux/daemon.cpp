@@ -32,6 +32,10 @@ constexpr float half_way_m = 0.4f;
 float silent_after_s(const tools::Robot& robot) {
   return std::max(3.0f / static_cast<float>(robot.scan_rate_hz), least_stale_s);
 }
+/// There and back.
+float longest_sweep_s(const tools::Robot& robot) {
+  return std::max(static_cast<float>(robot.sweep.period_s), least_stale_s);
+}
 constexpr int most_batches = 16;  ///< of frames, before other work gets its turn
 
 /// SIGHUP says that the terminal has closed; nohup has it ignored, but a blocked signal would come here all the same.
@@ -59,7 +63,8 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   open_bus(robot, options);
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
-  sight_.init(robot.tilt.fixed ? least_stale_s : std::max(static_cast<float>(robot.sweep.period_s), least_stale_s));
+  nod_watch_.init(longest_sweep_s(robot), robot.tilt.fixed);
+  sight_.init(robot.tilt.fixed ? least_stale_s : longest_sweep_s(robot));
   poses_.open(robot, options.poses, log_.has_value(), std::max(robot.pose.max_extrapolation_s, least_stale_s));
   server_.open(options.curbs);
 }
@@ -177,6 +182,7 @@ void Daemon::take_frame(can::Frame frame) {
   const auto reading = tilt_decoder_.take(frame);
   if (!reading || !pipeline_->add_tilt(*reading)) return;
   newest_tilt_ns_ = reading->time_ns;
+  if (const SourceEvent event = nod_watch_.update(*reading); event != SourceEvent::none) nod_event_ = event;
   newest_frame_ns_ = received_ns;
   newest_arrival_ns_ = scanner::steady_now_ns();
   by_frame_ = true;
@@ -261,7 +267,10 @@ void Daemon::look_around() {
   const SourceEvent tilt = tilt_watch_.update(newest_arrival_ns_, now_ns);
   const SourceEvent poses = poses_.update(now_ns);
   const Report status = make_report();
-  troubles_.tell(status, {tilt, poses, std::exchange(sight_event_, SourceEvent::none)}, now_ns);
+  troubles_.tell(
+      status,
+      {tilt, std::exchange(nod_event_, SourceEvent::none), poses, std::exchange(sight_event_, SourceEvent::none)},
+      now_ns);
   const std::string_view state = state_of(status);
   if (state == told_state_ && now_ns < next_status_ns_) return;
   if (state != told_state_) {
@@ -292,6 +301,7 @@ Report Daemon::make_report() {
   if (!tilt_settings_.fixed) {
     tilt_counters_ = tilt_decoder_.counters();
     s.tilt = &tilt_watch_;
+    s.nod = &nod_watch_.watch();
     s.wanted_tilt = wanted_tilt_;
     s.tilt_frames = &tilt_counters_;
     s.tilt_latency = &pipeline_->tilt_latency();

@@ -17,6 +17,7 @@
 
 #include "curb_server.hpp"
 #include "curbline/can/tilt_decoder.hpp"
+#include "curbline/intake/nod_watch.hpp"
 #include "curbline/intake/sight_watch.hpp"
 #include "curbline/intake/source_watch.hpp"
 #include "latency_histogram.hpp"
@@ -90,7 +91,9 @@ class Daemon {
   can::TiltDecoder tilt_decoder_;
   can::TiltDecoderCounters tilt_counters_{};
   SourceWatch tilt_watch_;
-  std::string wanted_tilt_;  ///< name of the frame that is waited for, for the user
+  NodWatch nod_watch_;
+  SourceEvent nod_event_ = SourceEvent::none;  ///< to be told
+  std::string wanted_tilt_;                    ///< name of the frame that is waited for, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();
   std::array<can::Frame, socketcan::SocketCan::batch> frames_{};
   std::int64_t newest_tilt_ns_ = NewestTimes::none;           ///< as the pipeline has it

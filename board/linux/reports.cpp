@@ -34,6 +34,7 @@ void put_watch(JsonLine& json, const SourceWatch& watch) {
 void put_tilt(JsonLine& json, const Report& s) {
   json.key("tilt").open('{');
   put_watch(json, *s.tilt);
+  if (s.nod != nullptr) put(json, "times_rested", s.nod->times_lost());
   put(json, "frames", s.tilt_frames->frames);
   put(json, "readings", s.tilt_frames->readings);
   put(json, "others", s.tilt_frames->others);
@@ -159,6 +160,7 @@ std::string_view state_of(const Report& s) {
   }
   if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
   if (s.sight != nullptr && s.sight->state() == SourceState::stale) return "laser_blind";
+  if (s.nod != nullptr && s.nod->state() == SourceState::stale) return "tilt_resting";
   return "ok";
 }
 

@@ -30,7 +30,8 @@ struct Report {
   std::int64_t time_ns = 0;
   double uptime_s = 0, scan_line_s = 0;
   const SourceWatch* tilt = nullptr;
-  std::string_view wanted_tilt{};  ///< the first frame that is waited for, for the user
+  const SourceWatch* nod = nullptr;  ///< stale if the tilt rests
+  std::string_view wanted_tilt{};    ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;
   PoseReport poses{};
@@ -51,7 +52,7 @@ struct Report {
 };
 
 /// The most serious problem, as a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale,
-/// scanner_lost or laser_blind.
+/// scanner_lost, laser_blind or tilt_resting.
 std::string_view state_of(const Report& status);
 
 std::string_view status_line(const Report& status, std::span<char> buffer);

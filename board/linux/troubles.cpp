@@ -7,12 +7,14 @@
 namespace curbline::daemon {
 namespace {
 
-/// The messages about a servo or a localisation that reports or is silent, and a laser that sees or is blind.
+/// The messages about a servo or a localisation that reports or is silent, a tilt that moves or rests, and a laser that
+/// sees or is blind.
 struct Told {
   std::string_view missing, first, lost, recovered;
 };
 constexpr Told servo{"no tilt frame since the start; expected ", "the tilt servo reports", "the tilt servo is silent",
                      "the tilt servo reports again"};
+constexpr Told nod{{}, {}, "the tilt rests: the servo has stopped, or its encoder is stuck", "the tilt moves again"};
 constexpr Told localisation{"no pose since the start; expected lines of time tx ty tz qx qy qz qw from ",
                             "the localisation gives poses", "the localisation is silent",
                             "the localisation gives poses again"};
@@ -38,6 +40,7 @@ void tell_event(SourceEvent event, const Told& told, std::string_view wanted) {
 void Troubles::tell(const Report& status, const SourceEvents& events, std::int64_t now_ns) {
   if (status.bus != nullptr) tell_link(*status.bus);
   tell_event(events.tilt, servo, status.wanted_tilt);
+  tell_event(events.nod, nod, "");
   tell_event(events.poses, localisation, status.poses.wanted);
   tell_event(events.sight, laser, "");
   if (status.scanner != nullptr) tell_scanner(*status.scanner);

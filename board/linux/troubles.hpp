@@ -11,7 +11,7 @@ namespace curbline::daemon {
 
 /// What has happened to the sources since they were last told of.
 struct SourceEvents {
-  SourceEvent tilt, poses, sight;  ///< sight: lost or recovered
+  SourceEvent tilt, nod, poses, sight;  ///< nod, sight: lost or recovered
 };
 
 class Troubles {

@@ -22,6 +22,7 @@
 #include "curbline/intake/line_clock.hpp"       // times of lines that are stamped on arrival
 #include "curbline/intake/line_queue.hpp"       // lines that wait for their tilt and pose
 #include "curbline/intake/source_watch.hpp"     // whether the servo and the localisation are alive
+#include "curbline/intake/nod_watch.hpp"        // whether the tilt moves
 #include "curbline/intake/sight_watch.hpp"      // whether the laser sees the window
 
 // A line to its points.

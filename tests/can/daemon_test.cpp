@@ -501,6 +501,26 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   check_alike(last_curbs(service.lines()), end_of(recording()));
 }
 
+TEST_CASE("daemon: an encoder that is stuck is a state, told once, until it moves again", "[daemon]") {
+  const TemporaryDirectory directory;
+  const std::string brisk = directory.write("brisk.toml", "[sweep]\nperiod_s = 1.0\n");
+  Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", brisk});
+  can::Frame stuck;
+  play(recording().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
+    if (since_s < 1.0) stuck = frame;
+    send_well(bus, since_s > 1.0 && since_s < 3.0 ? stuck : frame);
+  });
+  const Outcome outcome = service.end();
+  CHECK(service.gives([](const nlohmann::json& line) {
+    return line.contains("status") && line.at("status").at("state") == "tilt_resting";
+  }));
+  const nlohmann::json status = status_of(outcome);
+  CHECK(status.at("state") == "ok");
+  CHECK(status.at("tilt").at("times_rested") == 1);
+  CHECK(times_said(outcome.err, "the tilt rests: the servo has stopped, or its encoder is stuck\n") == 1);
+  CHECK(times_said(outcome.err, "the tilt moves again\n") == 1);
+}
+
 TEST_CASE("daemon: sources that may be silent for longer, by the robot's description, are not told as silent sooner",
           "[daemon]") {
   const TemporaryDirectory directory;

@@ -104,7 +104,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{
       .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
-  s.tilt = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency, s.sight = &watch;
+  s.tilt = s.nod = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency, s.sight = &watch;
   ScannerState scanner;
   scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53;
   s.scanner = &scanner;
@@ -149,7 +149,8 @@ TEST_CASE("reports: a status has each counter under its name") {
                  {"malformed", 45},
                  {"without_sync", 46},
                  {"dropped", 15},
-                 {"times_lost", 0}});
+                 {"times_lost", 0},
+                 {"times_rested", 0}});
   for (const char* counter :
        {"frames", "frames_lost", "error_messages", "bus_errors", "controller_overruns", "times_passive",
         "times_bus_off", "restarts", "times_down", "times_gone", "times_back", "sent", "not_sent"})
@@ -182,6 +183,13 @@ TEST_CASE("reports: the reported state is the worst of all problems") {
   CHECK(state_of(s) == "ok");
   sight.update(0, 10'000'000'001);
   CHECK(state_of(s) == "laser_blind");
+  sight.update(10'000'000'001, 10'000'000'001);
+  SourceWatch nod;
+  nod.init(6.0f, false);
+  s.nod = &nod;
+  CHECK(state_of(s) == "ok");
+  nod.update(0, 6'000'000'001);
+  CHECK(state_of(s) == "tilt_resting");
   const auto closed = std::make_unique<socketcan::SocketCan>();
   s.bus = closed.get();
   CHECK(state_of(s) == "can_down");
