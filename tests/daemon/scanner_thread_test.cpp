@@ -6,9 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "formats/decimals.hpp"
+#include "scan_log.hpp"
 #include "scanner_simulator/server.hpp"
-#include "tools/formats_support.hpp"
 
 namespace curbline::daemon {
 namespace {
@@ -16,45 +15,53 @@ namespace {
 using namespace std::chrono_literals;
 using tools::testing::TemporaryDirectory;
 
-/// A log of `lines` lines of a UTM-30LX, 40 a second.
-std::string scan_log(const TemporaryDirectory& directory, int lines) {
-  std::string ranges = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081", log;
-  for (int i = 0; i < 1081; ++i) ranges += " 1.500";
-  for (std::int64_t i = 0; i < lines; ++i) {
-    const std::string time = tools::seconds(1'700'000'000'000'000'000 + i * 25'000'000, 6);
-    log += ranges + " 0 " + time + " host " + time + "\n";
+/// A scanner that plays so many lines, 40 a second, and the thread that reads it.
+class LiveScan {
+ public:
+  using Damage = decltype(tools::ServerOptions::damage);
+
+  explicit LiveScan(int lines, Damage damage = {}, const LaserSettings& laser = tools::Robot{}.laser)
+      : log_(write_scan_log(directory_, lines)),
+        server_(tools::Protocol::scip2, tools::ScanFeed::from_log(log_), log_, {.damage = std::move(damage)}),
+        serving_([this] { server_.run(stop_); }),
+        thread(server_.address(), tools::scanner_link(server_.address(), laser), laser, *inbox, 0.5f) {
+    inbox->init(tools::Robot{}, 1.0f);
+    thread.start();
   }
-  return directory.write("scans.carmen", log);
-}
+  ~LiveScan() { end(); }
+  LiveScan(const LiveScan&) = delete;
+  LiveScan& operator=(const LiveScan&) = delete;
+
+  void end() {
+    stop_ = true;
+    if (serving_.joinable()) serving_.join();
+  }
+
+ private:
+  const TemporaryDirectory directory_;
+  const std::string log_;
+  tools::ScannerServer server_;
+  std::atomic<bool> stop_{false};
+  std::thread serving_;
+
+ public:
+  const std::unique_ptr<LineInbox> inbox = std::make_unique<LineInbox>();
+  ScannerThread thread;
+};
 
 TEST_CASE("scanner thread: a scanner without lines for half a second is lost, though connected, until the next line") {
-  const TemporaryDirectory directory;
-  const std::string log = scan_log(directory, 120);
-  tools::ServerOptions options;
-  options.damage = [](tools::Bytes& telegram, long line) {
+  LiveScan scan(120, [](tools::Bytes& telegram, long line) {
     if (line >= 20 && line < 80) telegram.clear();  // for 1.5 s
-  };
-  tools::ScannerServer server(tools::Protocol::scip2, tools::ScanFeed::from_log(log), log, options);
-  std::atomic<bool> stop{false};
-  std::thread serving([&] { server.run(stop); });
-
-  const tools::Robot robot;
-  const auto inbox = std::make_unique<LineInbox>();
-  inbox->init(robot, 1.0f);
-  ScannerThread scanner(server.address(), tools::scanner_link(server.address(), robot.laser), robot.laser, *inbox,
-                        0.5f);
-  scanner.start();
-  std::vector<ScannerState> changes{scanner.state()};
+  });
+  std::vector<ScannerState> changes{scan.thread.state()};
   std::vector<std::chrono::steady_clock::time_point> at{std::chrono::steady_clock::now()};
   for (int i = 0; i < 1000 && changes.size() < 5; ++i) {
     std::this_thread::sleep_for(10ms);
-    const ScannerState now = scanner.state();
+    const ScannerState now = scan.thread.state();
     if (now.connected == changes.back().connected) continue;
     changes.push_back(now);
     at.push_back(std::chrono::steady_clock::now());
   }
-  stop = true;
-  serving.join();
   REQUIRE(changes.size() == 5);  // not yet, lines, silent, lines, the end of the feed
   CHECK(changes[2].error == ETIMEDOUT);
   CHECK(changes[3].connections == 1);
@@ -64,53 +71,30 @@ TEST_CASE("scanner thread: a scanner without lines for half a second is lost, th
 }
 
 TEST_CASE("scanner thread: damaged telegrams of every kind are counted, and cost their lines alone") {
-  const TemporaryDirectory directory;
-  const std::string log = scan_log(directory, 40);
-  tools::ServerOptions options;
-  options.damage = [](tools::Bytes& telegram, long line) {
+  LiveScan scan(40, [](tools::Bytes& telegram, long line) {
     const auto first_block = telegram.begin() + 16 + 4 + 6;  // behind echo, status and stamp
     if (line == 10) *(first_block + 5) ^= 1;
     if (line == 20) telegram.erase(first_block, first_block + 66);  // whole, with its checksum
-  };
-  tools::ScannerServer server(tools::Protocol::scip2, tools::ScanFeed::from_log(log), log, options);
-  std::atomic<bool> stop{false};
-  std::thread serving([&] { server.run(stop); });
-  const tools::Robot robot;
-  const auto inbox = std::make_unique<LineInbox>();
-  inbox->init(robot, 1.0f);
-  ScannerThread scanner(server.address(), tools::scanner_link(server.address(), robot.laser), robot.laser, *inbox,
-                        0.5f);
-  scanner.start();
-  for (int i = 0; i < 500 && inbox->counters().pushed < 38; ++i) std::this_thread::sleep_for(10ms);
-  stop = true;
-  serving.join();
-  CHECK(inbox->counters().pushed == 38);
-  CHECK(scanner.state().damaged == 2);
+  });
+  for (int i = 0; i < 500 && scan.inbox->counters().pushed < 38; ++i) std::this_thread::sleep_for(10ms);
+  scan.end();
+  CHECK(scan.inbox->counters().pushed == 38);
+  CHECK(scan.thread.state().damaged == 2);
 }
 
 TEST_CASE("scanner thread: a scanner with other beams than the robot's laser gives no scan lines") {
-  const TemporaryDirectory directory;
-  const std::string log = scan_log(directory, 40);
-  tools::ScannerServer server(tools::Protocol::scip2, tools::ScanFeed::from_log(log), log, {});
-  std::atomic<bool> stop{false};
-  std::thread serving([&] { server.run(stop); });
-  tools::Robot robot;
-  robot.laser.beams = 541;
-  const auto inbox = std::make_unique<LineInbox>();
-  inbox->init(robot, 1.0f);
-  ScannerThread scanner(server.address(), tools::scanner_link(server.address(), robot.laser), robot.laser, *inbox,
-                        0.5f);
-  scanner.start();
+  LaserSettings other;
+  other.beams = 541;
+  LiveScan scan(40, {}, other);
   bool connected = false;
-  for (int i = 0; i < 500 && scanner.state().other_beams < 20; ++i) {
+  for (int i = 0; i < 500 && scan.thread.state().other_beams < 20; ++i) {
     std::this_thread::sleep_for(10ms);
-    connected = connected || scanner.state().connected;
+    connected = connected || scan.thread.state().connected;
   }
-  stop = true;
-  serving.join();
-  CHECK(scanner.state().other_beams >= 20);
+  scan.end();
+  CHECK(scan.thread.state().other_beams >= 20);
   CHECK_FALSE(connected);
-  CHECK(inbox->empty());
+  CHECK(scan.inbox->empty());
 }
 
 }  // namespace

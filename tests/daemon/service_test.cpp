@@ -5,26 +5,15 @@
 
 #include <cstdlib>
 
-#include "formats/decimals.hpp"
 #include "program.hpp"
+#include "scan_log.hpp"
 
 namespace curbline::tools::testing {
 namespace {
 
-/// A log of 3 s: 40 lines a second of a laser at a fixed tilt.
-std::string scan_log(const TemporaryDirectory& directory) {
-  std::string ranges = "RAWLASER1 0 -2.3561945 4.712389 0.004363323 60.000 0.030 0 1081", log;
-  for (int i = 0; i < 1081; ++i) ranges += " 1.500";
-  for (std::int64_t i = 0; i < 120; ++i) {
-    const std::string time = seconds(1'700'000'000'000'000'000 + i * 25'000'000, 6);
-    log += ranges + " 0 " + time + " host " + time + "\n";
-  }
-  return directory.write("scans.carmen", log);
-}
-
 Words arguments_of(const TemporaryDirectory& directory) {
   return {"--robot", directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n"),
-          "--scans", scan_log(directory),
+          "--scans", daemon::write_scan_log(directory, 120),  // 3 s
           "--curbs", "unix:" + directory.path("curbs")};
 }
 
