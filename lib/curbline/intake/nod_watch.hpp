@@ -1,6 +1,6 @@
 // Whether the laser nods: an encoder that is stuck, or a servo that has stopped, gives readings like one that works,
-// but ground seen at a tilt that is not the stated one lies where it is not. A servo may rest by intention; only the
-// robot knows. Beside the way of the data, as source_watch.hpp.
+// but ground seen at another tilt than the stated one is mapped where it is not. A servo may rest by intention; only
+// the robot knows. Beside the way of the data, as source_watch.hpp.
 //
 // No clock: times are those of the readings. update() takes constant time; one context.
 #pragma once
@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "curbline/intake/source_watch.hpp"
+#include "curbline/intake/sweep_turns.hpp"
 #include "curbline/math.hpp"
 #include "curbline/tilt_reading.hpp"
 
@@ -15,11 +16,9 @@ namespace curbline {
 
 class NodWatch {
  public:
-  /// Less is the play of a servo that holds, and noise of its angle: 3 degrees, as for sweeps.
-  static constexpr float least_swing_rad = 0.05f;
-
-  /// Starts afresh. longest_rest_s: for how long the angle may stay within least_swing_rad, a sweep there and back at
-  /// most. `fixed`, as in TiltSettings: nothing is watched, all is well.
+  /// Starts afresh. longest_rest_s: for how long the angle may stay within SweepTurns::least_sweep_rad, 3 degrees, the
+  /// play of a servo that holds: a sweep there and back at most. `fixed`, as in TiltSettings: nothing is watched, all
+  /// is well.
   void init(float longest_rest_s, bool fixed) {
     *this = NodWatch{};
     watch_.init(longest_rest_s, fixed);
@@ -29,7 +28,7 @@ class NodWatch {
   /// moves again (recovered).
   SourceEvent update(const TiltReading& reading) {
     const bool first = moved_ns_ == SourceWatch::no_reading;  // at first, it is waited for as long as later
-    if (first || magnitude(reading.angle_rad - at_rad_) >= least_swing_rad || reading.time_ns < moved_ns_) {
+    if (first || magnitude(reading.angle_rad - at_rad_) >= SweepTurns::least_sweep_rad || reading.time_ns < moved_ns_) {
       at_rad_ = reading.angle_rad;
       moved_ns_ = reading.time_ns;
     }

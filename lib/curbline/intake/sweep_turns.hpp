@@ -9,6 +9,9 @@ namespace curbline {
 
 class SweepTurns {
  public:
+  /// Smaller than any real sweep: reversals closer together come from damaged readings and from play.
+  static constexpr float least_sweep_rad = 0.05f;
+
   /// A rate below slow_rad_s says nothing about the direction. With 0 the rate always decides.
   void init(float slow_rad_s) {
     *this = SweepTurns{};
@@ -26,9 +29,6 @@ class SweepTurns {
 
  private:
   bool downward(float angle_rad, float rate_rad_s) const;
-
-  /// Smaller than any real sweep: reversals closer together come from damaged readings and from play.
-  static constexpr float least_sweep_rad = 0.05f;
 
   float slow_rad_s_ = 0.0f;
   bool begun_ = false;
