@@ -94,7 +94,7 @@ double of_patches(double r_x, double r_y) {
             if (j > first_j) patch.add_rise(1, above_m(i, j) - above_m(i, j - 1));
           }
         }
-        found.push_back(static_cast<double>(patch.common_m2()));
+        found.push_back(static_cast<double>(patch.noise().common_m2));
       }
     }
   }
@@ -119,7 +119,7 @@ TEST_CASE("common noise: cells that lie on their plane share nothing") {
   for (int i = 0; i < PatchResiduals::side; ++i) {
     for (int j = 0; j < 2; ++j) patch.add(static_cast<float>(i), static_cast<float>(j), 0.0f, {});
   }
-  CHECK(patch.common_m2() == 0.0f);
+  CHECK(patch.noise().common_m2 == 0.0f);
 }
 
 TEST_CASE("common noise: the share is that of the evener patches") {
@@ -266,7 +266,7 @@ TEST_CASE("common noise: a patch of which a triangle alone is seen shares no mor
         if (j > 0) patch.add_rise(1, above_m(i, j) - above_m(i, j - 1));
       }
     }
-    return static_cast<double>(patch.common_m2());
+    return static_cast<double>(patch.noise().common_m2);
   };
   const double level_m2 = shared_m2(0.0, 0.0);
   CHECK(level_m2 > 1e-6);

@@ -64,9 +64,11 @@ class StepHeight {
   };
   Deviations deviations() const;
   float line_m2_along() const;
-  LineWeights line_weights(const Plane& plane) const;
-  float plane_variance_m2(const Plane& plane) const;
-  float covariance_m2() const;
+  /// Variances of the planes' heights beside the piece, and their covariance.
+  struct PlaneErrors {
+    float one_m2, other_m2, covariance_m2;
+  };
+  PlaneErrors plane_errors() const;
   [[gnu::cold]] float lower_m2(typename Piece::End end) const;
   float ground_share_of_slope(const Viewpoint& view) const;
 
@@ -100,7 +102,8 @@ void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at
   if (is_step) {
     follow_ground(part);
   } else {
-    variance_m2_ += plane_variance_m2(one) + plane_variance_m2(other) - 2.0f * covariance_m2();
+    const PlaneErrors planes = plane_errors();
+    variance_m2_ += planes.one_m2 + planes.other_m2 - 2.0f * planes.covariance_m2;
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
@@ -253,6 +256,7 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
 template <Limits limits>
 void StepHeight<limits>::follow_ground(const Part& part) {
   const Deviations beside = deviations();
+  const PlaneErrors planes = plane_errors();
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
   float planes_share = 1.0f;  // of both planes' errors
   for (const bool other : {false, true}) {
@@ -261,11 +265,11 @@ void StepHeight<limits>::follow_ground(const Part& part) {
         piece_.one_sided() ? GroundAlong{} : ground_along(part, other ? piece_.first.other : piece_.first.one);
     const float share = next.share(), rest = 1.0f - share;
     height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
-    const float plane_m2 = plane_variance_m2(other ? piece_.planes.other : piece_.planes.one);
+    const float plane_m2 = other ? planes.other_m2 : planes.one_m2;
     variance_m2_ += next.height_variance_m2() + rest * (plane_m2 + along.share * (along.variance_m2 - plane_m2));
     planes_share *= rest * (1.0f - along.share);
   }
-  variance_m2_ -= 2.0f * planes_share * covariance_m2();
+  variance_m2_ -= 2.0f * planes_share * planes.covariance_m2;
 }
 
 /// Deviation of the ground from its planes beside the piece. Both sides begin at the near end of a shadow; the borders
@@ -288,25 +292,19 @@ float StepHeight<limits>::line_m2_along() const {
   return stages_.dem.line_m2() / (1.0f + magnitude(x_m * ahead.cos + y_m * ahead.sin) / stages_.pitch_m());
 }
 
+/// As the fits state, of cells that err each on its own, and by the scan lines that have seen one plane or both.
 template <Limits limits>
-LineWeights StepHeight<limits>::line_weights(const Plane& plane) const {
-  return {plane, stages_.dem.ahead_is(), stages_.pitch_m(), piece_.middle_x_m(), piece_.middle_y_m()};
-}
-
-/// Variance of a plane's height beside the piece: as its fit states, of cells that err each on its own, and by scan
-/// lines.
-template <Limits limits>
-float StepHeight<limits>::plane_variance_m2(const Plane& plane) const {
-  const LineWeights lines = line_weights(plane);
-  return piece_.variance_m2(plane) + stages_.dem.line_m2() / plane.points_a_cell * lines.times(lines);
-}
-
-/// Covariance of the planes' heights there, by the lines that have seen both.
-template <Limits limits>
-float StepHeight<limits>::covariance_m2() const {
+auto StepHeight<limits>::plane_errors() const -> PlaneErrors {
+  const Dem<limits>& dem = stages_.dem;
+  const auto weights_of = [&](const Plane& plane) {
+    return LineWeights(plane, dem.ahead_is(), stages_.pitch_m(), piece_.middle_x_m(), piece_.middle_y_m());
+  };
   const auto [one, other] = piece_.planes;
-  const float line_m2 = stages_.dem.line_m2() / square_root(one.points_a_cell * other.points_a_cell);
-  return line_m2 * line_weights(one).times(line_weights(other));
+  const LineWeights lines_of_one = weights_of(one), lines_of_other = weights_of(other);
+  const float line_m2 = dem.line_m2();
+  return {piece_.variance_m2(one) + line_m2 / one.points_a_cell * lines_of_one.times(lines_of_one),
+          piece_.variance_m2(other) + line_m2 / other.points_a_cell * lines_of_other.times(lines_of_other),
+          line_m2 / square_root(one.points_a_cell * other.points_a_cell) * lines_of_one.times(lines_of_other)};
 }
 
 }  // namespace curbline

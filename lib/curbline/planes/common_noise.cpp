@@ -45,9 +45,13 @@ auto PatchResiduals::fit() const -> Fit {
   return {(off_m - slope_x * x - slope_y * y) / n, {slope_x, slope_y}, left_m2};
 }
 
-float PatchResiduals::common_m2() const {
-  const float n = cells;
+auto PatchResiduals::noise() const -> Noise {
   const Fit plane = fit();
+  return {common_m2(plane), line_m2(plane)};
+}
+
+float PatchResiduals::common_m2(const Fit& plane) const {
+  const float n = cells;
   if (!(plane.left_m2 > 0.0f)) return 0.0f;
 
   float common_m2 = plane.left_m2;
@@ -66,8 +70,7 @@ float PatchResiduals::common_m2() const {
 }
 
 /// Mean squares between the rows and within them. Of the plane's parameters, the rows lack two: level and slope ahead.
-float PatchResiduals::line_m2() const {
-  const Fit plane = fit();
+float PatchResiduals::line_m2(const Fit& plane) const {
   float count = 0.0f, between_m2 = 0.0f;
   for (const Row& row : rows) {
     if (!(row.cells > 0.0f)) continue;

@@ -46,11 +46,12 @@ struct PatchResiduals {
     rises[axis].sum_m += rise_m;
     rises[axis].squares_m2 += rise_m * rise_m;
   }
-  /// Variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y), about the best plane of
-  /// the patch. Needs at least least_cells.
-  float common_m2() const;
-  /// Variance of what the cells of a row err alike, beyond what each does, about the same plane; below 0 by chance.
-  float line_m2() const;
+  struct Noise {
+    float common_m2;  ///< variance that the points of a cell share: v (1 + r_x) / (1 - r_x) (1 + r_y) / (1 - r_y)
+    float line_m2;    ///< of what the cells of a row err alike, beyond what each does; below 0 by chance
+  };
+  /// About the best plane of the patch. Needs at least least_cells.
+  Noise noise() const;
 
  private:
   struct Fit {
@@ -59,6 +60,8 @@ struct PatchResiduals {
     float left_m2;     ///< mean square residual
   };
   Fit fit() const;
+  float common_m2(const Fit& plane) const;
+  float line_m2(const Fit& plane) const;
 };
 
 template <Limits limits>
@@ -91,7 +94,7 @@ class CommonNoise {
   };
   struct Patch {
     float cells = 0.0f;  ///< 0: too few
-    float common_m2 = 0.0f, line_m2 = 0.0f;
+    PatchResiduals::Noise noise{};
     float points_a_cell = 1.0f;
     float growth_m2_s2 = 0.0f;  ///< sum of squares of Dem::growth_m_s()
   };
@@ -128,7 +131,7 @@ void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limi
     const PatchSums& sums = row.patch[k];
     const float cells = sums.residuals.cells;
     if (cells < PatchResiduals::least_cells) continue;
-    *patch = {cells, sums.residuals.common_m2(), sums.residuals.line_m2(), sums.points / cells, sums.growth_m2_s2};
+    *patch = {cells, sums.residuals.noise(), sums.points / cells, sums.growth_m2_s2};
   }
   first_row_ += side;
   if (first_row_ >= dem.rows()) first_row_ = 0;
@@ -162,7 +165,7 @@ float CommonNoise<limits>::common_m2(const PlanePrior& prior, float latency_sd_s
   std::array<Shown, patches> shown;
   float cells = 0.0f, growth_m2_s2 = 0.0f;
   for (std::size_t k = 0; k < patches; ++k) {
-    shown[k] = {patches_[k].common_m2, patches_[k].cells};
+    shown[k] = {patches_[k].noise.common_m2, patches_[k].cells};
     cells += patches_[k].cells;
     growth_m2_s2 += patches_[k].growth_m2_s2;
   }
@@ -177,7 +180,7 @@ float CommonNoise<limits>::line_m2() const {
   std::array<Shown, patches> shown;
   for (std::size_t k = 0; k < patches; ++k) {
     const float points = patches_[k].points_a_cell;
-    shown[k] = {patches_[k].line_m2 * points, patches_[k].cells / points};
+    shown[k] = {patches_[k].noise.line_m2 * points, patches_[k].cells / points};
   }
   return std::max(0.0f, quantile(shown, 0.5f));
 }
