@@ -126,16 +126,18 @@ TEST_CASE("surfaces: planes that are told apart by a step, more than by a crease
   crease.y1_m = 1.0f;
   step.kind = CurbKind::step_up;
   Surfaces<limits> surfaces;
-  const auto stay = [&](float step_m) {
+  const auto follow = [&](float step_m) {
     step.y1_m = step_m;
-    std::array<Curb, 2> curbs{crease, step};
     typename Surfaces<limits>::Work work;
-    return surfaces.follow(found, work, curbs);
+    surfaces.follow(found, work, std::array{crease, step});
   };
-  CHECK(stay(0.9f) == 1);
+  follow(0.9f);
   CHECK(surfaces.name(crease.near_label) == surfaces.name(crease.far_label));
-  CHECK(stay(1.1f) == 2);
+  CHECK(surfaces.hold(crease));
+  CHECK_FALSE(surfaces.hold(step));
+  follow(1.1f);
   CHECK(surfaces.name(crease.near_label) != surfaces.name(crease.far_label));
+  CHECK_FALSE(surfaces.hold(crease));
 }
 
 TEST_CASE("surfaces: what follows no bend any more has its own name again") {

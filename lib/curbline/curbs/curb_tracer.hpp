@@ -91,7 +91,8 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
     if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
   }
   leave_out(work, [&](std::size_t k) { return maker.behind_obstacle(work.curb[k]); });
-  work.curbs = static_cast<int>(surfaces_.follow(stages, work.surfaces, work.found()));
+  surfaces_.follow(stages, work.surfaces, work.found());
+  leave_out(work, [&](std::size_t k) { return surfaces_.hold(work.curb[k]); });
   const float cell_m = std::max(dem.cell_y_m(), dem.cell_x_m());
   find_duplicates(work.found(), cell_m, work.is_duplicate);
   leave_out(work, [&](std::size_t k) { return work.is_duplicate[k]; });

@@ -32,10 +32,12 @@ class Surfaces {
   using Work = std::array<BendSums, limits.planes>;
 
   /// Names all planes anew. Two that meet at a crease, of a ramp or not, are one surface if their cells are likelier to
-  /// follow its bend than to lie flat, by three standard deviations, unless most of their border is a step. Removes
-  /// creases within surfaces from `curbs`, and returns how many curbs stay.
+  /// follow its bend than to lie flat, by three standard deviations, unless most of their border is a step.
   // Cold, as are its callees: compiled for size, to fit the flash budget.
-  [[gnu::cold]] std::size_t follow(const CurbStages<limits>& stages, Work& work, std::span<Curb> curbs);
+  [[gnu::cold]] void follow(const CurbStages<limits>& stages, Work& work, std::span<const Curb> curbs);
+
+  /// Is it a crease between planes of one surface?
+  bool hold(const Curb& curb) const { return is_crease(curb) && name_[curb.near_label] == name_[curb.far_label]; }
 
  private:
   static constexpr int rows_apart = 4;  ///< between rows whose cells are used: neighbours err alike
@@ -48,7 +50,7 @@ class Surfaces {
 };
 
 template <Limits limits>
-std::size_t Surfaces<limits>::follow(const CurbStages<limits>& stages, Work& work, std::span<Curb> curbs) {
+void Surfaces<limits>::follow(const CurbStages<limits>& stages, Work& work, std::span<const Curb> curbs) {
   init();
   bool looked = false;
   for (const Curb& curb : curbs) {
@@ -61,11 +63,6 @@ std::size_t Surfaces<limits>::follow(const CurbStages<limits>& stages, Work& wor
     const Label near = name_[one], far = name_[other];
     std::replace(name_.begin(), name_.end(), std::max(near, far), std::min(near, far));
   }
-  std::size_t kept = 0;
-  for (const Curb& curb : curbs) {
-    if (!is_crease(curb) || name_[curb.near_label] != name_[curb.far_label]) curbs[kept++] = curb;
-  }
-  return kept;
 }
 
 /// Sums over cells that hold their plane alone: anything else in them would pass for a bend.
