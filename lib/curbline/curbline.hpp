@@ -48,6 +48,7 @@
 #include "curbline/map/next_cells.hpp"          // how far it is to the next ones
 #include "curbline/map/last_seen.hpp"           // when and from where they were seen
 #include "curbline/map/dem.hpp"                 // what is in them
+#include "curbline/map/cell_line.hpp"           // a row or column of them
 #include "curbline/map/level_cell.hpp"          // what their spread tells of a slope
 
 // Cells to regions.
@@ -75,7 +76,6 @@
 
 // Labels to curbs.
 #include "curbline/curbs/curb_stages.hpp"       // the stages that curbs are found in
-#include "curbline/curbs/cell_line.hpp"         // a row or column
 #include "curbline/curbs/beside.hpp"            // the ground beside a border
 #include "curbline/curbs/borders.hpp"           // where labels change, and chains of such points
 #include "curbline/curbs/plane_gap.hpp"         // where between two planes the edge lies, to a part of a cell

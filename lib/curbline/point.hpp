@@ -46,6 +46,9 @@ struct Viewpoint {
   /// Length of a beam's spot on level ground that lies above_m below the laser, sqrt(range_m2) away.
   float spot_m(float range_m2, float above_m) const { return divergence_rad * range_m2 / above_m; }
   bool drives() const { return end_x_m > 0.0f; }
+  /// Along x (axis 0) or y (1).
+  float place_m(int axis) const { return axis == 0 ? x_m : y_m; }
+  float end_m(int axis) const { return axis == 0 ? end_x_m : end_y_m; }
 };
 
 }  // namespace curbline

@@ -27,8 +27,9 @@ std::string runs_of(const std::string& cells, int axis) {
     if (cells[k] != '-') (*labels)[dem->slot(i, j)] = static_cast<Label>(cells[k] - 'a');
   }
   std::string found;
-  for_each_run(*dem, axis, *labels, [&](const Strip& strip, int line) {
-    REQUIRE(line == 7);
+  for_each_run(*dem, axis, *labels, [&](const Strip& strip, const CellLine<small_limits>& line) {
+    REQUIRE(line.axis == axis);
+    REQUIRE(line.across == 7);
     found += static_cast<char>('a' + strip.run.label);
     found += std::to_string(strip.run.cells);
   });

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <catch2/catch.hpp>
-#include <span>
 
 #include "support/small_map.hpp"
 
@@ -34,7 +33,7 @@ TEST_CASE("strip tally: of a strip the cells that are seen count, as of its plan
   const std::array<Plane, small_limits.planes> planes{};
   const Viewpoint view{-2.5f, 1.25f, 1.0f};
   const Obstacles<small_limits> obstacles(dem, planes, view, labels);
-  const StripTally tally = tally_strips(dem, std::span<const Plane>(planes), view, labels, obstacles)[1];
+  const StripTally tally = StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1];
   CHECK(tally.cells == 10.0f);
   CHECK(tally.shadow[0].strips == 1.0f);
   CHECK(tally.shadow[0].cells == 2.0f);
@@ -64,7 +63,7 @@ bool face(int cells, Height&& height) {
   const std::array<Plane, small_limits.planes> planes{};
   const Viewpoint view{0.0f, 1.2f, 1.0f};
   const Obstacles<small_limits> obstacles(dem, planes, view, labels);
-  return tally_strips(dem, std::span<const Plane>(planes), view, labels, obstacles)[1].face();
+  return StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1].face();
 }
 
 //            _____

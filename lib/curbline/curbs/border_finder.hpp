@@ -12,12 +12,12 @@
 #include "curbline/counters.hpp"
 #include "curbline/curbs/beside.hpp"
 #include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/cell_line.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/ground_end.hpp"
 #include "curbline/curbs/plane_gap.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/plane.hpp"
 

@@ -9,8 +9,8 @@
 #include <span>
 
 #include "curbline/curbs/beside.hpp"
-#include "curbline/curbs/cell_line.hpp"
 #include "curbline/grid.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/per_cell.hpp"
 

@@ -12,11 +12,11 @@
 #include <optional>
 
 #include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/cell_line.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/plane_gap.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/plane.hpp"
 
 namespace curbline {

@@ -5,17 +5,24 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
-#include "curbline/curbs/cell_line.hpp"
 #include "curbline/curbs/curb_stages.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {
+
+/// A cell of a line and its label.
+struct LabelledCell {
+  Label label = no_label;
+  std::int16_t along = 0;
+};
 
 /// What a cell shows of a step across it, from the near side to the far side.
 struct CrossedCell {

@@ -110,7 +110,7 @@ template <Limits limits>
 [[gnu::noinline]] auto Ground<limits>::kinds(const Dem<limits>& dem, std::span<const Plane> planes,
                                              const Viewpoint& view, const CellLabels<limits>& region_label,
                                              const Obstacles<limits>& obstacles) -> Kinds {
-  const StripTallies<limits> tallies = tally_strips(dem, planes, view, region_label, obstacles);
+  const StripTallies<limits> tallies(dem, planes, view, region_label, obstacles);
   Kinds found;
   for (std::size_t l = 0; l < found.size(); ++l) found[l] = kind_of(l, planes[l], tallies[l], obstacles, view);
   return found;

@@ -15,6 +15,7 @@
 
 #include "curbline/grid.hpp"
 #include "curbline/index_set.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
@@ -68,7 +69,7 @@ class Obstacles {
   void add_tops();
   void take_ways_from(PlaneFlags& top, const Neighbours& beside);
   Extents extents_of(const PlaneFlags& asked) const;
-  bool thin(int i, int j, std::size_t axis, Label label) const;
+  bool thin(const CellLine<limits>& line, int at, Label label) const;
   Neighbours neighbours(const PlaneFlags& asked) const;
 
   const Dem<limits>& dem_;
@@ -174,25 +175,25 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
     if (label == no_label || !asked[label]) return;
     Extent& extent = found[label];
     if (i == 0 || j == 0 || i == dem_.rows() - 1 || j == dem_.cols() - 1) extent.reaches_end = true;
-    for (std::size_t axis = 0; axis < 2; ++axis) extent.thin_cells[axis] += thin(i, j, axis, label) ? 1.0f : 0.0f;
+    extent.thin_cells[0] += thin({dem_, 0, j}, i, label) ? 1.0f : 0.0f;
+    extent.thin_cells[1] += thin({dem_, 1, i}, j, label) ? 1.0f : 0.0f;
   });
   return found;
 }
 
-/// Is the run of cells of this label through (i, j), along x or y, shorter than shoulders? Not if it may go on: beyond
-/// the window's end; toward the laser, where nothing is seen; or away from the laser of a robot that drives, where
-/// nothing is seen up to the window's end, so that it may not have looked there yet.
+/// Is the run of cells of this label through a cell, on its row or column, shorter than shoulders? Not if it may go on:
+/// beyond the window's end; toward the laser, where nothing is seen; or away from the laser of a robot that drives,
+/// where nothing is seen up to the window's end, so that it may not have looked there yet.
 template <Limits limits>
-bool Obstacles<limits>::thin(int i, int j, std::size_t axis, Label label) const {
-  const float cell_m = dem_.cell_m(static_cast<int>(axis)), eye_m = axis == 0 ? view_.x_m : view_.y_m;
-  const int count = dem_.cells_along(static_cast<int>(axis)), at = axis == 0 ? i : j;
-  const int toward = static_cast<float>(at) * cell_m < eye_m ? 1 : -1;
+bool Obstacles<limits>::thin(const CellLine<limits>& line, int at, Label label) const {
+  const float cell_m = line.pitch_m();
+  const int toward = static_cast<float>(at) * cell_m < view_.place_m(line.axis) ? 1 : -1;
   int length = 1;
   for (const int step : {toward, -toward}) {
     int last = at;
     for (int k = at + step;; k += step) {
-      if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= count) return false;
-      const int slot = axis == 0 ? dem_.slot(k, j) : dem_.slot(i, k);
+      if (static_cast<float>(length) * cell_m >= shoulders_m || k < 0 || k >= line.cells()) return false;
+      const int slot = line.slot(k);
       const bool seen = dem_.cell(slot).valid();
       if (!seen && step == toward) return false;
       if (!seen && view_.drives()) continue;

@@ -4,12 +4,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
@@ -23,15 +23,14 @@ struct Sight {
   const Viewpoint& view;
   float eye_m;    ///< the laser's coordinate along it, from the window's lowest corner
   float cell_m;   ///< length of a cell
-  float end_m;    ///< Viewpoint::end_x_m, or end_y_m
+  float end_m;    ///< Viewpoint::end_m()
   float aside_m;  ///< its middle, from the laser
 
-  /// Along x (axis 0) or y (1); `line` numbers the columns, or rows. The viewpoint must outlive it.
+  /// The viewpoint must outlive it.
   template <Limits limits>
-  static Sight along(std::size_t axis, int line, const Dem<limits>& dem, const Viewpoint& view) {
-    const float middle = static_cast<float>(line) + 0.5f;
-    return axis == 0 ? Sight{view, view.x_m, dem.cell_x_m(), view.end_x_m, middle * dem.cell_y_m() - view.y_m}
-                     : Sight{view, view.y_m, dem.cell_y_m(), view.end_y_m, middle * dem.cell_x_m() - view.x_m};
+  static Sight along(const CellLine<limits>& line, const Viewpoint& view) {
+    return {view, view.place_m(line.axis), line.pitch_m(), view.end_m(line.axis),
+            line.across_m() - view.place_m(1 - line.axis)};
   }
 
   bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
@@ -52,7 +51,7 @@ struct Sight {
 };
 
 /// Tangent of the angle between an axis and the normal of a strip, (pxx, pxy) or (pxy, pyy).
-inline float askew(const Plane& strip, std::size_t axis) {
+inline float askew(const Plane& strip, int axis) {
   const float along = axis == 0 ? strip.pxx : strip.pyy;
   return along > 0.0f ? strip.pxy / along : 0.0f;
 }
@@ -161,17 +160,18 @@ struct Strip {
   bool precedes(int gap) const { return next.any() && next.first - run.last <= gap; }
 };
 
-/// Calls visit(strip, line) for each run along x (axis 0) or y (1); `line` numbers the columns, or rows, in order.
+/// Calls visit(strip, line) for each run along x (axis 0) or y (1), column by column, or row by row.
 template <Limits limits, typename Visit>
 void for_each_run(const Dem<limits>& dem, int axis, const CellLabels<limits>& region_label, Visit&& visit) {
-  for (int line = 0; line < dem.cells_along(1 - axis); ++line) {
+  for (int across = 0; across < dem.cells_along(1 - axis); ++across) {
+    const CellLine<limits> line{dem, axis, across};
     Run before, run;
     const auto end_run = [&](const Run& next) {
       if (run.any()) visit(Strip{before, run, next}, line);
       before = run;
       run = next;
     };
-    dem.for_each_valid_along(axis, line, [&](int k, int s) {
+    dem.for_each_valid_along(axis, across, [&](int k, int s) {
       const Label label = region_label[s];
       if (label == no_label) return;
       const Cell& cell = dem.cell(s);

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <span>
 
+#include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
@@ -103,9 +104,31 @@ struct StripTally {
   }
 };
 
-/// For each plane.
+/// Those of all planes. Shadows are those for the place from which the laser last saw a strip.
 template <Limits limits>
-using StripTallies = std::array<StripTally, limits.planes>;
+class StripTallies {
+ public:
+  /// `region_label`: for each valid cell, the plane of its region.
+  StripTallies(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+               const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles);
+
+  const StripTally& operator[](std::size_t label) const { return tallies_[label]; }
+
+ private:
+  using Line = CellLine<limits>;
+  static constexpr int sparse_gap = StripTally::sparse_gap;
+
+  void take(const Strip& strip, const Line& line);
+  void take_edge(const Strip& strip, const Line& line, bool rises);
+  void take_short(const Strip& strip, const Line& line, bool rises);
+
+  const Dem<limits>& dem_;
+  const std::span<const Plane> planes_;
+  const Viewpoint& view_;
+  const Obstacles<limits>& obstacles_;
+  std::array<StripTally, limits.planes> tallies_{};
+  std::array<bool, limits.planes> drops_{};  ///< planes that fall away from the laser, and are no obstacles
+};
 
 /// Does a plane fall away from the laser, more steeply than a ramp, relative to the ground's slope?
 inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& view) {
@@ -113,51 +136,63 @@ inline bool drops_off(const Plane& plane, const Plane& lean, const Viewpoint& vi
          plane.slope_x * (plane.x_m - view.x_m) + plane.slope_y * (plane.y_m - view.y_m) < 0.0f;
 }
 
-/// Statistics of all planes. Shadows are those for the place from which the laser last saw a strip.
 template <Limits limits>
-StripTallies<limits> tally_strips(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
-                                  const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles) {
-  StripTallies<limits> tallies{};
+StripTallies<limits>::StripTallies(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                                   const CellLabels<limits>& region_label, const Obstacles<limits>& obstacles)
+    : dem_(dem), planes_(planes), view_(view), obstacles_(obstacles) {
   const Plane lean = obstacles.ground() == nullptr ? Plane{} : obstacles.ground()->lean();
-  std::array<bool, limits.planes> drops{};
-  for (std::size_t l = 0; l < tallies.size(); ++l) {
-    tallies[l].cells = obstacles.cells(l);
-    drops[l] = !obstacles.is(l) && drops_off(planes[l], lean, view);
+  for (std::size_t l = 0; l < tallies_.size(); ++l) {
+    tallies_[l].cells = obstacles.cells(l);
+    drops_[l] = !obstacles.is(l) && drops_off(planes[l], lean, view);
   }
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    for_each_run(dem, static_cast<int>(axis), region_label, [&](const Strip& strip, int line) {
-      const Run &before = strip.before, &run = strip.run, &next = strip.next;
-      StripTally& tally = tallies[run.label];
-      const auto cells = static_cast<float>(run.cells);
-      // A step up onto an obstacle is no curb, nor does a veil end at one.
-      const bool rises = strip.between(StripTally::sparse_gap) && strip.rises_between() &&
-                         !obstacles.is(before.label) && !obstacles.is(next.label);
-      if (rises || drops[run.label]) {
-        const Viewpoint from = dem.seen_from(axis == 0 ? dem.slot(run.first, line) : dem.slot(line, run.first), view);
-        const float tangent = askew(planes[run.label], axis);
-        const Sight across = Sight::along(axis, line, dem, from).across(tangent);
-        if (rises) {
-          if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(cells, *fall);
-        }
-        if (drops[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent);
-      }
-      if (run.length() > StripTally::longest_strip) return;
-      const bool after_high = before.any() && obstacles.high(before.label) && run.first == before.last + 1;
-      const bool before_high = next.any() && obstacles.high(next.label) && next.first == run.last + 1;
-      if (after_high || before_high) tally.fringe_cells[axis] += cells;
-      const int middle = (run.first + run.last) / 2;
-      if (strip.between(StripTally::sparse_gap) && before.label == next.label && strip.half_hidden() &&
-          obstacles.hides(axis == 0 ? middle : line, axis == 0 ? line : middle, run.label)) {
-        tally.wake_cells[axis] += cells;
-      }
-      if (strip.alone(StripTally::sparse_gap)) {
-        tally.silent_cells[axis] += cells;
-      } else if (rises) {
-        tally.add(strip);
-      }
-    });
+  for (const int axis : {0, 1}) {
+    for_each_run(dem, axis, region_label, [this](const Strip& strip, const Line& line) { take(strip, line); });
   }
-  return tallies;
+}
+
+template <Limits limits>
+void StripTallies<limits>::take(const Strip& strip, const Line& line) {
+  // A step up onto an obstacle is no curb, nor does a veil end at one.
+  const bool rises = strip.between(sparse_gap) && strip.rises_between() && !obstacles_.is(strip.before.label) &&
+                     !obstacles_.is(strip.next.label);
+  if (rises || drops_[strip.run.label]) take_edge(strip, line, rises);
+  if (strip.run.length() <= StripTally::longest_strip) take_short(strip, line, rises);
+}
+
+/// A strip that rises or falls between two others, or of a plane that drops off.
+template <Limits limits>
+void StripTallies<limits>::take_edge(const Strip& strip, const Line& line, bool rises) {
+  const Run& run = strip.run;
+  StripTally& tally = tallies_[run.label];
+  const auto axis = static_cast<std::size_t>(line.axis);
+  const Viewpoint from = dem_.seen_from(line.slot(run.first), view_);
+  const float tangent = askew(planes_[run.label], line.axis);
+  const Sight across = Sight::along(line, from).across(tangent);
+  if (rises) {
+    if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(static_cast<float>(run.cells), *fall);
+  }
+  if (drops_[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent);
+}
+
+template <Limits limits>
+void StripTallies<limits>::take_short(const Strip& strip, const Line& line, bool rises) {
+  const Run &before = strip.before, &run = strip.run, &next = strip.next;
+  StripTally& tally = tallies_[run.label];
+  const auto axis = static_cast<std::size_t>(line.axis);
+  const auto cells = static_cast<float>(run.cells);
+  const bool after_high = before.any() && obstacles_.high(before.label) && run.first == before.last + 1;
+  const bool before_high = next.any() && obstacles_.high(next.label) && next.first == run.last + 1;
+  if (after_high || before_high) tally.fringe_cells[axis] += cells;
+  const int middle = (run.first + run.last) / 2;
+  if (strip.between(sparse_gap) && before.label == next.label && strip.half_hidden() &&
+      obstacles_.hides(line.row(middle), line.col(middle), run.label)) {
+    tally.wake_cells[axis] += cells;
+  }
+  if (strip.alone(sparse_gap)) {
+    tally.silent_cells[axis] += cells;
+  } else if (rises) {
+    tally.add(strip);
+  }
 }
 
 }  // namespace curbline

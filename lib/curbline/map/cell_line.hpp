@@ -1,7 +1,5 @@
-// A row or column of the window, cell by cell.
+// A row or column of the window, cell by cell: what looks along both need not be written twice.
 #pragma once
-
-#include <cstdint>
 
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
@@ -38,19 +36,12 @@ struct CellLine {
   /// Coordinates of a place on the middle of the line.
   float x_m(float along_m) const { return axis == 0 ? along_m : across_m(); }
   float y_m(float along_m) const { return axis == 0 ? across_m() : along_m; }
+  /// The other coordinate, of its middle.
+  float across_m() const { return (static_cast<float>(across) + 0.5f) * dem.cell_m(1 - axis); }
   /// Direction along the line that leads away from the laser at a cell: 1 or -1.
   int away(const Viewpoint& view, int along) const {
-    return (static_cast<float>(along) + 0.5f) * pitch_m() > (axis == 0 ? view.x_m : view.y_m) ? 1 : -1;
+    return (static_cast<float>(along) + 0.5f) * pitch_m() > view.place_m(axis) ? 1 : -1;
   }
-
- private:
-  float across_m() const { return (static_cast<float>(across) + 0.5f) * dem.cell_m(1 - axis); }
-};
-
-/// A cell of a line and its label.
-struct LabelledCell {
-  Label label = no_label;
-  std::int16_t along = 0;
 };
 
 }  // namespace curbline
