@@ -13,11 +13,11 @@ namespace curbline {
 
 /// Sums over borders of one side of a curb.
 struct Beside {
-  float borders = 0.0f;     ///< borders with both cells on the side's plane and nothing else in them
-  float off_m = 0.0f;       ///< height above the plane, at the border
-  float rise_m = 0.0f;      ///< rise beyond the plane's, per cell toward the border
-  float away_cells = 0.0f;  ///< distance of the nearer cell's middle from the border
-  float few = 0.0f;         ///< 1 / points of a cell, mean of both
+  float borders = 0.0f;         ///< borders with both cells on the side's plane and nothing else in them
+  float off_m = 0.0f;           ///< height above the plane, at the border
+  float rise_m = 0.0f;          ///< rise beyond the plane's, per cell toward the border
+  float away_cells = 0.0f;      ///< distance of the nearer cell's middle from the border
+  float inverse_points = 0.0f;  ///< 1 / points of a cell, mean of both
 
   struct Shown {
     float above_m, points;  ///< height above the plane
@@ -32,7 +32,7 @@ struct Beside {
     off_m += other.off_m;
     rise_m += other.rise_m;
     away_cells += other.away_cells;
-    few += other.few;
+    inverse_points += other.inverse_points;
   }
 };
 
@@ -100,7 +100,7 @@ inline Deviation deviation(const Beside& beside, const Plane& plane, float away,
   const float away_m = away * (beside.off_m + further_cells * beside.rise_m) / n;
   const float q = beside.away_cells / n + further_cells;
   const float both = square(1.0f + q) + square(q);
-  return {away_m, both * plane.fit_variance_m2 / n, 0.5f * common_m2 + both * line_m2 * beside.few / n, n};
+  return {away_m, both * plane.fit_variance_m2 / n, 0.5f * common_m2 + both * line_m2 * beside.inverse_points / n, n};
 }
 
 }  // namespace curbline
