@@ -5,8 +5,6 @@
 // No clock: times are those of the readings. update() takes constant time; one context.
 #pragma once
 
-#include <cstdint>
-
 #include "curbline/intake/source_watch.hpp"
 #include "curbline/intake/sweep_turns.hpp"
 #include "curbline/math.hpp"
@@ -21,28 +19,24 @@ class NodWatch {
   /// is well.
   void init(float longest_rest_s, bool fixed) {
     *this = NodWatch{};
-    watch_.init(longest_rest_s, fixed);
+    moves_.init(longest_rest_s, fixed);
   }
 
   /// Call with each reading that the pipeline takes. Says once that the tilt has come to rest (lost) and once that it
   /// moves again (recovered).
   SourceEvent update(const TiltReading& reading) {
-    const bool first = moved_ns_ == SourceWatch::no_reading;  // at first, it is waited for as long as later
-    if (first || magnitude(reading.angle_rad - at_rad_) >= SweepTurns::least_sweep_rad || reading.time_ns < moved_ns_) {
-      at_rad_ = reading.angle_rad;
-      moved_ns_ = reading.time_ns;
-    }
-    const SourceEvent event = watch_.update(moved_ns_, reading.time_ns);
-    return first ? SourceEvent::none : event;
+    const bool moved =
+        moves_.begins(reading.time_ns) || magnitude(reading.angle_rad - at_rad_) >= SweepTurns::least_sweep_rad;
+    if (moved) at_rad_ = reading.angle_rad;
+    return moves_.update(moved, reading.time_ns);
   }
 
   /// ok, or stale if the tilt rests; never before the first reading.
-  const SourceWatch& watch() const { return watch_; }
+  const SourceWatch& watch() const { return moves_.watch(); }
 
  private:
-  SourceWatch watch_{};
-  float at_rad_ = 0.0f;                              ///< where it has moved to last
-  std::int64_t moved_ns_ = SourceWatch::no_reading;  ///< when
+  SignWatch moves_{};
+  float at_rad_ = 0.0f;  ///< where it has moved to last
 };
 
 }  // namespace curbline

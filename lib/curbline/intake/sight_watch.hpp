@@ -23,7 +23,7 @@ class SightWatch {
   /// of a laser at a fixed tilt as long as a bump of the way may turn it away.
   void init(float longest_away_s) {
     *this = SightWatch{};
-    watch_.init(longest_away_s, false);
+    sees_.init(longest_away_s, false);
   }
 
   /// Call after each scan line that the pipeline was given, with its counters and the line's time. True if the line
@@ -33,12 +33,11 @@ class SightWatch {
   /// What the last update() saw happen: lost, once no line has put a point into the window for the bound, or recovered.
   SourceEvent event() const { return event_; }
   /// ok or stale as of that; never before the first line.
-  const SourceWatch& watch() const { return watch_; }
+  const SourceWatch& watch() const { return sees_.watch(); }
 
  private:
-  SourceWatch watch_{};
+  SignWatch sees_{};  ///< the sign: points that went into cells
   SourceEvent event_ = SourceEvent::none;
-  std::int64_t seen_ns_ = SourceWatch::no_reading;      ///< the newest line that put points into cells
   std::uint32_t lines_ = 0, points_ = 0, outside_ = 0;  ///< counted before
 };
 
@@ -50,11 +49,8 @@ inline bool SightWatch::update(const Counters& counters, std::int64_t line_ns) {
   outside_ = counters.outside;
   event_ = SourceEvent::none;
   if (!taken) return false;
-  const bool first = seen_ns_ == SourceWatch::no_reading;         // at first, it is waited for as long as later
-  if (inside || first || line_ns < seen_ns_) seen_ns_ = line_ns;  // earlier: the clock was set back
-  event_ = watch_.update(seen_ns_, line_ns);
-  if (first) event_ = SourceEvent::none;
-  return returned && points_ > 0 && watch_.state() == SourceState::ok;
+  event_ = sees_.update(inside, line_ns);
+  return returned && points_ > 0 && watch().state() == SourceState::ok;
 }
 
 }  // namespace curbline

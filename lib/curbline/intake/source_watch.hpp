@@ -1,6 +1,6 @@
-// Whether a source of readings, the tilt servo or the localisation, is alive: says once that it went silent and once
-// that it came back, so that a daemon or a board can tell its user. Beside the way of the data: the pipeline drops what
-// lies beyond its bound on extrapolation by itself.
+// Whether a source of readings, the tilt servo or the localisation, is alive, and whether readings still show what they
+// should: says once that it ceased and once that it came back, so that a daemon or a board can tell its user. Beside
+// the way of the data: the pipeline drops what lies beyond its bound on extrapolation by itself.
 //
 // No clock: times come in, of one time base. update() takes constant time and belongs to one context; what it asks for,
 // the newest reading's time, may come from an interrupt as long as it is read whole.
@@ -58,6 +58,37 @@ class SourceWatch {
   std::int64_t start_ns_ = 0;  ///< of the first update
   std::int64_t longest_silence_ns_ = 0;
   std::uint32_t times_lost_ = 0;
+};
+
+/// The same for a sign that readings show now and then, by their own times: that the tilt moves (nod_watch.hpp), that
+/// the laser sees the window (sight_watch.hpp).
+class SignWatch {
+ public:
+  /// Starts afresh. longest_without_s: for how long no reading may show the sign. `fixed` as in SourceWatch.
+  void init(float longest_without_s, bool fixed) {
+    *this = SignWatch{};
+    watch_.init(longest_without_s, fixed);
+  }
+
+  /// Does a reading of this time count as one with the sign, whatever it shows? The first does, as the sign is waited
+  /// for as long as later, and one that is earlier than the last with the sign: the clock was set back.
+  bool begins(std::int64_t time_ns) const { return first() || time_ns < shown_ns_; }
+  /// Call with each reading. Lost, once no reading has shown the sign for the bound, or recovered.
+  SourceEvent update(bool shows, std::int64_t time_ns) {
+    const bool is_first = first();
+    if (shows || begins(time_ns)) shown_ns_ = time_ns;
+    const SourceEvent event = watch_.update(shown_ns_, time_ns);
+    return is_first ? SourceEvent::none : event;
+  }
+
+  /// ok or stale as of that; never before the first reading.
+  const SourceWatch& watch() const { return watch_; }
+
+ private:
+  bool first() const { return shown_ns_ == SourceWatch::no_reading; }
+
+  SourceWatch watch_{};
+  std::int64_t shown_ns_ = SourceWatch::no_reading;  ///< by the newest reading with the sign
 };
 
 inline SourceEvent SourceWatch::update(std::int64_t newest_ns, std::int64_t now_ns) {
