@@ -33,7 +33,7 @@ std::unique_ptr<Track> turning(int readings, const TiltSettings& settings = {}) 
   return track;
 }
 
-Snapshot snapshot(const Track& track, std::int64_t until_ns = INT64_MAX) {
+Snapshot snapshot(Track& track, std::int64_t until_ns = INT64_MAX) {
   Snapshot out;
   track.snapshot(out, 0.0f, until_ns);
   return out;
@@ -120,20 +120,33 @@ TEST_CASE("tilt track: how many readings have come after a line's last beam chan
   CHECK(told.size() == 26);
 }
 
-/// A track of readings every 10 ms, in the order given, in milliradians.
-std::unique_ptr<TiltTrack<Limits{}>> readings_mrad(const std::vector<float>& angles) {
+/// Readings every 10 ms, in the order given, in milliradians.
+void push_mrad(TiltTrack<Limits{}>& track, std::int64_t from_ns, const std::vector<float>& angles) {
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    REQUIRE(track.push({from_ns + 10 * ms * static_cast<std::int64_t>(k), 1e-3f * angles[k]}));
+  }
+}
+
+/// A track in which an angle was sent again so many times in a row, a second before t0.
+std::unique_ptr<TiltTrack<Limits{}>> track_with(int repeats) {
   auto track = std::make_unique<TiltTrack<Limits{}>>();
   track->init(TiltSettings{});
-  for (std::size_t k = 0; k < angles.size(); ++k) {
-    REQUIRE(track->push({t0 + 10 * ms * static_cast<std::int64_t>(k), 1e-3f * angles[k]}));
-  }
+  std::vector<float> angles{0, 10};
+  for (int k = 0; k < repeats; ++k) angles.push_back(10);
+  angles.push_back(10 * static_cast<float>(repeats + 2));
+  push_mrad(*track, t0 - 1000 * ms, angles);
+  TiltSnapshot<Limits{}> told;
+  track->snapshot(told, 0.0f, INT64_MAX);
+  REQUIRE(told.most_repeats() == repeats);
   return track;
 }
 
 /// The angles at the times of those readings, in milliradians, if there have been `repeats` in a row before.
 std::vector<float> told_mrad(const std::vector<float>& angles, int repeats = 0) {
   TiltSnapshot<Limits{}> told;
-  readings_mrad(angles)->snapshot(told, 0.0f, INT64_MAX, repeats);
+  const auto track = track_with(repeats);
+  push_mrad(*track, t0, angles);
+  track->snapshot(told, 0.0f, INT64_MAX);
   std::vector<float> out;
   for (std::size_t k = 0; k < angles.size(); ++k) {
     out.push_back(std::round(1e4f * told.at(t0 + 10 * ms * static_cast<std::int64_t>(k)).angle_rad) / 10.0f);
@@ -163,23 +176,36 @@ TEST_CASE("tilt track: a servo that stands keeps its angle, and so does one that
 }
 
 TEST_CASE("tilt track: where repeats have been seen the newest angle may be one") {
-  TiltSnapshot<Limits{}> told;
-  readings_mrad({0, 5, 10, 10, 20, 25, 25, 25, 40})->snapshot(told, 0.0f, INT64_MAX);
-  CHECK(told.most_repeats() == 2);
   CHECK(told_mrad({0, 5, 10, 10}) == std::vector<float>{0, 5, 10, 10});
   CHECK(told_mrad({0, 5, 10, 10}, 2) == std::vector<float>{0, 5, 10, 15});
   CHECK(told_mrad({0, 5, 10, 10, 20, 25, 25}) == std::vector<float>{0, 5, 10, 15, 20, 25, 30});
 }
 
+TEST_CASE("tilt track: that repeats have been seen is known for good, until it is initialised") {
+  const auto newest_mrad = [](TiltTrack<Limits{}>& track) {
+    std::vector<float> angles;
+    for (int k = 0; k < Limits{}.tilt_samples; ++k) angles.push_back(static_cast<float>(5 * k));
+    angles.push_back(angles.back());
+    push_mrad(track, t0, angles);
+    TiltSnapshot<Limits{}> told;
+    track.snapshot(told, 0.0f, INT64_MAX);
+    return 1e3f * told.at(t0 + 10 * ms * Limits{}.tilt_samples).angle_rad;
+  };
+  CHECK(newest_mrad(*track_with(0)) == Approx(315.0));
+  CHECK(newest_mrad(*track_with(1)) == Approx(320.0));
+  const auto anew = track_with(1);
+  anew->init(TiltSettings{});
+  CHECK(newest_mrad(*anew) == Approx(315.0));
+}
+
 TEST_CASE("tilt track: a repeat is not put where a rate between stamps a moment apart would have it, nor far beyond") {
-  const auto track = std::make_unique<TiltTrack<Limits{}>>();
-  track->init(TiltSettings{});
+  const auto track = track_with(1);
   track->push({t0, 0.0f});
   track->push({t0 + 198 * ms / 10, 0.010f});  // waited on the bus for the next one
   track->push({t0 + 20 * ms, 0.015f});
   track->push({t0 + 30 * ms, 0.015f});
   TiltSnapshot<Limits{}> told;
-  track->snapshot(told, 0.0f, t0 + 29 * ms, 1);
+  track->snapshot(told, 0.0f, t0 + 29 * ms);
   CHECK(told.at(t0 + 29 * ms).angle_rad == Approx(0.015f));
   const std::vector<float> stops{0, 20, 40, 40, 40, 40, 40, 40, 40};  // 60 ms: max_extrapolation_s is 50
   CHECK(told_mrad(stops, 9) == stops);
@@ -190,8 +216,9 @@ TEST_CASE("tilt track: how many readings have come after a line does not decide 
   const std::int64_t last_beam = t0 + 65 * ms;  // awaits the repeat at 70 ms
   for (std::size_t known = 8; known <= angles.size(); ++known) {
     TiltSnapshot<Limits{}> told;
-    readings_mrad({angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(known)})
-        ->snapshot(told, 0.0f, last_beam);
+    const auto track = track_with(0);
+    push_mrad(*track, t0, {angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(known)});
+    track->snapshot(told, 0.0f, last_beam);
     CHECK(told.at(last_beam).angle_rad == Approx(0.0325));
   }
 }

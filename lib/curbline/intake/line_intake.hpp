@@ -73,7 +73,6 @@ class LineIntake {
   bool climbs() const { return pose_track_.climbs() && pose_offset_.localisation_steps(); }
 
   float tilt_rate_rad_s_ = 0.0f;     ///< of the current line
-  int tilt_repeats_ = 0;             ///< in a row, at most: TiltSnapshot::most_repeats()
   bool jumped_ = false;              ///< poses jumped during the last line ...
   std::int64_t jumps_since_ns_ = 0;  ///< ... since when all lines saw jumps or a climb
   RisingTimes line_times_{};
@@ -88,7 +87,6 @@ template <Limits limits>
 void LineIntake<limits>::init(const Settings& settings) {
   jumped_ = false;
   jumps_since_ns_ = 0;
-  tilt_repeats_ = 0;
   line_times_ = RisingTimes{};
   tilt_track_.init(settings.tilt);
   tilt_latency_.init(settings.tilt, settings.pose);
@@ -121,8 +119,7 @@ Status LineIntake<limits>::place(const ScanLine& line, Dem<limits>& dem, Work& w
 template <Limits limits>
 bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns, Dem<limits>& dem,
                                      TiltSnapshot<limits>& tilt) {
-  tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns, tilt_repeats_);
-  tilt_repeats_ = tilt.most_repeats();
+  tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
   const TiltAngle first = tilt.at(first_ns);
   const std::uint32_t reading = tilt.reading_number();
   const TiltAngle last = tilt.at(last_ns);
@@ -132,7 +129,7 @@ bool LineIntake<limits>::follow_tilt(std::int64_t first_ns, std::int64_t last_ns
   tilt_rate_rad_s_ = any.rate_rad_s;
   const TiltLatency::Turn turn = tilt_latency_.begin_line(any.angle_rad, any.rate_rad_s, reading);
   if (turn == TiltLatency::Turn::new_sweep) dem.begin_sweep();
-  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns, tilt_repeats_);
+  if (turn != TiltLatency::Turn::none) tilt_track_.snapshot(tilt, tilt_latency_.offset_s(), last_ns);
   return true;
 }
 

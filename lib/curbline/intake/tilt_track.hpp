@@ -31,6 +31,7 @@ class TiltTrack {
     written_.store(0, std::memory_order_relaxed);
     dropped_.store(0, std::memory_order_relaxed);
     times_ = RisingTimes{};
+    most_repeats_ = 0;
   }
 
   /// Takes a reading; false (and counted) if it is not within TiltReading::furthest_rad or not later than the one
@@ -39,9 +40,8 @@ class TiltTrack {
   bool push(const TiltReading& reading);
 
   /// Copies the readings, except those that the writer may have replaced meanwhile. `offset_s` is added to
-  /// TiltSettings::latency_s; `until_ns` is the time of the line's last beam, `repeats` the last snapshot's
-  /// most_repeats(). O(tilt_samples).
-  void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns, int repeats = 0) const;
+  /// TiltSettings::latency_s; `until_ns` is the time of the line's last beam. O(tilt_samples).
+  void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns);
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
@@ -54,7 +54,8 @@ class TiltTrack {
   std::array<Entry, limits.tilt_samples> entries_{};
   std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32 but never 0 again
   std::atomic<std::uint32_t> dropped_{0};
-  RisingTimes times_{};  ///< the writer's
+  RisingTimes times_{};   ///< the writer's
+  int most_repeats_ = 0;  ///< the reader's: TiltSnapshot::most_repeats() so far
 };
 
 template <Limits limits>
@@ -78,7 +79,7 @@ bool TiltTrack<limits>::push(const TiltReading& reading) {
 }
 
 template <Limits limits>
-void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns, int repeats) const {
+void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns) {
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
@@ -96,7 +97,8 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std:
   const std::uint32_t room = capacity - count;
   const std::uint32_t lost = added > room ? added - room : 0;
   const std::uint32_t whole = lost < count ? count - lost : 0;
-  out.begin(count, whole, before, settings_, until_ns, repeats);
+  out.begin(count, whole, before, settings_, until_ns, most_repeats_);
+  most_repeats_ = out.most_repeats();
 }
 
 }  // namespace curbline
