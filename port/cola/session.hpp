@@ -27,10 +27,7 @@ class Session final : public scanner::Session {
   void restart(const scanner::Now& now) override;
   std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
   bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
-  const scanner::Line& line() const override { return line_; }
-  const scanner::Counters& counters() const override { return counters_; }
   std::int64_t log_time_ns(std::int64_t near_ns) const override { return stamps_.nearest_ns(line_.device_ns, near_ns); }
-  std::string_view problem() const override { return problem_; }
   std::span<const std::uint8_t> farewell() const override;
 
  private:
@@ -39,15 +36,12 @@ class Session final : public scanner::Session {
   bool take_time(const ScanData& data, const scanner::Now& now);
   void look_for_cola_a(std::span<const std::uint8_t> bytes);
 
-  scanner::Counters counters_{};
   TelegramBuffer telegrams_;
   bool confirmed_ = false, due_ = true;
   std::int64_t sent_ns_ = 0;  ///< steady clock
   scanner::StampCounter stamps_{32, 1'000};
   scanner::DeviceClock clock_{0};
   std::array<float, most_beams> ranges_m_{};
-  scanner::Line line_{};
-  std::string_view problem_{};
 };
 
 }  // namespace curbline::cola

@@ -27,10 +27,7 @@ class Session final : public scanner::Session {
   void restart(const scanner::Now& now) override;
   std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
   bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
-  const scanner::Line& line() const override { return line_; }
-  const scanner::Counters& counters() const override { return counters_; }
   std::int64_t log_time_ns(std::int64_t near_ns) const override { return near_ns; }
-  std::string_view problem() const override { return problem_; }
   std::span<const std::uint8_t> farewell() const override;
   int baud() const override;
 
@@ -45,7 +42,6 @@ class Session final : public scanner::Session {
   void take_time(Variant variant, std::size_t telegram_bytes, const scanner::Now& now);
   bool take_scan(std::span<const std::uint8_t> content, const scanner::Now& now);
 
-  scanner::Counters counters_{};
   HostBuffer telegrams_;
   Variant variant_;
   Step step_ = Step::find;
@@ -58,8 +54,6 @@ class Session final : public scanner::Session {
   TurnClock clock_{};
   std::uint64_t lost_before_ = 0;  ///< number of lost telegrams when the last line came
   std::array<float, most_beams> ranges_m_{};
-  scanner::Line line_{};
-  std::string_view problem_{};
 };
 
 }  // namespace curbline::lms200

@@ -62,14 +62,13 @@ class Session {
   /// again, with the rest of `bytes` or with none, since there may be another line. False: all bytes were used.
   virtual bool take(std::span<const std::uint8_t>& bytes, const Now& now) = 0;
 
-  virtual const Line& line() const = 0;
-  virtual const Counters& counters() const = 0;
+  const Line& line() const { return line_; }
+  const Counters& counters() const { return counters_; }
+  /// The last refusal or report of the scanner, and what to do about it; empty if there is none. Static text.
+  std::string_view problem() const { return problem_; }
 
   /// The time nearest to `near_ns` that the line's stamp can mean, if the scanner's counter is that of a log.
   virtual std::int64_t log_time_ns(std::int64_t near_ns) const = 0;
-
-  /// The last refusal or report of the scanner, and what to do about it; empty if there is none. Static text.
-  virtual std::string_view problem() const = 0;
 
   /// The command that stops the scanner's stream before a connection is closed.
   virtual std::span<const std::uint8_t> farewell() const = 0;
@@ -79,6 +78,10 @@ class Session {
 
  protected:
   ~Session() = default;
+
+  Line line_{};
+  Counters counters_{};
+  std::string_view problem_{};
 };
 
 }  // namespace curbline::scanner

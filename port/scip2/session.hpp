@@ -39,10 +39,7 @@ class Session final : public scanner::Session {
   void restart(const scanner::Now& now) override;
   std::span<const std::uint8_t> to_send(const scanner::Now& now) override;
   bool take(std::span<const std::uint8_t>& bytes, const scanner::Now& now) override;
-  const scanner::Line& line() const override { return line_; }
-  const scanner::Counters& counters() const override { return counters_; }
   std::int64_t log_time_ns(std::int64_t near_ns) const override { return stamps_.nearest_ns(line_.device_ns, near_ns); }
-  std::string_view problem() const override { return problem_; }
   std::span<const std::uint8_t> farewell() const override;
 
  private:
@@ -68,7 +65,6 @@ class Session final : public scanner::Session {
   void write_command();
   std::string_view command() const { return {command_.data(), command_size_}; }
 
-  scanner::Counters counters_{};
   Decoder decoder_;
   Step step_ = Step::stop;
   bool due_ = true;
@@ -80,8 +76,6 @@ class Session final : public scanner::Session {
   scanner::StampCounter stamps_{24, 1'000'000};
   scanner::DeviceClock clock_{25'000'000};  ///< a turn of a UTM-30LX, if the scanner refuses TM
   std::array<float, most_steps> ranges_m_{};
-  scanner::Line line_{};
-  std::string_view problem_{};
 };
 
 }  // namespace curbline::scip2

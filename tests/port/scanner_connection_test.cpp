@@ -137,16 +137,11 @@ class ReadingSession final : public scanner::Session {
   void restart(const scanner::Now&) override {}
   std::span<const std::uint8_t> to_send(const scanner::Now&) override { return {}; }
   bool take(std::span<const std::uint8_t>& bytes, const scanner::Now&) override { return take_(bytes); }
-  const scanner::Line& line() const override { return line_; }
-  const scanner::Counters& counters() const override { return counters_; }
   std::int64_t log_time_ns(std::int64_t near_ns) const override { return near_ns; }
-  std::string_view problem() const override { return {}; }
   std::span<const std::uint8_t> farewell() const override { return {}; }
 
  private:
   Take take_;
-  scanner::Line line_{};
-  scanner::Counters counters_{};
 };
 
 /// Finds no line and is slow, so that more bytes are always available.
