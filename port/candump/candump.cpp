@@ -41,12 +41,13 @@ std::string_view parse_id(std::string_view digits, can::Frame& frame) {
     id = id << 4 | static_cast<std::uint32_t>(hex_value(c));
   }
   if (digits.size() == 3) {
-    if (id > 0x7FF) return "id out of range; expected at most 7FF in 3 digits";
+    if (id > can::highest_id(false)) return "id out of range; expected at most 7FF in 3 digits";
   } else {
     frame.error = (id & error_flag) != 0;
     frame.extended = !frame.error;
     id &= ~error_flag;
-    if (id > 0x1FFFFFFF) return "id out of range; expected at most 1FFFFFFF, or 20000000 more for an error message";
+    if (id > can::highest_id(true))
+      return "id out of range; expected at most 1FFFFFFF, or 20000000 more for an error message";
   }
   frame.id = id;
   return {};
@@ -110,9 +111,7 @@ bool is_for_the_screen(std::string_view line) {
 bool writable(const can::Frame& frame, std::string_view interface_name) {
   if (interface_name.empty() || interface_name.size() > max_interface_name) return false;
   if (interface_name.find(' ') != std::string_view::npos || frame.time_ns < 0) return false;
-  if (frame.id > (frame.extended || frame.error ? 0x1FFFFFFFu : 0x7FFu)) return false;
-  if (frame.fd_flags > 15 || (frame.fd && frame.remote)) return false;
-  return frame.fd ? can::fd_length(frame.length) == frame.length : frame.length <= 8;
+  return frame.fd_flags <= 15 && can::valid(frame);
 }
 
 /// Appends to a buffer that is known to be long enough.

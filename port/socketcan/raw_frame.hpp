@@ -23,12 +23,6 @@ inline can::Frame to_frame(const canfd_frame& from, bool fd, std::int64_t time_n
   return out;
 }
 
-/// Whether a bus can carry the frame.
-inline bool sound(const can::Frame& frame) {
-  if (frame.error || frame.id > (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK)) return false;
-  return frame.fd ? !frame.remote && can::fd_length(frame.length) == frame.length : frame.length <= CAN_MAX_DLEN;
-}
-
 inline canfd_frame from_frame(const can::Frame& from) {
   canfd_frame out{};
   out.can_id = from.id | (from.extended ? CAN_EFF_FLAG : 0) | (from.remote ? CAN_RTR_FLAG : 0);

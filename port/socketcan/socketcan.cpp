@@ -284,7 +284,7 @@ void SocketCan::set_link(LinkState state) {
 Status SocketCan::send(const can::Frame& frame) {
   if (socket_ < 0) return Status::not_open;
   Status status = Status::bad_frame;
-  if (sound(frame)) {
+  if (can::valid(frame) && !frame.error) {
     const canfd_frame out = from_frame(frame);
     status = ::write(socket_, &out, frame.fd ? CANFD_MTU : CAN_MTU) > 0 ? Status::ok : status_of(errno);
   }

@@ -247,9 +247,7 @@ void XilinxCan<Registers>::follow_bus(std::int64_t now_ns) {
 template <typename Registers>
 Status XilinxCan<Registers>::may_send(const can::Frame& frame) const {
   if (bus_ == BusState::closed) return Status::not_open;
-  const bool sound =
-      !frame.error && !frame.fd && frame.length <= 8 && frame.id <= (frame.extended ? 0x1FFFFFFFu : 0x7FFu);
-  if (!sound) return Status::bad_frame;
+  if (!can::valid(frame) || frame.error || frame.fd) return Status::bad_frame;
   if (bus_ == BusState::off) return Status::bus_off;
   return (registers_.read(Register::status) & bits::tx_full) != 0 ? Status::queue_full : Status::ok;
 }

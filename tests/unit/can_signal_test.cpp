@@ -241,3 +241,17 @@ TEST_CASE("can frame: lengths of CAN FD are those of the standard") {
   CHECK(fd_length(33) == 48);
   CHECK(fd_length(64) == 64);
 }
+
+TEST_CASE("can frame: its id has 11 bits or 29, its length is one of its kind") {
+  CHECK(valid(Frame{.id = 0x7FF, .length = 8}));
+  CHECK_FALSE(valid(Frame{.id = 0x800, .length = 8}));
+  CHECK(valid(Frame{.id = 0x1FFFFFFF, .extended = true}));
+  CHECK_FALSE(valid(Frame{.id = 0x20000000, .extended = true}));
+  CHECK(valid(Frame{.id = 0x800, .error = true, .length = 8}));  // a class of errors
+  CHECK_FALSE(valid(Frame{.length = 9}));
+  CHECK(valid(Frame{.remote = true, .length = 8}));
+  CHECK_FALSE(valid(Frame{.remote = true, .fd = true}));
+  CHECK(valid(Frame{.fd = true, .length = 12}));
+  CHECK_FALSE(valid(Frame{.fd = true, .length = 13}));
+  CHECK_FALSE(valid(Frame{.fd = true, .length = 65}));
+}

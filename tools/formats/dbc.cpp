@@ -107,7 +107,7 @@ void DbcParser::message() {
   const auto id = static_cast<std::uint32_t>(in_.whole("a message's id", most));
   message.extended = (id & DbcMessage::extended_bit) != 0;
   message.id = id & ~DbcMessage::extended_bit;
-  if (id != no_message && message.id > (message.extended ? 0x1FFFFFFFu : 0x7FFu)) {
+  if (id != no_message && message.id > can::highest_id(message.extended)) {
     in_.fail("id " + std::to_string(id) + " is none of CAN; expected 11 bits, or 29 and bit 31");
   }
   message.name = in_.word("a message's name");

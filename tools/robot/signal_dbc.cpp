@@ -66,7 +66,7 @@ Dbc dbc_of(const Robot& robot) {
   message.extended = signal.extended;
   message.length = can::bytes_needed(signal);
   message.comment = "Angle of the tilt servo of " + printable_ascii(robot.name) + ".";
-  const std::uint32_t all_bits = signal.extended ? 0x1FFFFFFF : 0x7FF;
+  const std::uint32_t all_bits = can::highest_id(signal.extended);
   if ((signal.id_mask & all_bits) != all_bits) {
     message.comment += " Any id that agrees with this one in the bits " + hexadecimal(signal.id_mask & all_bits) + ".";
   }

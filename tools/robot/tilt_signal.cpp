@@ -65,7 +65,7 @@ std::optional<std::uint16_t> read_sync_id(TomlTable& table, const can::Signal& s
 void check_signal(const TomlTable& table, const can::Signal& signal) {
   if (signal.scale == 0.0) table.refuse("scale", "is 0; expected radians a count");
   if (signal.is_float && signal.length != 32) table.refuse("length", "does not fit; expected 32 for a float");
-  if (signal.id > (signal.extended ? 0x1FFFFFFFu : 0x7FFu)) {
+  if (signal.id > can::highest_id(signal.extended)) {
     table.refuse("id", "is too large; expected 11 bits (0x7FF), or 29 and extended = true");
   }
   can::Signal anywhere = signal;

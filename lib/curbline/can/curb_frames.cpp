@@ -70,7 +70,7 @@ bool same_node(std::uint32_t id, std::uint32_t mask) {
 }  // namespace
 
 bool shares_ids(const Signal& tilt, std::optional<std::uint16_t> sync_id) {
-  return (!tilt.extended && same_node(tilt.id, tilt.id_mask)) || (sync_id && same_node(*sync_id, 0x7FF));
+  return (!tilt.extended && same_node(tilt.id, tilt.id_mask)) || (sync_id && same_node(*sync_id, highest_id(false)));
 }
 
 Frame curb_ahead_frame(const std::optional<CurbAhead>& curb) {

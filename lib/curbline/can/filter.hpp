@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "curbline/can/frame.hpp"
 #include "curbline/can/signal.hpp"
 
 namespace curbline::can {
@@ -11,7 +12,7 @@ namespace curbline::can {
 /// pass.
 struct Filter {
   std::uint32_t id = 0;
-  std::uint32_t mask = 0x1FFFFFFFu;
+  std::uint32_t mask = highest_id(true);
   bool extended = false;
 };
 

@@ -18,6 +18,11 @@ struct Frame {
   std::array<std::uint8_t, 64> data{};
 };
 
+/// The highest id of a frame: 11 bits, or 29 if extended.
+constexpr std::uint32_t highest_id(bool extended) {
+  return extended ? 0x1FFFFFFFu : 0x7FFu;
+}
+
 /// The length of the shortest CAN FD frame that holds so many bytes, 0 to 64 (ISO 11898-1, data length code).
 constexpr std::uint8_t fd_length(std::uint8_t bytes) {
   constexpr std::array<std::uint8_t, 7> long_lengths{12, 16, 20, 24, 32, 48, 64};
@@ -26,6 +31,12 @@ constexpr std::uint8_t fd_length(std::uint8_t bytes) {
     if (bytes <= length) return length;
   }
   return 64;
+}
+
+/// Are id and length those of a frame? A remote request is a classic frame.
+constexpr bool valid(const Frame& frame) {
+  if (frame.id > highest_id(frame.extended || frame.error)) return false;
+  return frame.fd ? !frame.remote && fd_length(frame.length) == frame.length : frame.length <= 8;
 }
 
 }  // namespace curbline::can

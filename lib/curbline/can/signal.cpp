@@ -110,7 +110,7 @@ std::uint64_t number_to_raw(const Signal& s, double count) {
 
 bool valid(const Signal& s) {
   if (!fits_a_frame(bits_of(s)) || (s.is_float && s.length != 32)) return false;
-  if (s.id > (s.extended ? 0x1FFFFFFFu : 0x7FFu)) return false;
+  if (s.id > highest_id(s.extended)) return false;
   if (s.multiplexor) {
     const Bits bits = bits_of(*s.multiplexor);
     if (!fits_a_frame(bits) || (bits.length < 64 && s.multiplexor->value >> bits.length != 0)) return false;

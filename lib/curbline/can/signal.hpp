@@ -29,7 +29,7 @@ struct Multiplexor {
 /// bit 7 is the first bit sent of byte 0, bit 15 that of byte 1).
 struct Signal {
   std::uint32_t id = 0;
-  std::uint32_t id_mask = 0x1FFFFFFFu;  ///< bits of the id that must agree
+  std::uint32_t id_mask = highest_id(true);  ///< bits of the id that must agree
   bool extended = false;
   std::uint16_t start_bit = 0;
   std::uint8_t length = 32;  ///< bits, 1 to 64 (32 if is_float)

@@ -28,7 +28,7 @@ std::uint32_t read(std::uint32_t& counter) {
 bool TiltDecoder::init(const Signal& signal, std::optional<std::uint16_t> sync_id) {
   *this = TiltDecoder{};
   if (!valid(signal)) return false;
-  if (sync_id && (*sync_id > 0x7FF || (!signal.extended && ((*sync_id ^ signal.id) & signal.id_mask) == 0)))
+  if (sync_id && (*sync_id > highest_id(false) || (!signal.extended && ((*sync_id ^ signal.id) & signal.id_mask) == 0)))
     return false;
   signal_ = signal;
   sync_id_ = sync_id;
