@@ -22,7 +22,7 @@ struct Chain {
     border.open = open;
     borders.push_back(border);
   }
-  int corner() const { return corner_of<limits>({borders.data(), order}); }
+  int corner() const { return corner_of<limits>({borders.data(), order, {true, true}}); }
 };
 
 /// Residuals of a third of half a gap, this way and that.

@@ -54,9 +54,11 @@ Lower lower(const Flank& flank) {
     if (piece.first.one != std::min(road, pavement) || piece.first.other != std::max(road, pavement)) continue;
     const bool first_at_flank = std::abs(piece.line.y0_m - 1.2f) < std::abs(piece.line.y1_m - 1.2f);
     const auto variance_m2 = [&](bool first, bool second) {
-      CurbPiece<small_limits> anew(curb_stages, borders.part(0, length - 1));
-      StepHeight<small_limits> height(curb_stages, anew);
-      height.refine(borders.part(0, length - 1), {first, second}, true);
+      auto part = borders.part(0, length - 1);
+      part.ends = {first, second};
+      CurbPiece<small_limits> anew(curb_stages, part);
+      StepHeight<small_limits> height(anew);
+      height.refine(part, true);
       return height.variance_m2();
     };
     const auto lower_m = [&](bool first) {  // uniformly by up to as much

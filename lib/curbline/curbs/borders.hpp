@@ -56,7 +56,12 @@ class Borders {
       bool operator!=(const Iterator& other) const { return at != other.at; }
     };
 
-    Part(const Border* all, std::span<const Index> part) : all_(all), part_(part) {
+    /// Whether its first and last border are those of its chain.
+    struct Ends {
+      bool first, second;
+    } ends;
+
+    Part(const Border* all, std::span<const Index> part, Ends of_chain) : ends(of_chain), all_(all), part_(part) {
       int open = 0;
       for (const Border& border : *this) open += border.open;
       if (open > 0 && open < size()) open_share_ = 1.0f / static_cast<float>(open);
@@ -108,7 +113,8 @@ class Borders {
   /// The borders at(first) to at(last).
   Part part(int first, int last) const {
     const auto size = static_cast<std::size_t>(last - first) + 1;
-    return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size));
+    return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size),
+                {first == 0, last == length_ - 1});
   }
 
  private:
@@ -127,6 +133,7 @@ class Borders {
   std::array<Border, limits.borders> border_;
   PerCell<Index, limits> in_cell_;
   std::array<Index, limits.borders> chain_;  ///< the current polyline, in order
+  int length_;                               ///< of that
   int size_;
 };
 
@@ -146,7 +153,8 @@ int Borders<limits>::chain(const Dem<limits>& dem, int border, int reach) {
   // Walk to an end of the polyline, then chain it from there.
   const int walked = walk(dem, static_cast<Index>(border), reach);
   for (int k = 0; k < walked; ++k) border_[chain_[static_cast<std::size_t>(k)]].chained = false;
-  return walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
+  length_ = walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
+  return length_;
 }
 
 template <Limits limits>

@@ -33,9 +33,8 @@ class CurbMaker {
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
-  using Ends = typename CurbPiece<limits>::Ends;
   /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
-  std::optional<Curb> make(const Part& part, const Ends& at);
+  std::optional<Curb> make(const Part& part);
 
   /// Is it the drop behind an obstacle, where no robot gets to: does a step up that is higher than any curb lead onto
   /// its near side, nearer to the laser? Behind a pit such a step leads up to the same ground. Call when all are made.
@@ -58,16 +57,16 @@ class CurbMaker {
 };
 
 template <Limits limits>
-std::optional<Curb> CurbMaker<limits>::make(const Part& part, const Ends& at) {
+std::optional<Curb> CurbMaker<limits>::make(const Part& part) {
   Piece piece(stages_, part);
-  if (at.first) piece.go_on(stages_, Piece::End::first);
-  if (at.second) piece.go_on(stages_, Piece::End::second);
-  StepHeight<limits> step(stages_, piece);
+  if (part.ends.first) piece.go_on(Piece::End::first);
+  if (part.ends.second) piece.go_on(Piece::End::second);
+  StepHeight<limits> step(piece);
   Curb curb = without_height(piece);
   curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
-  step.refine(part, at, is_step(curb));
+  step.refine(part, is_step(curb));
   if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.

@@ -28,6 +28,7 @@ struct CurbPiece {
   /// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
   static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
 
+  const Stages& stages;
   const Border& first;  ///< all have the same planes
   PlanePair planes;
   LineFit::Segment line{};
@@ -46,11 +47,11 @@ struct CurbPiece {
   bool one_is_right = false;            ///< of the line, from its first end to its second
 
   /// Fits the line to the borders and computes the means.
-  CurbPiece(const Stages& stages, const Part& part);
+  CurbPiece(const Stages& in, const Part& part);
 
-  static PlanePair planes_of(const Stages& stages, const Border& border) {
+  static PlanePair planes_of(const Stages& in, const Border& border) {
     const Label beyond = border.other == no_label ? border.one : border.other;
-    return {stages.mixture.plane(border.one), stages.mixture.plane(beyond)};
+    return {in.mixture.plane(border.one), in.mixture.plane(beyond)};
   }
   /// Is no ground in view on the other side of `one`?
   bool one_sided() const { return first.other == no_label; }
@@ -62,23 +63,19 @@ struct CurbPiece {
   float variance_m2(const Plane& plane) const { return plane.height_variance_m2(middle_x_m(), middle_y_m()); }
 
   enum class End : std::uint8_t { first, second };  ///< of its line
-  /// Whether those ends are also the ends of its chain.
-  struct Ends {
-    bool first, second;
-  };
   /// From an end on: a cell along the line, and the way from the line to cells of `other`.
   struct Beyond {
     float x_m, y_m, step_x, step_y, other_x, other_y;
     float cells;  ///< length of the piece
   };
-  Beyond beyond(const Stages& stages, End end) const;
+  Beyond beyond(End end) const;
   /// Label of the ground at a place; no_label where none is seen.
-  static Label ground_at(const Stages& stages, float x_m, float y_m);
+  Label ground_at(float place_x_m, float place_y_m) const;
   /// Continues the line beyond the end of its chain, where one side is hidden and so there are no borders: cell by
   /// cell, as long as one side is of its plane, the other of no other plane, and the height stays even; at most to the
   /// middle of the widest gap that a chain bridges, and by at most a quarter of the length, where the variance of its
   /// position has doubled.
-  void go_on(const Stages& stages, End end);
+  void go_on(End end);
   /// Variance that errors of heights add to the position of a step. Each cell of the gap, and on both sides of it,
   /// locates the edge within it by its own height. If the step's height is wrong by some share, all are off by half of
   /// that share, at most by half the gap; if a cell's own is, that cell is off by the share, at most by all of it.
@@ -94,17 +91,17 @@ struct CurbPiece {
 
  private:
   void take_means(const Part& part);
-  void take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit);
-  void take_widths(const Dem<limits>& dem, const Part& part);
+  void take_variances(const Part& part, const LineFit& fit);
+  void take_widths(const Part& part);
 };
 
 template <Limits limits>
-CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
-    : first(part.front()),
-      planes(planes_of(stages, first)),
+CurbPiece<limits>::CurbPiece(const Stages& in, const Part& part)
+    : stages(in),
+      first(part.front()),
+      planes(planes_of(in, first)),
       borders(static_cast<float>(part.size())),
       observations(part.observations()) {
-  const Dem<limits>& dem = stages.dem;
   LineFit fit;
   for (const Border& border : part) fit.add(border.x_m, border.y_m, border.weight() * part.share(border));
   x_m = fit.x_m();
@@ -119,8 +116,8 @@ CurbPiece<limits>::CurbPiece(const Stages& stages, const Part& part)
   one_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
   one_is_near = one_sided() || one_is_right == has_right(stages.view);
   take_means(part);
-  take_variances(dem, part, fit);
-  take_widths(dem, part);
+  take_variances(part, fit);
+  take_widths(part);
 }
 
 template <Limits limits>
@@ -137,14 +134,14 @@ void CurbPiece<limits>::take_means(const Part& part) {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part, const LineFit& fit) {
+void CurbPiece<limits>::take_variances(const Part& part, const LineFit& fit) {
   float located = 0.0f, open = 0.0f;
   bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
     if (border.open) {
       open += part.share(border) / border.half_gap_m;
     } else {
-      const float pitch_m = dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
+      const float pitch_m = stages.dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
       located += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
       open += border.weight() * 0.5f * empty_m;
     }
@@ -163,24 +160,24 @@ void CurbPiece<limits>::take_variances(const Dem<limits>& dem, const Part& part,
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_widths(const Dem<limits>& dem, const Part& part) {
+void CurbPiece<limits>::take_widths(const Part& part) {
   for (const Border& border : part) {
     const float cosine = border.axis == 0 ? line.normal_x : line.normal_y;
     const float across = part.share(border) / observations * magnitude(cosine);
     gap_m += 2.0f * border.half_gap_m * across;
-    cell_m += dem.cell_m(border.axis) * across;
+    cell_m += stages.dem.cell_m(border.axis) * across;
   }
 }
 
 template <Limits limits>
-Label CurbPiece<limits>::ground_at(const Stages& stages, float x_m, float y_m) {
+Label CurbPiece<limits>::ground_at(float place_x_m, float place_y_m) const {
   const Dem<limits>& dem = stages.dem;
-  const int slot = dem.slot_within(x_m, y_m);
+  const int slot = dem.slot_within(place_x_m, place_y_m);
   return slot >= 0 && dem.cell(slot).valid() && stages.mixture.on_ground(slot) ? stages.field.label(slot) : no_label;
 }
 
 template <Limits limits>
-auto CurbPiece<limits>::beyond(const Stages& stages, End end) const -> Beyond {
+auto CurbPiece<limits>::beyond(End end) const -> Beyond {
   const bool second = end == End::second;
   const float dx_m = second ? line.x1_m - line.x0_m : line.x0_m - line.x1_m;
   const float dy_m = second ? line.y1_m - line.y0_m : line.y0_m - line.y1_m;
@@ -194,15 +191,15 @@ auto CurbPiece<limits>::beyond(const Stages& stages, End end) const -> Beyond {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::go_on(const Stages& stages, End end) {
-  const Beyond from = beyond(stages, end);
+void CurbPiece<limits>::go_on(End end) {
+  const Beyond from = beyond(end);
   float& end_x = end == End::first ? line.x0_m : line.x1_m;
   float& end_y = end == End::first ? line.y0_m : line.y1_m;
   const float most = 0.25f * from.cells;
   for (int k = 1; 2 * k <= stages.settings.link_reach && static_cast<float>(k) <= most; ++k) {
     const float middle_x = end_x + 0.5f * from.step_x, middle_y = end_y + 0.5f * from.step_y;
-    const Label other = ground_at(stages, middle_x + from.other_x, middle_y + from.other_y);
-    const Label one = ground_at(stages, middle_x - from.other_x, middle_y - from.other_y);
+    const Label other = ground_at(middle_x + from.other_x, middle_y + from.other_y);
+    const Label one = ground_at(middle_x - from.other_x, middle_y - from.other_y);
     const bool other_unseen = other == no_label, one_unseen = one == no_label;
     if ((other != first.other && !other_unseen) || (one != first.one && !one_unseen) || (other_unseen && one_unseen))
       return;

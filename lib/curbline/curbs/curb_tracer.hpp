@@ -64,10 +64,9 @@ class CurbTracer {
  private:
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
-  using Ends = typename CurbMaker<limits>::Ends;
 
   static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
-  static void give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work, Counters& counters);
+  static void give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters);
   template <typename Out>
   static void leave_out(Work& work, Out&& out);
   void keep_ids(Work& work, float near_m);
@@ -166,7 +165,7 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
     while (first <= last) {
       int end = last;
       while (end - first > 1 && !even_to(work.borders.at(end))) end = (first + end) / 2;
-      give_out(maker, work.borders.part(first, end), {first == 0, end == length - 1}, work, counters);
+      give_out(maker, work.borders.part(first, end), work, counters);
       first = end + 1;
     }
   }
@@ -174,13 +173,12 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
 
 /// A full store loses obstacles, too: what is behind them may then be given out.
 template <Limits limits>
-void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, const Ends& at, Work& work,
-                                  Counters& counters) {
+void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters) {
   if (work.curbs == limits.curbs) {
     ++counters.curbs_full;
     return;
   }
-  if (const std::optional<Curb> curb = maker.make(part, at)) work.curb[static_cast<std::size_t>(work.curbs++)] = *curb;
+  if (const std::optional<Curb> curb = maker.make(part)) work.curb[static_cast<std::size_t>(work.curbs++)] = *curb;
 }
 
 }  // namespace curbline

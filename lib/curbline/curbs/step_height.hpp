@@ -30,7 +30,7 @@ class StepHeight {
   using Piece = CurbPiece<limits>;
 
   /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
-  StepHeight(const CurbStages<limits>& stages, Piece& piece) : stages_(stages), piece_(piece) {
+  explicit StepHeight(Piece& piece) : stages_(piece.stages), piece_(piece) {
     const auto [one, other] = piece.planes;
     const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
     height_m_ = other.height_m(x_m, y_m) - one.height_m(x_m, y_m) - piece.drop_m;
@@ -39,9 +39,8 @@ class StepHeight {
   /// For PlanePair::kind(), to decide whether it is a step.
   MeasuredStep measured() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
-  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance. `at`: which of the piece's
-  /// ends are those of its chain.
-  void refine(const Part& part, const typename Piece::Ends& at, bool is_step);
+  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
+  void refine(const Part& part, bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
@@ -87,7 +86,7 @@ MeasuredStep StepHeight<limits>::measured() const {
 }
 
 template <Limits limits>
-void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at, bool is_step) {
+void StepHeight<limits>::refine(const Part& part, bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
   float ground_share = 0.0f;  // of the step
@@ -109,8 +108,8 @@ void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
   // Beyond an end of the chain the ground may be another plane's.
   if (!is_step || one_sided) return;
-  if (at.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
-  if (at.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
+  if (part.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
+  if (part.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
 }
 
 /// Beyond an end of the chain another plane may take the place of a side's: by how much lower the step would be, in
@@ -118,14 +117,14 @@ void StepHeight<limits>::refine(const Part& part, const typename Piece::Ends& at
 /// differ, over all borders, by three standard deviations.
 template <Limits limits>
 float StepHeight<limits>::lower_m2(typename Piece::End end) const {
-  const auto from = piece_.beyond(stages_, end);
+  const auto from = piece_.beyond(end);
   const float middle_x_m = piece_.middle_x_m(), middle_y_m = piece_.middle_y_m();
   float most_m2 = 0.0f;
   for (const bool other : {false, true}) {
     const Plane& own = other ? piece_.planes.other : piece_.planes.one;
     for (const float cells : {0.5f, 1.5f}) {
       const float aside = other ? 1.0f : -1.0f;
-      const Label label = Piece::ground_at(stages_, from.x_m + cells * from.step_x + aside * from.other_x,
+      const Label label = piece_.ground_at(from.x_m + cells * from.step_x + aside * from.other_x,
                                            from.y_m + cells * from.step_y + aside * from.other_y);
       if (label == no_label || label == piece_.first.one || label == piece_.first.other) continue;
       const Plane& third = stages_.mixture.plane(label);
