@@ -74,13 +74,15 @@
 #include "curbline/labels/label_site.hpp"       // beliefs and messages of a cell
 #include "curbline/labels/label_field.hpp"      // belief propagation
 
-// Labels to curbs.
-#include "curbline/curbs/curb_stages.hpp"       // the stages that curbs are found in
-#include "curbline/curbs/beside.hpp"            // the ground beside a border
-#include "curbline/curbs/borders.hpp"           // where labels change, and chains of such points
-#include "curbline/curbs/plane_gap.hpp"         // where between two planes the edge lies, to a part of a cell
-#include "curbline/curbs/border_finder.hpp"     // all such points of the window
-#include "curbline/curbs/ground_end.hpp"        // edges with only one side in view
+// Labels to borders.
+#include "curbline/borders/curb_stages.hpp"     // the stages that borders and curbs are found in
+#include "curbline/borders/beside.hpp"          // the ground beside a border
+#include "curbline/borders/borders.hpp"         // where labels change, and chains of such points
+#include "curbline/borders/plane_gap.hpp"       // where between two planes the edge lies, to a part of a cell
+#include "curbline/borders/border_finder.hpp"   // all such points of the window
+#include "curbline/borders/ground_end.hpp"      // edges with only one side in view
+
+// Borders to curbs.
 #include "curbline/curbs/line_fit.hpp"          // a line through borders
 #include "curbline/curbs/curb.hpp"              // out: a curb
 #include "curbline/curbs/plane_pair.hpp"        // the planes on both sides of a border: step or crease
@@ -93,7 +95,7 @@
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next
 #include "curbline/curbs/surfaces.hpp"          // which planes are one bent surface, without creases
 #include "curbline/curbs/duplicates.hpp"        // steps that were found twice
-#include "curbline/curbs/curb_tracer.hpp"       // from borders to curbs
+#include "curbline/curbs/curb_tracer.hpp"       // all of these together
 #include "curbline/curbs/crossed_cells.hpp"     // cells that steps cross, for the planes of the next line
 
 // Queries.

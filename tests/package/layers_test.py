@@ -5,7 +5,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-WAY = ["map", "regions", "planes", "labels", "curbs"]
+WAY = ["map", "regions", "planes", "labels", "borders", "curbs"]
 # What a folder of lib/curbline may include besides itself and the headers that all share.
 BEFORE = {folder: WAY[:k] for k, folder in enumerate(WAY)} | {"intake": [], "can": ["intake", "curbs"]}
 # Files that may include later stages: they compare a line with what earlier lines have produced.

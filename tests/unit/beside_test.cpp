@@ -1,6 +1,6 @@
 // What the cells beside a border show about a side of a step: that its ground deviates from its plane, or how wrong the
 // plane may be.
-#include "curbline/curbs/beside.hpp"
+#include "curbline/borders/beside.hpp"
 
 #include <catch2/catch.hpp>
 

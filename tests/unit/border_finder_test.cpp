@@ -1,5 +1,5 @@
 // Where edges are found.
-#include "curbline/curbs/border_finder.hpp"
+#include "curbline/borders/border_finder.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Border points, how they are chained, and what a part of a chain weighs. Where they are found: border_finder_test.cpp.
-#include "curbline/curbs/borders.hpp"
+#include "curbline/borders/borders.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "curbline/curbs/border_finder.hpp"
+#include "curbline/borders/border_finder.hpp"
 #include "curbline/curbs/step_height.hpp"
 #include "support/traced_curbs.hpp"
 

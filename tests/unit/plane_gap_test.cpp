@@ -1,5 +1,5 @@
 // Where within its cells an edge lies.
-#include "curbline/curbs/plane_gap.hpp"
+#include "curbline/borders/plane_gap.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

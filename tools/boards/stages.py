@@ -11,7 +11,8 @@ STAGES = ["outside", "tilt", "pipeline", "points", "cells", "regions", "planes",
 HELPER = -1
 # Folders of lib/curbline whose code is written for one stage. Other code, the shared parts and the map, belongs to the stage that calls
 # it.
-FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "planes", "labels": "labels", "curbs": "curbs"}
+FOLDERS = {"can": "tilt", "intake": "points", "regions": "regions", "planes": "planes", "labels": "labels", "borders": "curbs",
+           "curbs": "curbs"}
 
 
 def run(line, text=None):

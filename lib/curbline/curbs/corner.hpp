@@ -2,7 +2,7 @@
 // a border.
 #pragma once
 
-#include "curbline/curbs/borders.hpp"
+#include "curbline/borders/borders.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/line_fit.hpp"
 #include "curbline/limits.hpp"

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "curbline/curbs/borders.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_piece.hpp"
-#include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/step_height.hpp"
 #include "curbline/limits.hpp"

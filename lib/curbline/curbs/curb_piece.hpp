@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "curbline/curbs/beside.hpp"
-#include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/borders/beside.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/line_fit.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/map/dem.hpp"

@@ -13,13 +13,13 @@
 #include <optional>
 #include <span>
 
+#include "curbline/borders/border_finder.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curbs/border_finder.hpp"
-#include "curbline/curbs/borders.hpp"
 #include "curbline/curbs/corner.hpp"
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_maker.hpp"
-#include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/duplicates.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/surfaces.hpp"

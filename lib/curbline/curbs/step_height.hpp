@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "curbline/curbs/beside.hpp"
-#include "curbline/curbs/borders.hpp"
+#include "curbline/borders/beside.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/curb_piece.hpp"
-#include "curbline/curbs/curb_stages.hpp"
 #include "curbline/curbs/line_weights.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/shadow.hpp"

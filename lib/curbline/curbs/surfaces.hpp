@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <span>
 
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/bend.hpp"
 #include "curbline/curbs/curb.hpp"
-#include "curbline/curbs/curb_stages.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/dem.hpp"

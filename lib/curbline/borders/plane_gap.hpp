@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "curbline/curbs/curb_stages.hpp"
+#include "curbline/borders/curb_stages.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell_line.hpp"

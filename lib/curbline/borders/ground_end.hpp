@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <optional>
 
-#include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/curb_stages.hpp"
-#include "curbline/curbs/plane_gap.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
+#include "curbline/borders/plane_gap.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell_line.hpp"

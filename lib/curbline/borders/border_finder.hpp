@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "curbline/borders/beside.hpp"
+#include "curbline/borders/borders.hpp"
+#include "curbline/borders/curb_stages.hpp"
+#include "curbline/borders/ground_end.hpp"
+#include "curbline/borders/plane_gap.hpp"
 #include "curbline/counters.hpp"
-#include "curbline/curbs/beside.hpp"
-#include "curbline/curbs/borders.hpp"
-#include "curbline/curbs/curb_stages.hpp"
-#include "curbline/curbs/ground_end.hpp"
-#include "curbline/curbs/plane_gap.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell_line.hpp"

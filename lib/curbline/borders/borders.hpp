@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "curbline/curbs/beside.hpp"
+#include "curbline/borders/beside.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
