@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,7 +13,7 @@ template <int size>
 class IndexSet {
  public:
   void clear() { words_.fill(0); }
-  void insert(int index) { words_[static_cast<std::size_t>(index) / 32] |= 1u << (index % 32); }
+  void insert(std::integral auto index) { words_[static_cast<std::size_t>(index) / 32] |= 1u << (index % 32); }
   void insert(const IndexSet& other) {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
   }
@@ -22,7 +23,9 @@ class IndexSet {
     }
     return true;
   }
-  bool contains(int index) const { return (words_[static_cast<std::size_t>(index) / 32] >> (index % 32) & 1u) != 0; }
+  bool contains(std::integral auto index) const {
+    return (words_[static_cast<std::size_t>(index) / 32] >> (index % 32) & 1u) != 0;
+  }
 
   template <typename Visit>
   void for_each(Visit&& visit) const {

@@ -46,10 +46,10 @@ class CurbTracer {
     std::array<int, limits.borders / 3 + 1> ends;  ///< of a chain's straight parts, of at least three borders
     std::array<Curb, limits.curbs> curb;
     std::array<bool, limits.curbs> is_duplicate;
-    int curbs;
+    std::size_t curbs;
     typename Surfaces<limits>::Work surfaces;
 
-    std::span<Curb> found() { return {curb.data(), static_cast<std::size_t>(curbs)}; }
+    std::span<Curb> found() { return {curb.data(), curbs}; }
   };
 
   /// Finds all curbs of the window, in working memory of the caller.
@@ -57,7 +57,7 @@ class CurbTracer {
              const Viewpoint& view, Work& work, Counters& counters);
 
   /// The curbs of the last trace(). Valid until the next.
-  std::span<const Curb> curbs() const { return {curb_.data(), static_cast<std::size_t>(curbs_)}; }
+  std::span<const Curb> curbs() const { return {curb_.data(), curbs_}; }
   /// The surfaces within which the last trace() left out creases.
   const Surfaces<limits>& surfaces() const { return surfaces_; }
 
@@ -73,7 +73,7 @@ class CurbTracer {
 
   CurbSettings settings_{};
   std::array<Curb, limits.curbs> curb_{};
-  int curbs_ = 0;
+  std::size_t curbs_ = 0;
   std::uint16_t last_id_ = 0;
   Surfaces<limits> surfaces_{};
 };
@@ -102,10 +102,10 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
 template <Limits limits>
 template <typename Out>
 void CurbTracer<limits>::leave_out(Work& work, Out&& out) {
-  const auto found = static_cast<std::size_t>(work.curbs);
+  const std::size_t found = work.curbs;
   work.curbs = 0;
   for (std::size_t k = 0; k < found; ++k) {
-    if (!out(k)) work.curb[static_cast<std::size_t>(work.curbs++)] = work.curb[k];
+    if (!out(k)) work.curb[work.curbs++] = work.curb[k];
   }
 }
 
@@ -117,8 +117,7 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   for (Curb& now : found) {
     Curb* same = nullptr;
     float most_m = 0.0f;
-    for (int o = 0; o < curbs_; ++o) {
-      Curb& before = curb_[static_cast<std::size_t>(o)];
+    for (Curb& before : std::span(curb_).first(curbs_)) {
       if (before.id == 0 || is_step(before) != is_step(now)) continue;
       const float length_m = overlap_m(now, before, near_m);
       if (length_m <= most_m) continue;
@@ -174,11 +173,11 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, C
 /// A full store loses obstacles, too: what is behind them may then be given out.
 template <Limits limits>
 void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters) {
-  if (work.curbs == limits.curbs) {
+  if (work.curbs == work.curb.size()) {
     ++counters.curbs_full;
     return;
   }
-  if (const std::optional<Curb> curb = maker.make(part)) work.curb[static_cast<std::size_t>(work.curbs++)] = *curb;
+  if (const std::optional<Curb> curb = maker.make(part)) work.curb[work.curbs++] = *curb;
 }
 
 }  // namespace curbline

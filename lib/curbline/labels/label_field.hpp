@@ -42,7 +42,9 @@ class LabelField {
   struct Visits {
     std::array<Visit, Dem<limits>::capacity> visit;
     PerCell<Slot<limits>, limits> index;
-    int size;
+    std::size_t size;
+
+    std::span<Visit> all() { return {visit.data(), size}; }
   };
 
   [[gnu::cold]] void init(const LabelSettings& settings);
@@ -81,7 +83,7 @@ class LabelField {
   void hear_neighbours(Visit& visit) const;
   Visit heard_by(const Dem<limits>& dem, int slot) const;
   void send(const Visit& from, std::size_t direction, Visits& visits);
-  int follow_beliefs(const Dem<limits>& dem, const Visits& visits);
+  int follow_beliefs(const Dem<limits>& dem, std::span<const Visit> visits);
   int follow_belief(const Visit& visit);
 
   LabelSettings settings_{};
@@ -108,7 +110,7 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
                                Visits& visits, Counters& counters) {
   near_by_.follow(dem, mixture);
   choose_visits(dem, mixture, scope, visits, counters);
-  const std::span<Visit> all(visits.visit.data(), static_cast<std::size_t>(visits.size));
+  const std::span<Visit> all = visits.all();
   for (Visit& visit : all) hear_neighbours(visit);
   // Each direction's messages follow its own order, so that one pass carries them across the window.
   for (std::size_t direction = 0; direction < directions; ++direction) {
@@ -116,7 +118,7 @@ int LabelField<limits>::update(const Dem<limits>& dem, const PlaneMixture<limits
     for (std::size_t n = 0; n < all.size(); ++n) send(all[forward ? n : all.size() - 1 - n], direction, visits);
   }
   counters.messages += static_cast<std::uint32_t>(directions * visits.size);
-  return follow_beliefs(dem, visits);
+  return follow_beliefs(dem, all);
 }
 
 template <Limits limits>
@@ -135,7 +137,7 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
     if ((flag_[s] & visited) == 0) return;
     sites_[s].set_candidates(near_by_.candidates(dem, mixture, i, j, dem.cell(s)), mixture.covered(s));
     visits.index[s] = static_cast<Slot<limits>>(visits.size);
-    visits.visit[static_cast<std::size_t>(visits.size++)] = visit_to(dem, s);
+    visits.visit[visits.size++] = visit_to(dem, s);
   });
 }
 
@@ -239,9 +241,9 @@ void LabelField<limits>::send(const Visit& from, std::size_t direction, Visits& 
 
 /// Updates the most likely label of each cell that was visited or heard something new. Returns how many changed.
 template <Limits limits>
-int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, const Visits& visits) {
+int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, std::span<const Visit> visits) {
   int changed = 0;
-  for (int n = 0; n < visits.size; ++n) changed += follow_belief(visits.visit[static_cast<std::size_t>(n)]);
+  for (const Visit& visit : visits) changed += follow_belief(visit);
   dem.for_each_valid([&](int, int, int s) {
     if ((flag_[s] & (visited | heard)) == heard) changed += follow_belief(heard_by(dem, s));
   });

@@ -171,7 +171,7 @@ void PlaneMixture<limits>::take_labels(const RegionRanking<limits>& ranking) {
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     const bool dies = planes_[l].alive() && !ranking.taken(l);
     if (dies) planes_[l] = Plane{};
-    if (dies || ranking.born(l)) fresh_.insert(static_cast<int>(l));
+    if (dies || ranking.born(l)) fresh_.insert(l);
   }
 }
 

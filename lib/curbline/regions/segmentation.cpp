@@ -1,5 +1,7 @@
 #include "curbline/regions/segmentation.hpp"
 
+#include <span>
+
 namespace curbline {
 namespace {
 
@@ -16,22 +18,20 @@ float divergence(const BlockCell& a, const BlockCell& b) {
 }
 
 /// Edges to the next valid cell along each axis, ascending by weight; at most two a cell.
-int list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge, 2 * block_cells>& edges) {
-  int count = 0;
-  for (int k = 0; k < block_cells; ++k) {
-    if (!cells[static_cast<std::size_t>(k)].valid) continue;
-    for (const int step : {block_side, 1}) {
-      const int end = step == 1 ? (k / block_side + 1) * block_side : block_cells;
-      int n = k + step;
-      while (n < end && !cells[static_cast<std::size_t>(n)].valid) n += step;
+std::size_t list_edges(const std::array<BlockCell, block_cells>& cells, std::array<Edge, 2 * block_cells>& edges) {
+  constexpr std::size_t side = block_side;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (!cells[k].valid) continue;
+    for (const std::size_t step : {side, std::size_t{1}}) {
+      const std::size_t end = step == 1 ? (k / side + 1) * side : cells.size();
+      std::size_t n = k + step;
+      while (n < end && !cells[n].valid) n += step;
       if (n >= end) continue;
-      const Edge edge{divergence(cells[static_cast<std::size_t>(k)], cells[static_cast<std::size_t>(n)]),
-                      static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(n)};
-      int place = count++;
-      for (; place > 0 && edges[static_cast<std::size_t>(place - 1)].weight > edge.weight; --place) {
-        edges[static_cast<std::size_t>(place)] = edges[static_cast<std::size_t>(place - 1)];
-      }
-      edges[static_cast<std::size_t>(place)] = edge;
+      const Edge edge{divergence(cells[k], cells[n]), static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(n)};
+      std::size_t place = count++;
+      for (; place > 0 && edges[place - 1].weight > edge.weight; --place) edges[place] = edges[place - 1];
+      edges[place] = edge;
     }
   }
   return count;
@@ -53,9 +53,8 @@ BlockLeaves cut_block(const std::array<BlockCell, block_cells>& cells, float sca
     return k;
   };
   std::array<Edge, 2 * block_cells> edges;
-  const int count = list_edges(cells, edges);
-  for (int e = 0; e < count; ++e) {
-    const Edge& edge = edges[static_cast<std::size_t>(e)];
+  const std::size_t count = list_edges(cells, edges);
+  for (const Edge& edge : std::span(edges).first(count)) {
     const std::uint8_t a = root_of(edge.a), b = root_of(edge.b);
     if (a == b || edge.weight > limit[a] || edge.weight > limit[b]) continue;
     const std::uint8_t low = a < b ? a : b, high = a < b ? b : a;

@@ -50,7 +50,7 @@ class Segmentation {
 
   /// A cell is about to leave the window: its region will be cut again.
   void forget(int slot) {
-    if (region_[slot] != none) dissolved_.insert(static_cast<int>(region_[slot]));
+    if (region_[slot] != none) dissolved_.insert(region_[slot]);
     region_[slot] = none;
   }
 
@@ -91,7 +91,7 @@ class Segmentation {
   void name_regions(const Dem<limits>& dem, Work& work);
   /// A cell's node in the graph is that of its leaf if its region is dissolved, else of its region.
   Region representative(int slot) const {
-    return region_[slot] == none || dissolved_.contains(static_cast<int>(region_[slot])) ? leaf_[slot] : region_[slot];
+    return region_[slot] == none || dissolved_.contains(region_[slot]) ? leaf_[slot] : region_[slot];
   }
 
   SegmentationSettings settings_{};
@@ -138,7 +138,7 @@ void Segmentation<limits>::cut(const Dem<limits>& dem, int row, int col, const P
     const Cell& cell = dem.cell(s);
     const float height_m = leans ? dem.above_m(row + k / block_side, col + k % block_side, cell, lean) : cell.height_m;
     cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
-    if (region_[s] != none) dissolved_.insert(static_cast<int>(region_[s]));
+    if (region_[s] != none) dissolved_.insert(region_[s]);
   }
   const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
   for (int k = 0; k < block_cells; ++k) {
@@ -156,8 +156,8 @@ void Segmentation<limits>::dissolve_neighbours(const Dem<limits>& dem) {
     // (tools/budget).
     if (a == b) return;
     if (a == none || b == none) return;
-    if (dissolved_.contains(static_cast<int>(a))) neighbours.insert(static_cast<int>(b));
-    if (dissolved_.contains(static_cast<int>(b))) neighbours.insert(static_cast<int>(a));
+    if (dissolved_.contains(a)) neighbours.insert(b);
+    if (dissolved_.contains(b)) neighbours.insert(a);
   });
   dissolved_.insert(neighbours);
 }
