@@ -5,7 +5,6 @@
 namespace curbline::cola {
 namespace {
 
-constexpr std::int64_t patience_ns = 500'000'000;
 constexpr double ahead_deg = 90.0;
 constexpr std::string_view scan_sent = "sSN LMDscandata ", scan_asked = "sRA LMDscandata ";
 
@@ -36,13 +35,7 @@ void Session::restart(const scanner::Now&) {
 }
 
 std::span<const std::uint8_t> Session::to_send(const scanner::Now& now) {
-  if (confirmed_) return {};
-  if (!due_) {
-    if (now.steady_ns - sent_ns_ < patience_ns) return {};
-    ++counters_.resent;
-  }
-  due_ = false;
-  sent_ns_ = now.steady_ns;
+  if (confirmed_ || !is_due(now)) return {};
   return start_stream;
 }
 

@@ -37,8 +37,7 @@ class Session final : public scanner::Session {
   void look_for_cola_a(std::span<const std::uint8_t> bytes);
 
   TelegramBuffer telegrams_;
-  bool confirmed_ = false, due_ = true;
-  std::int64_t sent_ns_ = 0;  ///< steady clock
+  bool confirmed_ = false;
   scanner::StampCounter stamps_{32, 1'000};
   scanner::DeviceClock clock_{0};
   std::array<float, most_beams> ranges_m_{};

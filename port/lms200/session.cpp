@@ -6,7 +6,6 @@
 namespace curbline::lms200 {
 namespace {
 
-constexpr std::int64_t patience_ns = 500'000'000;
 constexpr std::array<int, 4> bauds{500'000, 38'400, 9'600, 19'200};
 constexpr std::size_t as_brought = 1;  // index of the rate to which the scanner is switched
 constexpr int tries_a_baud = 2;
@@ -52,17 +51,13 @@ std::span<const std::uint8_t> Session::farewell() const {
 }
 
 std::span<const std::uint8_t> Session::to_send(const scanner::Now& now) {
-  if (step_ == Step::measuring) return {};
-  if (!due_) {
-    if (now.steady_ns - sent_ns_ < patience_ns) return {};
-    ++counters_.resent;
-    if (++tries_ == tries_a_baud) {  // no answer: try the next speed
-      baud_ = (baud_ + 1) % bauds.size();
-      go_to(Step::find);
-    }
+  const bool again = !due_;
+  if (step_ == Step::measuring || !is_due(now)) return {};
+  if (again && ++tries_ == tries_a_baud) {  // no answer: try the next speed, now
+    baud_ = (baud_ + 1) % bauds.size();
+    go_to(Step::find);
+    due_ = false;
   }
-  due_ = false;
-  sent_ns_ = now.steady_ns;
   return std::span(command_).first(write_command());
 }
 

@@ -45,10 +45,8 @@ class Session final : public scanner::Session {
   HostBuffer telegrams_;
   Variant variant_;
   Step step_ = Step::find;
-  bool due_ = true;
   int tries_ = 0;
-  std::size_t baud_ = 0;      ///< index of the rate that is being tried
-  std::int64_t sent_ns_ = 0;  ///< steady clock
+  std::size_t baud_ = 0;  ///< index of the rate that is being tried
   std::array<std::uint8_t, 16> command_{};
   int range_bits_ = 13;
   TurnClock clock_{};

@@ -79,6 +79,21 @@ class Session {
  protected:
   ~Session() = default;
 
+  /// Is the command in question to be sent now: for the first time, or again, counted, as half a second has passed
+  /// without a reply?
+  bool is_due(const Now& now) {
+    if (!due_) {
+      if (now.steady_ns - sent_ns_ < patience_ns) return false;
+      ++counters_.resent;
+    }
+    due_ = false;
+    sent_ns_ = now.steady_ns;
+    return true;
+  }
+
+  static constexpr std::int64_t patience_ns = 500'000'000;
+  bool due_ = true;           ///< the command has not been sent
+  std::int64_t sent_ns_ = 0;  ///< when it was, steady clock
   Line line_{};
   Counters counters_{};
   std::string_view problem_{};

@@ -11,7 +11,6 @@
 namespace curbline::scip2 {
 namespace {
 
-constexpr std::int64_t patience_ns = 500'000'000;
 constexpr int clock_questions = 8;
 constexpr std::array<std::uint8_t, 3> stop_command{'Q', 'T', '\n'};
 
@@ -59,13 +58,7 @@ void Session::write_command() {
 }
 
 std::span<const std::uint8_t> Session::to_send(const scanner::Now& now) {
-  if (step_ == Step::measuring) return {};
-  if (!due_) {
-    if (now.steady_ns - sent_ns_ < patience_ns) return {};
-    ++counters_.resent;
-  }
-  due_ = false;
-  sent_ns_ = now.steady_ns;
+  if (step_ == Step::measuring || !is_due(now)) return {};
   write_command();
   command_[command_size_] = '\n';
   return {reinterpret_cast<const std::uint8_t*>(command_.data()), command_size_ + 1};

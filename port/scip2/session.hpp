@@ -67,8 +67,6 @@ class Session final : public scanner::Session {
 
   Decoder decoder_;
   Step step_ = Step::stop;
-  bool due_ = true;
-  std::int64_t sent_ns_ = 0;  ///< steady clock
   std::array<char, 24> command_{};
   std::size_t command_size_ = 0;
   int clock_asked_ = 0;
