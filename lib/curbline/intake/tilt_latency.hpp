@@ -10,12 +10,10 @@
 //     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
 //     upward and downward sweeps would come to agree on tilted ground. The laser's lean (laser_lean.hpp) is estimated
 //     beside them.
-// In ground that both directions have seen, growths cancel, but errors do not: each sweep was fitted to the ground
-// before it, so that what one lacks the next lacks with the other sign, and both pitch the ground to one side. Hence
-// the ground's growth is kept apart by direction; points of older sweeps count as those of the last one of their
-// direction. (By the mean growth, about 0, pitched ground would be exact, and the next sweep would have to follow it,
-// or lean.) A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the
-// estimate: after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning.
+// The ground's growth is kept apart by direction, since where both have seen it growths cancel, but errors do not
+// (lib/formulas.md); points of older sweeps count as those of the last one of their direction.
+// A latency that steps by more than either allows (the servo was restarted, a clock was set) contradicts the estimate:
+// after ten consecutive lines that do, and agree with each other, it is as uncertain as at the beginning.
 // Cost: 50 operations a point, and a pass over the window for each line that corrects the map.
 #pragma once
 
