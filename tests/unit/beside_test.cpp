@@ -25,12 +25,12 @@ TEST_CASE("beside: of a deviation from the plane the share is the ground's that 
   float common_m2 = 0.0f, line_m2 = 0.0f;
   const auto seen = [&] { return deviation(beside, plane, 1.0f, 0.0f, common_m2, line_m2); };
   CHECK(seen().share() == Approx(0.95));  // 1 - 5e-6 / 1e-4
-  CHECK(static_cast<double>(seen().height_variance_m2()) == Approx(0.95 * 5e-6).margin(0.0));
+  CHECK(static_cast<double>(seen().height_variance_m2(seen().share())) == Approx(0.95 * 5e-6).margin(0.0));
   beside.add(beside);
   CHECK(seen().share() == Approx(0.975));  // of two borders half the variance
   common_m2 = 4e-5f;                       // half of it is common to both
   CHECK(seen().share() == Approx(0.775));
-  CHECK(static_cast<double>(seen().height_variance_m2()) == Approx(0.775 * 2.25e-5).margin(0.0));
+  CHECK(static_cast<double>(seen().height_variance_m2(seen().share())) == Approx(0.775 * 2.25e-5).margin(0.0));
   common_m2 = 2e-4f;
   CHECK(seen().share() == 0.0f);
   common_m2 = 0.0f;
@@ -46,13 +46,13 @@ TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cel
   const auto lying = [&](float off_m) {
     return deviation(Beside::of({off_m, 4.0f}, {off_m, 4.0f}, 1.0f), plane, 1.0f, 0.0f, 0.0f, 0.0f);
   };
-  CHECK(lying(-0.006f).height_variance_m2() == Approx((3.6e-5 - 4 * 5e-6) / 12));
+  CHECK(lying(-0.006f).height_variance_m2(0.0f) == Approx((3.6e-5 - 4 * 5e-6) / 12));
   CHECK(lying(0.004f).too_far_m2(1.0f) == 0.0f);  // the other side is below
-  CHECK(lying(-0.02f).height_variance_m2() == Approx((4e-4 - 4 * 5e-6) / 12));
+  CHECK(lying(-0.02f).height_variance_m2(0.0f) == Approx((4e-4 - 4 * 5e-6) / 12));
   CHECK(lying(-0.02f).too_far_m2(1.0f) == Approx(4e-4 - 5e-6));
-  CHECK(lying(-0.004f).height_variance_m2() == 0.0f);  // within chance
+  CHECK(lying(-0.004f).height_variance_m2(0.0f) == 0.0f);  // within chance
   CHECK(lying(-0.002f).too_far_m2(1.0f) == 0.0f);
-  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f, 0.0f).height_variance_m2() == 0.0f);
+  CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f, 0.0f).height_variance_m2(0.0f) == 0.0f);
 }
 
 TEST_CASE("beside: what the cells beside one border say is no doubt about all the others") {

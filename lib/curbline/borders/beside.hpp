@@ -75,10 +75,9 @@ struct Deviation {
 
   /// The share of it that is the ground's.
   float share() const { return away_m > 0.0f ? share_beyond(variance_m2 + shared_m2, away_m) : 0.0f; }
-  /// Variance of the side's height there: that of the share. Without one, the plane may be wrong by anything up to half
-  /// of what exceeds two standard deviations, what chance makes of it.
-  float height_variance_m2() const {
-    const float taken = share();
+  /// Variance of the side's height there, with the share that is taken of it. With none, the plane may be wrong by
+  /// anything up to half of what exceeds two standard deviations, what chance makes of it.
+  float height_variance_m2(float taken) const {
     return taken > 0.0f ? taken * (variance_m2 + shared_m2) : (1.0f / 12) * beyond_m2(4.0f);
   }
   /// Mean square, over of_borders borders, of a deviation by which the planes are farther apart than the ground is.

@@ -265,7 +265,7 @@ void StepHeight<limits>::follow_ground(const Part& part) {
     const float share = next.share(), rest = 1.0f - share;
     height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
     const float plane_m2 = other ? planes.other_m2 : planes.one_m2;
-    variance_m2_ += next.height_variance_m2() + rest * (plane_m2 + along.share * (along.variance_m2 - plane_m2));
+    variance_m2_ += next.height_variance_m2(share) + rest * (plane_m2 + along.share * (along.variance_m2 - plane_m2));
     planes_share *= rest * (1.0f - along.share);
   }
   variance_m2_ -= 2.0f * planes_share * planes.covariance_m2;
