@@ -7,6 +7,7 @@
 #include "curbline/can/curb_frames.hpp"
 #include "curbline/can/tilt_decoder.hpp"
 #include "curbline/intake/line_queue.hpp"
+#include "curbline/intake/nod_watch.hpp"
 #include "curbline/intake/sight_watch.hpp"
 #include "curbline/intake/source_watch.hpp"
 #include "curbline/pipeline.hpp"
@@ -24,6 +25,7 @@ curbline::Pipeline<limits> pipeline;
 curbline::LineQueue<limits, queued_lines> waiting;  // lines whose last beams have no tilt or pose yet
 can::TiltDecoder decoder;
 curbline::SourceWatch watch;  // on the servo
+curbline::NodWatch nod;       // on whether the tilt moves
 curbline::SightWatch sight;   // of the laser
 curbline::NewestTimes newest;
 curbline::Pose pose;            // the newest; for a stationary robot, the map's origin
@@ -40,7 +42,8 @@ void start() {
                                    : std::max(settings.tilt.max_gap_s, settings.pose.max_extrapolation_s);
   waiting.init(settings.laser, settings.tilt, settings.pose, longest_wait_s);
   watch.init(settings.tilt.max_gap_s, settings.tilt.fixed);
-  sight.init(longest_away_s);
+  nod.init(nod_period_s, settings.tilt.fixed);
+  sight.init(settings.tilt.fixed ? longest_bump_s : nod_period_s);
   if (!port.open(tilt_signal())) port.stop("clock, bus or scanner do not start");
 }
 
@@ -49,7 +52,9 @@ void take_frames() {
   const int count = port.receive(frames);
   for (const can::Frame& frame : std::span(frames).first(static_cast<std::size_t>(count))) {
     const auto reading = decoder.take(frame);
-    if (reading && pipeline.add_tilt(*reading)) newest.tilt_ns = reading->time_ns;
+    if (!reading || !pipeline.add_tilt(*reading)) continue;
+    newest.tilt_ns = reading->time_ns;
+    nod.update(*reading);
   }
 }
 
@@ -62,13 +67,15 @@ void take_poses() {
 }
 
 /// Informs the motors after a scan line: the curb that the robot meets first, if the laser sees, then the status, whose
-/// counter shows whether it does. A line of a covered laser is taken, but says nothing.
+/// counter shows whether it does, and whether the tilt rests. A line of a covered laser is taken, but says nothing.
 void tell(bool sees) {
   if (sees) {
     const auto ahead = can::curb_ahead_frame(nearest_ahead(pipeline.curbs(), pose, half_width_m));
     if (port.send(ahead)) ++curbs_told;
   }
-  port.send(can::curb_status_frame({curbs_told, watch.state(), static_cast<std::uint32_t>(pipeline.curbs().size())}));
+  const auto curbs = static_cast<std::uint32_t>(pipeline.curbs().size());
+  const bool rests = nod.watch().state() == curbline::SourceState::stale;
+  port.send(can::curb_status_frame({curbs_told, watch.state(), curbs, rests}));
 }
 
 void take_lines() {

@@ -26,9 +26,11 @@ inline curbline::Settings robot_settings() {
 /// servo of 50 Hz or more, and little latency. 4.3 KB each.
 inline constexpr int queued_lines = 3;
 
-/// For how long the laser may look beside the window before it counts as blind: for a sweep there and back. Of a laser
-/// at a fixed tilt, half a second: a bump of the way.
-inline constexpr float longest_away_s = 4.0f;
+/// A sweep there and back. For longer, a laser that sees looks beside the window in no sweep, and the angle of a tilt
+/// that moves does not stay the same.
+inline constexpr float nod_period_s = 4.0f;
+/// For how long a bump of the way may turn a laser at a fixed tilt away from the window.
+inline constexpr float longest_bump_s = 0.5f;
 
 /// Free width that the robot needs to either side: half its own width plus its deviation from its path.
 inline constexpr float half_width_m = 0.4f;

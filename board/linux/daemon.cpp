@@ -256,7 +256,8 @@ void Daemon::send_curbs(bool sees) {
     if (bus_.send(ahead) == socketcan::Status::ok) ++curbs_sent_;
   }
   const auto curbs = static_cast<std::uint32_t>(pipeline_->curbs().size());
-  bus_.send(can::curb_status_frame({curbs_sent_, tilt_watch_.state(), curbs}));
+  const bool rests = nod_watch_.watch().state() == SourceState::stale;
+  bus_.send(can::curb_status_frame({curbs_sent_, tilt_watch_.state(), curbs, rests}));
 }
 
 /// Reports events to the user; runs several times a second.

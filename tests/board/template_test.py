@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that feeds it a drive, informs the motors after each
 scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead, of a robot that stands and of
-one that drives. While the servo is silent
-for a second, each line is dropped and the counter does not advance; nor does it while the laser is covered, though the lines are taken."""
+one that drives. While the servo is silent for a second, each line is dropped and the counter does not advance; nor does it while the laser is
+covered, though the lines are taken. An encoder that is stuck is told as a tilt that rests."""
 import math
 import os
 import struct
@@ -18,8 +18,8 @@ import run_drives  # noqa: E402
 
 CURB = struct.Struct("<9f4H")
 COUNTERS = 4 * (Path(__file__).resolve().parents[2] / "lib/curbline/counters.hpp").read_text().count("std::uint32_t")
-AHEAD, STATUS, OK, STALE = 0x6A0, 0x6A1, 1, 2  # from lib/curbline/can/curb_frames.hpp
-HALF_WIDTH, LONGEST_AWAY_NS = 0.5, 4e9  # from template_robot/robot.hpp
+AHEAD, STATUS, OK, STALE, RESTING = 0x6A0, 0x6A1, 1, 2, 3  # from lib/curbline/can/curb_frames.hpp
+HALF_WIDTH, NOD_PERIOD_NS = 0.5, 4e9  # from template_robot/robot.hpp
 FRAME_ID, FRAME_DATA = 8 + 8, 8 + 8 + 4 + 6  # offsets in the record of a frame
 POSE, SCAN_LINE, RANGES = 3, 4, 8 + 8  # RecordKinds of port/drive_log; the offset in the record of a line
 ORIGIN = (0.0, 0.0, 0.0)  # x, y and heading of a robot that stands
@@ -62,7 +62,7 @@ def told_by_results(path, drive):
         time_ns, _, *counted = struct.unpack_from("<qI3I", record, 8)  # lines, points, outside
         taken, inside, outside = (now != then for now, then in zip(counted, before))
         before, seen_ns = counted, time_ns if inside else seen_ns
-        sees = taken and (inside or outside) and seen_ns is not None and time_ns - seen_ns <= LONGEST_AWAY_NS
+        sees = taken and (inside or outside) and seen_ns is not None and time_ns - seen_ns <= NOD_PERIOD_NS
         count_at = 20 + COUNTERS
         count, = struct.unpack_from("<I", record, count_at)
         on_the_way = []
@@ -101,13 +101,13 @@ def run(program, drive, sent):
     subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
 
 
-def change(drive, out, changed):
-    """Writes the drive with the records between 1 s and 2 s changed: changed(kind, record)."""
+def change(drive, out, changed, end_ns=2e9):
+    """Writes the drive with the records from 1 s to 2 s, or to end_ns, changed: changed(kind, record)."""
     start_ns = next(run_bus.frame_time(record) for kind, record in run_bus.records(drive) if kind == run_bus.CAN_FRAME)
     with out.open("wb") as file:
         for kind, record in run_bus.records(drive):
             timed = kind in (run_bus.CAN_FRAME, SCAN_LINE)
-            file.write(changed(kind, record) if timed and 1e9 < run_bus.frame_time(record) - start_ns < 2e9 else record)
+            file.write(changed(kind, record) if timed and 1e9 < run_bus.frame_time(record) - start_ns < end_ns else record)
 
 
 def silent(kind, record):
@@ -118,11 +118,23 @@ def covered(kind, record):
     return record[:RANGES] + bytes(len(record) - RANGES) if kind == SCAN_LINE else record
 
 
-def told_of(program, drive, folder, changed):
+def stuck_at_first():
+    """An encoder that repeats the angle of the first frame that is changed."""
+    data = []
+
+    def stuck(kind, record):
+        if kind != run_bus.CAN_FRAME:
+            return record
+        data[:] = data or [record[FRAME_DATA:]]
+        return record[:FRAME_DATA] + data[0]
+    return stuck
+
+
+def told_of(program, drive, folder, changed, end_ns=2e9):
     """(AHEAD or None, STATUS) of the changed drive. A line that sees nothing is reported too, by a counter that does not advance; another one
     by an AHEAD and a counter that is one higher."""
     other, sent = folder / f"{changed.__name__}.drive", folder / f"{changed.__name__}.sent"
-    change(drive, other, changed)
+    change(drive, other, changed, end_ns)
     run(program, other, sent)
     told = list(lines_told(sent))
     for line, ((_, before), (ahead, status)) in enumerate(zip(told, told[1:]), 1):
@@ -147,12 +159,26 @@ def check_cover(program, drive, folder):
     print(f"{len(tilts)} lines saw nothing while the laser was covered")
 
 
+def check_rest(program, drive, folder):
+    """From a sweep there and back after the encoder is stuck until it moves again, and at no other time."""
+    told = told_of(program, drive, folder, stuck_at_first(), 1e9 + NOD_PERIOD_NS + 1e9)
+    tilts = [status[1] & 3 for _, status in told]
+    runs = [tilt for tilt, before in zip(tilts, [None, *tilts]) if tilt != before]
+    if runs != [OK, RESTING, OK] or not 35 <= tilts.count(RESTING) <= 45:
+        sys.exit(f"an encoder that is stuck for a second more than a sweep there and back: the tilt is told as {runs}, of {tilts.count(RESTING)} "
+                 f"lines as resting; expected {[OK, RESTING, OK]}, about 40")
+    print(f"{tilts.count(RESTING)} lines with a tilt that rests while the encoder was stuck")
+
+
 def check_curbs(build, program, drive, folder):
     sent = folder / f"{drive.stem}.sent"
     run(program, drive, sent)
     counter = next(status[0] for ahead, status in lines_told(sent) if ahead is not None)
     if counter != 0:
         sys.exit(f"{drive.stem}: the first curb ahead has the counter {counter}, and not 0, which follows the 255 of before")
+    tilts = {status[1] & 3 for _, status in lines_told(sent)}
+    if tilts != {OK}:
+        sys.exit(f"{drive.stem}: the tilt is told as {sorted(tilts)}; expected {OK} after every line")
     ours = list(told_by_frames(sent))
     theirs = list(told_by_results(run_drives.results_folder(build, boards.REFERENCE) / f"{drive.stem}.results", drive))
     for line, (a, b) in enumerate(zip(ours, theirs)):
@@ -170,7 +196,9 @@ def main(build, program):
     check_silence(program, steps, folder)
     check_cover(program, steps, folder)
     check_curbs(build, program, steps, folder)
-    check_curbs(build, program, drives.folder(build) / "random-drive-9001.drive", folder)
+    drive = drives.folder(build) / "random-drive-9001.drive"  # longer than a sweep there and back
+    check_rest(program, drive, folder)
+    check_curbs(build, program, drive, folder)
 
 
 if __name__ == "__main__":

@@ -501,10 +501,13 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
   check_alike(last_curbs(service.lines()), end_of(recording()));
 }
 
-TEST_CASE("daemon: an encoder that is stuck is a state, told once, until it moves again", "[daemon]") {
+TEST_CASE("daemon: an encoder that is stuck is a state, told once, and on CAN, until it moves again", "[daemon]") {
+  SocketCan receiver;
+  const std::array ids{socketcan::Filter{can::curb_status_id, 0x7FF, false}};
+  REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
   const TemporaryDirectory directory;
   const std::string brisk = directory.write("brisk.toml", "[sweep]\nperiod_s = 1.0\n");
-  Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", brisk});
+  Service service({"--can", "vcan0", "--can-out", "--scans", recording().path("scans.carmen"), "--robot", brisk});
   can::Frame stuck;
   play(recording().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
     if (since_s < 1.0) stuck = frame;
@@ -519,6 +522,19 @@ TEST_CASE("daemon: an encoder that is stuck is a state, told once, until it move
   CHECK(status.at("tilt").at("times_rested") == 1);
   CHECK(times_said(outcome.err, "the tilt rests: the servo has stopped, or its encoder is stuck\n") == 1);
   CHECK(times_said(outcome.err, "the tilt moves again\n") == 1);
+  int resting = 0, times = 0;
+  can::CurbStatus told;
+  for (const can::Frame& frame : socketcan::testing::receive_all(receiver)) {
+    const bool before = told.resting;
+    REQUIRE(can::read_curb_status(frame, told));
+    CHECK(told.tilt == SourceState::ok);
+    resting += told.resting;
+    times += told.resting && !before;
+  }
+  CHECK(resting > 20);  // of the 40 lines of a second
+  CHECK(resting < 80);
+  CHECK(times == 1);
+  CHECK_FALSE(told.resting);
 }
 
 TEST_CASE("daemon: sources that may be silent for longer, by the robot's description, are not told as silent sooner",

@@ -99,10 +99,27 @@ TEST_CASE("curb frames: the status comes back, its counter of 8 bits and at most
     CHECK(back.counter == 200);
     CHECK(back.tilt == state);
     CHECK(back.curbs == 255);
+    CHECK_FALSE(back.resting);
   }
 }
 
-TEST_CASE("curb frames: other, short and impossible frames are not read") {
+TEST_CASE("curb frames: a tilt that rests is told, unless the servo is silent, which is worse") {
+  CurbStatus back;
+  const Frame rests = curb_status_frame({200, SourceState::ok, 3, true});
+  CHECK((rests.data[1] & 3) == 3);
+  REQUIRE(read_curb_status(rests, back));
+  CHECK(back.tilt == SourceState::ok);
+  CHECK(back.resting);
+  CHECK(back.counter == 200);
+  CHECK(back.curbs == 3);
+  for (const SourceState state : {SourceState::never, SourceState::stale}) {
+    REQUIRE(read_curb_status(curb_status_frame({200, state, 3, true}), back));
+    CHECK(back.tilt == state);
+    CHECK_FALSE(back.resting);
+  }
+}
+
+TEST_CASE("curb frames: other and short frames are not read") {
   std::optional<CurbAhead> curb;
   CurbStatus status;
   Frame ahead = curb_ahead_frame(CurbAhead{}), state = curb_status_frame({});
@@ -110,9 +127,6 @@ TEST_CASE("curb frames: other, short and impossible frames are not read") {
   CHECK_FALSE(read_curb_status(ahead, status));
   ahead.length = 7;
   CHECK_FALSE(read_curb_ahead(ahead, curb));
-  state.data[1] = 3;
-  CHECK_FALSE(read_curb_status(state, status));
-  state.data[1] = 0;
   state.length = 2;
   CHECK_FALSE(read_curb_status(state, status));
 }

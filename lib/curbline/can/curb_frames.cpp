@@ -20,6 +20,7 @@ constexpr Signal field(std::uint32_t id, int start_bit, int length, double scale
 constexpr double millimetre = 0.001;
 
 constexpr double furthest_m = 65.534;  // one count below all ones, which is that of nothing ahead
+constexpr int tilt_rests = 3;          // one more than SourceState has
 constexpr double widest_m = 32.767, highest_m = 32.767;
 
 constexpr std::array<CurbField, fields> layout{{
@@ -37,8 +38,9 @@ constexpr std::array<CurbField, fields> layout{{
      field(curb_ahead_id, 58, 6, 0.02), 0, 1},
     {"CurbStatus", "Counter", "", "One more with each CurbAhead, which is not to be trusted while it stands.",
      field(curb_status_id, 0, 8, 1.0), 0, 255},
-    {"CurbStatus", "Tilt", "", "The tilt servo: 0 never seen, 1 ok or none, 2 stale.", field(curb_status_id, 8, 2, 1.0),
-     0, 2},
+    {"CurbStatus", "Tilt", "",
+     "The tilt servo: 0 never seen, 1 ok or none, 2 stale, 3 at rest, or its encoder is stuck.",
+     field(curb_status_id, 8, 2, 1.0), 0, tilt_rests},
     {"CurbStatus", "Curbs", "", "In the window; 255 is that or more.", field(curb_status_id, 16, 8, 1.0), 0, 255},
 }};
 
@@ -90,7 +92,8 @@ Frame curb_ahead_frame(const std::optional<CurbAhead>& curb) {
 Frame curb_status_frame(const CurbStatus& status) {
   Frame frame;
   put(counter, static_cast<double>(status.counter), frame);
-  put(tilt, static_cast<double>(status.tilt), frame);
+  const bool rests = status.resting && status.tilt == SourceState::ok;
+  put(tilt, rests ? tilt_rests : static_cast<double>(status.tilt), frame);
   put(curbs, static_cast<double>(status.curbs), frame);
   return frame;
 }
@@ -110,10 +113,11 @@ bool read_curb_ahead(const Frame& frame, std::optional<CurbAhead>& curb) {
 }
 
 bool read_curb_status(const Frame& frame, CurbStatus& status) {
+  if (!has(curbs, frame)) return false;
   const auto state = static_cast<int>(get(tilt, frame));
-  if (!has(curbs, frame) || state > static_cast<int>(SourceState::stale)) return false;
-  status = {static_cast<std::uint8_t>(get(counter, frame)), static_cast<SourceState>(state),
-            static_cast<std::uint32_t>(get(curbs, frame))};
+  const bool rests = state == tilt_rests;
+  status = {static_cast<std::uint8_t>(get(counter, frame)), rests ? SourceState::ok : static_cast<SourceState>(state),
+            static_cast<std::uint32_t>(get(curbs, frame)), rests};
   return true;
 }
 

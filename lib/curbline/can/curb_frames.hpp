@@ -20,7 +20,9 @@
 // CurbStatus, 0x6A1, 3 bytes, so that a receiver can tell "no curb" from "nobody looks":
 //   bits 0-7    counter        u8, 255 before the first CurbAhead, one more with each, wraps; a receiver must not trust
 //                              CurbAhead while the counter stands still, or without CurbStatus
-//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/source_watch.hpp
+//   bits 8-9    tilt           0 never seen, 1 ok or fixed, 2 stale: see curbline/intake/source_watch.hpp; 3 at rest,
+//                              see curbline/intake/nod_watch.hpp: unless the robot has stopped the servo, its encoder
+//                              is stuck, and a receiver must not trust CurbAhead, though the counter advances
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //
 // Values out of range are clamped; a NaN distance, position or height gives "nothing ahead". Functions without state:
@@ -44,6 +46,7 @@ struct CurbStatus {
   std::uint8_t counter = 0;
   SourceState tilt = SourceState::never;
   std::uint32_t curbs = 0;
+  bool resting = false;  ///< the tilt's readings come, but do not change; told if `tilt` is ok
 };
 
 /// The frame for a curb or, with nothing, for a way without one.

@@ -11,7 +11,7 @@ inline curbline::Settings robot_settings() {
   return drive_setup().settings;
 }
 inline constexpr int queued_lines = 3;
-inline constexpr float longest_away_s = 4.0f;
+inline constexpr float nod_period_s = 4.0f, longest_bump_s = 0.5f;
 inline constexpr float half_width_m = 0.5f;
 inline curbline::can::Signal tilt_signal() {
   return drive_setup().tilt_signal;
