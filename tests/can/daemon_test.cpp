@@ -461,8 +461,9 @@ TEST_CASE("daemon: a servo that falls silent is an error state, told once, on th
     };
   };
   CHECK(service.gives(state_is("tilt_missing")));
-  CHECK(service.says(
-      "no tilt frame since the start; expected id 0x181 on vcan0, with which the log of scan lines begins\n"));
+  CHECK(
+      service.says("no tilt frame since the start; expected id 0x181 of 11 bits on vcan0, with which the log of scan "
+                   "lines begins\n"));
   play(recording().path("can.log"), [&](SocketCan& bus, const can::Frame& frame, double since_s) {
     if (since_s > 1.0 && since_s < 2.8) return;
     send_well(bus, frame);
@@ -651,7 +652,7 @@ TEST_CASE("daemon: a scanner is waited for, an interface that is removed too, SI
   const socketcan::testing::Interface other("vcan8");
   Service service({"--can", "vcan8", "--scans", "scip2:127.0.0.1:7", "--robot", recording().path("robot.toml")});
   CHECK(service.says("no scan lines from the scanner scip2:127.0.0.1:7: Connection refused"));
-  CHECK(service.says("no tilt frame since the start; expected id 0x181 on vcan8\n"));
+  CHECK(service.says("no tilt frame since the start; expected id 0x181 of 11 bits on vcan8\n"));
   REQUIRE(vcan::remove_link("vcan8") == 0);
   CHECK(service.says("the CAN interface is gone"));
   REQUIRE(vcan::make_vcan("vcan8") == 0);

@@ -131,6 +131,47 @@ TEST_CASE("program: a CAN log without a frame of the servo is refused, with the 
   check_refused(replay_with(logs, "can", wrong), wrong + ": none of ", "expected id 0x181");
 }
 
+TEST_CASE("program: a servo whose ids have 11 bits for 29, or 29 for 11, is refused with the bits that were expected") {
+  const Recording logs = standing();
+  const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nextended = true\n");
+  check_refused(replay_with(logs, "robot", robot), logs.path("can.log") + ": none of ", "expected id 0x181 of 29 bits");
+  std::string log = read_file(logs.path("can.log"));
+  for (std::size_t at = log.find(" 181#"); at != std::string::npos; at = log.find(" 181#", at))
+    log.insert(at + 1, "00000");
+  const std::string wide = logs.directory().write("wide.log", log);
+  check_refused(replay_with(logs, "can", wide), wide + ": none of ", "expected id 0x181 of 11 bits");
+}
+
+TEST_CASE("program: logs of two clocks are refused with a time of each") {
+  const Recording logs = standing();
+  std::string log;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log"))))
+    log += "(1500000000" + line.substr(line.find('.')) + "\n";
+  const std::string earlier = logs.directory().write("earlier.log", log.substr(0, log.find('\n') + 1));
+  const Outcome outcome = replay_with(logs, "can", earlier);
+  check_refused(outcome, logs.path("scans.carmen") + ": no scan line could be used, ",
+                "; expected times that agree with the tilt log and the poses");
+  CHECK(outcome.err.find("; the first scan line is of 1700000000.0") != std::string::npos);
+  CHECK(outcome.err.find(", the first tilt angle of 1500000000.") != std::string::npos);
+  const Recording drive("city", "utm30lx", {"--duration", "0.5"});
+  std::string poses;
+  for (const std::string& line : lines_of(read_file(drive.path("poses.tum")))) poses += line.substr(1) + "\n";
+  const Outcome of_drive = replay_with(drive, "poses", drive.directory().write("earlier.tum", poses));
+  CHECK(of_drive.err.find(", the first pose of 699999999.") != std::string::npos);
+}
+
+TEST_CASE("program: tilt angles in degrees for radians are told") {
+  const Recording logs = standing();
+  const auto told = [&](const std::string& scale) {
+    const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nscale = " + scale + "\n");
+    return curbline(logs.replay("robot", robot)).err;
+  };
+  CHECK(told("9.587379924285257e-05").empty());
+  CHECK(told("0.0054931640625")
+            .find(" tilt angles are more than a turn from the first; expected radians, see scale of "
+                  "tilt.signal\n") != std::string::npos);
+}
+
 TEST_CASE("program: a scale at which no frame can hold an angle is refused with the possible angles") {
   const Recording logs = standing();
   const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nscale = 1000.0\n");

@@ -32,7 +32,7 @@ std::optional<can::Frame> CanLogReader::next() {
 }
 
 std::string frame_of(const can::Signal& signal) {
-  const std::string id = "id " + hexadecimal(signal.id);
+  const std::string id = "id " + hexadecimal(signal.id) + (signal.extended ? " of 29 bits" : " of 11 bits");
   return signal.multiplexor ? id + " with multiplexor " + std::to_string(signal.multiplexor->value) : id;
 }
 

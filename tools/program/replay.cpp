@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
@@ -73,6 +74,7 @@ bool Replay::step(std::vector<Point>* points) {
     return false;
   }
   line_ = std::move(*next);
+  if (lines_ == 0) first_line_ns_ = line_.time_ns;
   const std::int64_t last_beam_ns = line_.time_ns + robot_.laser.duration_ns(line_.ranges_m.size());
   if (!scans_->of_the_future()) {
     feed_tilt(last_beam_ns +
@@ -112,7 +114,8 @@ void Replay::feed_tilt(std::int64_t until_ns) {
 std::optional<TiltReading> Replay::read_tilt() {
   while (const auto frame = can_->next(line_.time_ns)) {
     if (const auto reading = tilt_decoder_.take(*frame)) {
-      ++tilt_readings_;
+      if (++tilt_readings_ == 1) first_tilt_ = *reading;
+      turns_away_ += magnitude(reading->angle_rad - first_tilt_.angle_rad) > 2.0f * std::numbers::pi_v<float>;
       return reading;
     }
   }
@@ -152,7 +155,7 @@ void Replay::feed_poses(std::int64_t until_ns) {
       poses_until_ns_ = log_ended;
       return;
     }
-    ++poses_fed_;
+    if (++poses_fed_ == 1) first_pose_ns_ = pose->time_ns;
     pipeline_->add_pose(to_pose(*pose));
     poses_until_ns_ = pose->time_ns;
     robot_marker_ = {pose->x_m, pose->y_m,
@@ -178,6 +181,11 @@ std::string Replay::remarks() const {
   const Counters& c = pipeline_->counters();
   add(logs_.can, c.tilt_dropped,
       std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
+  if (2 * turns_away_ > tilt_readings_) {  // not a few damaged ones
+    add(logs_.can, turns_away_,
+        std::to_string(tilt_readings_) +
+            " tilt angles are more than a turn from the first; expected radians, see scale of tilt.signal");
+  }
   add(logs_.poses, c.poses_dropped, std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
   add(logs_.scans, lines_ - lines_taken_,
       std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
@@ -209,8 +217,11 @@ void Replay::check_complete() const {
   const std::string gap = status_ == Status::no_tilt
                               ? ", and tilt frames at most max_gap_s, " + shortest(robot_.tilt.max_gap_s) + " s, apart"
                               : "";
+  std::string firsts = "; the first scan line is of " + seconds(first_line_ns_, 3);
+  if (tilt_readings_ > 0) firsts += ", the first tilt angle of " + seconds(first_tilt_.time_ns, 3);
+  if (poses_fed_ > 0) firsts += ", the first pose of " + seconds(first_pose_ns_, 3);
   throw BadInput(logs_.scans + ": no scan line could be used, the last for: " + to_string(status_) +
-                 "; expected times that agree with the tilt log and the poses" + gap);
+                 "; expected times that agree with the tilt log and the poses" + gap + firsts);
 }
 
 std::vector<MapCurb> Replay::all_curbs() const {

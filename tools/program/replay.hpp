@@ -78,6 +78,9 @@ class Replay {
   double take_s_ = 0;
   std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
+  TiltReading first_tilt_{};
+  long turns_away_ = 0;  ///< readings more than a turn from the first
+  std::int64_t first_line_ns_ = 0, first_pose_ns_ = 0;
   LeftBehind left_behind_;
 };
 
