@@ -73,5 +73,23 @@ TEST_CASE("nod watch: a clock that is set back does not make a tilt that moves r
   CHECK(servo.rested == 0);
 }
 
+TEST_CASE("nod watch: nor does a clock that is set, nor readings that are missing for longer than a sweep takes") {
+  Servo servo;
+  for (int time = 0; time < 100; ++time) {  // at any angle
+    servo.run(2.03, 0.7, 0.5);
+    servo.time_ns += 3'600'000'000'000;
+  }
+  CHECK(servo.rested == 0);
+  servo.run(5.0, 0.7, 0.0);
+  servo.time_ns += 3'600'000'000'000;
+  servo.run(1.0, 0.7, 0.0);
+  CHECK(servo.watch.watch().state() == SourceState::ok);  // it may have moved meanwhile
+  servo.run(6.0, 0.7, 0.0);
+  CHECK(servo.rested == 1);
+  servo.time_ns += 3'600'000'000'000;
+  servo.run(1.0, 0.7, 0.0);
+  CHECK(servo.moved == 0);  // nobody has seen it move
+}
+
 }  // namespace
 }  // namespace curbline
