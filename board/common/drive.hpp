@@ -12,11 +12,19 @@
 #include "curbline/can/tilt_decoder.hpp"
 #include "curbline/pipeline.hpp"
 #include "drive_log/drive_log.hpp"
+#ifdef CURBLINE_ROBOT
+#include "robot.hpp"
+#endif
 
 namespace curbline::board {
 
-/// Sizes of the boards' pipeline: 40 x 40 cells, 16 planes, 1081 beams. The budgets hold for them.
+/// Sizes of the boards' pipeline: those of a robot (robot.hpp of the template, or of its copy), else 40 x 40 cells, 16
+/// planes, 1081 beams, for which the budgets hold.
+#ifdef CURBLINE_ROBOT
+using ::limits;
+#else
 inline constexpr Limits limits{};
+#endif
 
 using drive_log::RecordHeader;
 using drive_log::RecordKind;

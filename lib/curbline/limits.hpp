@@ -6,7 +6,7 @@
 //   cells a side        40      80     120     200     400
 //   stack, bytes     2,904   3,464   6,384  15,736  60,080
 //
-// (tools/boards/stack.py, of the drive.elf of board/_template with these limits in board/common/drive.hpp.)
+// (tools/boards/stack.py, of the drive.elf of board/_template with these limits in its robot.hpp.)
 #pragma once
 
 namespace curbline {

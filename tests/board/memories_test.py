@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """memories_test.py BUILD: a firmware is linked again when its memories change, in the linker script of its board or in the part that
-boards share: the build lists both as dependencies. Otherwise the next image would be flashed to the old addresses."""
+boards share: the build lists both as dependencies. Otherwise the next image would be flashed to the old addresses. The template's drive is
+of the sizes in its robot.hpp, as its firmware is."""
 import re
 import sys
 import unittest
@@ -26,6 +27,10 @@ class Memories(unittest.TestCase):
             for wanted in (script, "sections.ld"):
                 with self.subTest(board=board, program=program, script=wanted):
                     self.assertIn("/" + wanted, made_of(board, program))
+
+    def test_the_templates_drive_is_of_the_robots_sizes(self):
+        ninja, make = BOARDS / "template/build.ninja", BOARDS / "template/common/CMakeFiles/curbline_drive.dir/flags.make"
+        self.assertIn("-DCURBLINE_ROBOT", (ninja if ninja.exists() else make).read_text())
 
 
 if __name__ == "__main__":

@@ -1,9 +1,14 @@
 // The template's settings fit limits smaller than the template's own: the pipeline starts, its window is centred ahead,
-// and the laser looks equally far to the left and right.
+// and the laser looks equally far to the left and right. The drive has these limits too, else it would not fit where
+// the robot does.
 #include <cstdio>
+#include <type_traits>
 
 #include "curbline/pipeline.hpp"
+#include "drive.hpp"
 #include "robot.hpp"
+
+static_assert(std::is_same_v<curbline::Pipeline<curbline::board::limits>, curbline::Pipeline<limits>>);
 
 int main() {
   static_assert(limits.rows == 24 && limits.beams == 361, "robot.hpp of the template, its limits replaced");

@@ -77,7 +77,7 @@ def run(board, program, words, extra=(), timeout_s=900):
     except subprocess.TimeoutExpired:
         sys.exit(f"{board.name}: {program.name} has not ended after {timeout_s} s")
     if done.returncode != 0:
-        sys.exit(f"{board.name}: {program.name} ended with {done.returncode}: {done.stderr.strip()}")
+        sys.exit(f"{board.name}: {' '.join([program.name, *words])} ended with {done.returncode}: {'; '.join(done.stderr.splitlines())}")
     said = (done.stdout + done.stderr).splitlines(keepends=True)
     return "".join(line for line in said if not line.startswith("qemu: module audio"))  # QEMU lacks an audio module
 

@@ -82,9 +82,7 @@ def instruction_rows(results):
     return rows
 
 
-def measure(build, board):
-    elf = boards.program_of(build, board.name).resolve()
-    results = run_drives.results_folder(build, board.name)
+def measure(board, elf, results):
     parts = []
     for name, size in members.member_sizes(elf, "Pipeline<", board.compilers):
         parts += members.member_sizes(elf, "LineIntake<", board.compilers) if name == "line_intake_" else [(name, size)]
@@ -154,7 +152,7 @@ def main(build, name, keep):
     budget = read_budget(folder / "budget.toml")
     kept_file = folder / "measured.csv"
     kept = {(g, n): int(u) for g, n, u in list(csv.reader(kept_file.open()))[1:]} if kept_file.exists() else {}
-    rows = measure(build, board)
+    rows = measure(board, boards.program_of(build, name).resolve(), run_drives.results_folder(build, name))
     if not any(run_drives.results_folder(build, name).glob("scan-*.counts")):
         if keep:
             sys.exit(f"--keep: {kept_file} keeps figures of all drives, and the recorded ones are not there")
