@@ -91,6 +91,13 @@ def measure(board, elf, results):
     return rows + stack_rows(board, elf, results) + instruction_rows(results)
 
 
+def template_rows(build, board):
+    """The flash of a robot's firmware, which has the loop and what goes out on CAN in place of the drive."""
+    if board.name != "cortex-m7":  # the template's core
+        return []
+    return [("", "the template's, its port empty", flash_bytes(boards.program_of(build, "template", "robot.elf"), board.compilers))]
+
+
 def print_table(board, rows, budget, kept):
     """Prints the table and returns the number of exceeded budgets. A budget without a measurement could never be exceeded, so it is
     refused."""
@@ -153,6 +160,7 @@ def main(build, name, keep):
     kept_file = folder / "measured.csv"
     kept = {(g, n): int(u) for g, n, u in list(csv.reader(kept_file.open()))[1:]} if kept_file.exists() else {}
     rows = measure(board, boards.program_of(build, name).resolve(), run_drives.results_folder(build, name))
+    rows[1:1] = template_rows(build, board)
     if not any(run_drives.results_folder(build, name).glob("scan-*.counts")):
         if keep:
             sys.exit(f"--keep: {kept_file} keeps figures of all drives, and the recorded ones are not there")
