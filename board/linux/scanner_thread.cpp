@@ -44,8 +44,9 @@ void ScannerThread::run() {
     const std::lock_guard lock(mutex_);
     const scanner::Counters& c = link_.session->counters();
     silent = (silent || state_.connected) && now_ns - last_line_ns > silent_after_ns_ && scanner_.is_open();
-    if (line) state_.connected = true;
-    if (event == LiveScanner::Event::lost || silent) state_.connected = false;
+    if (event == LiveScanner::Event::lost || silent) state_.lost = true;
+    if (line) state_.lost = false;
+    state_.connected = (line || state_.connected) && !state_.lost;
     state_.error = silent ? ETIMEDOUT : scanner_.last_error();
     state_.problem = link_.session->problem();
     state_.connections = scanner_.connections();

@@ -18,6 +18,7 @@ namespace curbline::daemon {
 struct ScannerState {
   std::string_view name{};     ///< as given to --scans; lives as long as the thread
   bool connected = false;      ///< and sends lines of the robot's laser
+  bool lost = false;           ///< and has not sent one since: not at the start, before a connection has failed
   int error = 0;               ///< errno of the last failure, ETIMEDOUT: no lines; 0: it closed the connection
   std::string_view problem{};  ///< what the scanner refused or reported; static text
   std::uint64_t connections = 0;

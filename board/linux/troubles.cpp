@@ -57,7 +57,7 @@ void Troubles::tell_link(const socketcan::SocketCan& bus) {
 
 void Troubles::tell_scanner(const ScannerState& scanner) {
   if (scanner.connected == scanner_connected_) {
-    if (scanner.connected || scanner_told_ || (scanner.error == 0 && scanner.problem.empty())) return;
+    if (scanner.connected || scanner_told_ || !(scanner.lost || scanner.error != 0 || !scanner.problem.empty())) return;
     scanner_told_ = true;  // it has not been connected since the start
   }
   scanner_connected_ = scanner.connected;

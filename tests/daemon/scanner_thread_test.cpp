@@ -1,13 +1,20 @@
-// A live scanner that stops in the middle of its lines, though its connection stays.
+// A live scanner that stops in the middle of its lines, though its connection stays, and one that closes each
+// connection.
 #include "scanner_thread.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cerrno>
 #include <chrono>
 #include <thread>
 
+#include "error_pipe.hpp"
 #include "scan_log.hpp"
 #include "scanner_simulator/server.hpp"
+#include "troubles.hpp"
 
 namespace curbline::daemon {
 namespace {
@@ -68,6 +75,59 @@ TEST_CASE("scanner thread: a scanner without lines for half a second is lost, th
   CHECK(changes[4].error == 0);
   CHECK(at[2] - at[1] > 0.9s);  // 20 lines and half a second
   CHECK(at[2] - at[1] < 1.9s);
+}
+
+/// Something that is no scanner, or one that serves another client: closes each connection at once.
+class Closing {
+ public:
+  Closing() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{.sin_family = AF_INET, .sin_port = 0, .sin_addr = {htonl(INADDR_LOOPBACK)}, .sin_zero = {}};
+    socklen_t size = sizeof address;
+    REQUIRE(::bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) == 0);
+    REQUIRE(::listen(listener_, 4) == 0);
+    REQUIRE(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+    name = "scip2:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    closing_ = std::thread([this] {
+      for (int client = 0; (client = ::accept(listener_, nullptr, nullptr)) >= 0;) ::close(client);
+    });
+  }
+  ~Closing() {
+    ::shutdown(listener_, SHUT_RDWR);
+    closing_.join();
+    ::close(listener_);
+  }
+  Closing(const Closing&) = delete;
+  Closing& operator=(const Closing&) = delete;
+
+  std::string name;
+
+ private:
+  int listener_;
+  std::thread closing_;
+};
+
+TEST_CASE("scanner thread: a scanner that closes each connection from the first on is told, once") {
+  const Closing closing;
+  const LaserSettings laser = tools::Robot{}.laser;
+  const auto inbox = std::make_unique<LineInbox>();
+  inbox->init(tools::Robot{}, 1.0f);
+  ScannerThread thread(closing.name, tools::scanner_link(closing.name, laser), laser, *inbox, 0.5f);
+  Report report;
+  ScannerState state = thread.state();
+  report.scanner = &state;
+  Troubles troubles;
+  ErrorPipe standard_error;
+  troubles.tell(report, {}, 0);
+  CHECK(standard_error.read().empty());  // it has not been tried yet
+  thread.start();
+  for (int i = 0; i < 300 && state.connections < 3; ++i) {
+    std::this_thread::sleep_for(10ms);
+    state = thread.state();
+    troubles.tell(report, {}, 0);
+  }
+  CHECK(state.connections >= 3);
+  CHECK(standard_error.read() ==
+        "curblined: no scan lines from the scanner " + closing.name + ": it closed the connection\n");
 }
 
 TEST_CASE("scanner thread: damaged telegrams of every kind are counted, and cost their lines alone") {
