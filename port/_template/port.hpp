@@ -25,7 +25,9 @@ class Port {
   /// and returns their number. A delay of up to a millisecond in that time is no worse than the servo's own.
   int receive(std::span<curbline::can::Frame> out);
 
-  /// A complete scan line. Its time is that of its first beam; its ranges are valid until the next call.
+  /// A complete scan line. Its time is that of its first beam; its ranges are valid until the next call. Its bearings
+  /// are taken to be those of LaserSettings: compare them if the scanner tells its own, as scanner::Line does, since a
+  /// scanner that is set to another step or sector maps the ground where it is not.
   std::optional<curbline::ScanLine> scan_line();
 
   /// A pose of the robot. Always nothing if the settings say that the robot is stationary.
