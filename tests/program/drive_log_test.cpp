@@ -1,5 +1,6 @@
 // curbline-drive-log: converts logs to the input of boards, and the output of boards to curbs.
 #include <cstdlib>
+#include <filesystem>
 
 #include "drive_log/drive_log.hpp"
 #include "program.hpp"
@@ -51,6 +52,30 @@ TEST_CASE("drive log: a laser that nods wants its tilt log, a robot that drives 
   refused(logs.path("robot.toml"), "expected --can LOG");
   const std::string fixed = logs.directory().write("r.toml", "[tilt]\nfixed = true\n[pose]\nstill = false\n");
   refused(fixed, "expected --poses FILE");
+}
+
+TEST_CASE("drive log: tilt frames of a second interface, or none at all, are refused as by replay") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.5"});
+  const auto refused = [&](const std::string& can, const std::string& where, const std::string& expected) {
+    const std::string log = logs.directory().write("changed.log", can);
+    Words words = logs.replay("can", log);
+    const Outcome by_replay = curbline(words);
+    words.front() = "write";
+    const Outcome outcome = drive_log(words + Words{"--out", logs.path("drive")});
+    check_refused(outcome, log + where, expected);
+    CHECK(outcome.err == by_replay.err);
+    CHECK_FALSE(std::filesystem::exists(logs.path("drive")));
+  };
+  std::string both, other, cut;
+  for (const std::string& line : lines_of(read_file(logs.path("can.log")))) {
+    const std::string time = line.substr(0, line.find(' ')), data = line.substr(line.find('#')) + "\n";
+    both += line + "\n" + time + " can1 181" + data;
+    other += time + " can0 182" + data;
+    cut += time + " can0 181#00\n";
+  }
+  refused(both, ":2: ", "tilt frames of can1 after those of can0; expected one interface\n");
+  refused(other, ": none of ", "expected id 0x181 of 11 bits as the robot's description has it\n");
+  refused(cut, ": ", "none holds an angle; expected 6 bytes or more and at most 1e+06 rad\n");
 }
 
 TEST_CASE("drive log: an empty file name is wrong usage") {

@@ -7,6 +7,7 @@
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"
+#include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/laser_log.hpp"
 #include "formats/trajectory.hpp"
@@ -64,6 +65,8 @@ class DriveWriter {
       }
       put_line(*line);
     }
+    if (can_ && tilt_decoder_.counters().readings == 0)
+      throw BadInput(can_->path() + ": " + without_readings(robot_, tilt_decoder_.counters()));
     out_.commit();
   }
   std::string remarks() const { return scans_.remarks(); }
@@ -86,6 +89,7 @@ class DriveWriter {
   void put_frames(std::int64_t until_ns) {
     while (can_ && tilt_until_ns_ < until_ns) {
       const auto frame = can_->next();
+      if (frame) interface_.check(*can_, robot_.tilt_signal, *frame);
       if (frame) put(RecordKind::can_frame, *frame);
       if (!frame) tilt_until_ns_ = log_ended;
       if (const auto reading = frame ? tilt_decoder_.take(*frame) : std::nullopt) tilt_until_ns_ = reading->time_ns;
@@ -112,6 +116,7 @@ class DriveWriter {
   Robot robot_;
   LaserLog scans_;
   std::optional<CanLogReader> can_;
+  OneInterface interface_;
   std::optional<TrajectoryReader> poses_;
   AtomicFile out_;
   can::TiltDecoder tilt_decoder_{};

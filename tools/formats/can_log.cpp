@@ -31,6 +31,14 @@ std::optional<can::Frame> CanLogReader::next() {
   return std::nullopt;
 }
 
+void OneInterface::check(const CanLogReader& log, const can::Signal& signal, const can::Frame& frame) {
+  if (!can::carries(signal, frame)) return;
+  if (name_.empty()) name_ = log.interface_name();
+  if (name_ == log.interface_name()) return;
+  throw BadInput(log.path(), log.line(),
+                 "tilt frames of " + log.interface_name() + " after those of " + name_ + "; expected one interface");
+}
+
 std::string frame_of(const can::Signal& signal) {
   const std::string id = "id " + hexadecimal(signal.id) + (signal.extended ? " of 29 bits" : " of 11 bits");
   return signal.multiplexor ? id + " with multiplexor " + std::to_string(signal.multiplexor->value) : id;

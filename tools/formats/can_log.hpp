@@ -31,7 +31,18 @@ class CanLogReader {
   std::uint64_t frames_lost_ = 0;
 };
 
-/// The frame that contains a signal, for the user: "id 0x181", "id 0x181 with multiplexor 9".
+/// Two servos with one id, on separate buses, would look like one servo that jumps.
+class OneInterface {
+ public:
+  /// Throws BadInput if the frame that the log returned last carries the signal and is of another interface than those
+  /// before.
+  void check(const CanLogReader& log, const can::Signal& signal, const can::Frame& frame);
+
+ private:
+  std::string name_;
+};
+
+/// The frame that contains a signal, for the user: "id 0x181 of 11 bits", "id 0x181 of 11 bits with multiplexor 9".
 std::string frame_of(const can::Signal& signal);
 
 /// Writes one line. The frame must be one that a bus can carry; times are truncated to the microsecond, as by candump.

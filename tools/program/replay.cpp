@@ -28,23 +28,6 @@ std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs)
   return pose ? std::optional(pose->time_ns) : std::nullopt;
 }
 
-/// Why a log gave no readings at all.
-std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
-  const std::string frames = std::to_string(counters.frames) + " frames";
-  if (counters.without_sync > 0) {
-    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id " +
-           hexadecimal(*robot.tilt_sync_id) + " before each, as the robot's description has it";
-  }
-  if (counters.malformed > 0) {
-    return std::to_string(counters.malformed) + " of " + frames +
-           " have the tilt signal's id and none holds an angle; expected " +
-           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more and at most " +
-           shortest(TiltReading::furthest_rad) + " rad";
-  }
-  return "none of " + frames + " is the tilt signal; expected " + frame_of(robot.tilt_signal) +
-         " as the robot's description has it";
-}
-
 bool is_empty(const Map& map) {
   return std::all_of(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points == 0; });
 }

@@ -19,7 +19,7 @@ class LogFrames final : public TiltFrames {
   std::optional<can::Frame> next(std::int64_t) override {
     auto frame = log_.next();
     ended_ = !frame;
-    if (frame && can::carries(signal_, *frame)) check_interface();
+    if (frame) interface_.check(log_, signal_, *frame);
     return frame;
   }
   bool ended() const override { return ended_; }
@@ -30,18 +30,9 @@ class LogFrames final : public TiltFrames {
   }
 
  private:
-  /// Two servos with one id, on separate buses, would look like one servo that jumps.
-  void check_interface() {
-    if (interface_.empty()) interface_ = log_.interface_name();
-    if (interface_ == log_.interface_name()) return;
-    throw BadInput(
-        log_.path(), log_.line(),
-        "tilt frames of " + log_.interface_name() + " after those of " + interface_ + "; expected one interface");
-  }
-
   CanLogReader log_;
   can::Signal signal_;
-  std::string interface_;
+  OneInterface interface_;
   bool ended_ = false;
 };
 

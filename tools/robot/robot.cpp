@@ -4,6 +4,7 @@
 
 #include "curbline/setting_ranges.hpp"
 #include "formats/bad_input.hpp"
+#include "formats/can_log.hpp"
 #include "formats/decimals.hpp"
 #include "robot/parts.hpp"
 
@@ -122,6 +123,22 @@ void check_logs(const Robot& robot, const std::string& can, const std::string& p
   if (!robot.pose.still && poses.empty())
     throw BadInput(robot.file +
                    ": the robot drives and there are no poses; expected --poses FILE, or pose.still = true");
+}
+
+std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters) {
+  const std::string frames = std::to_string(counters.frames) + " frames";
+  if (counters.without_sync > 0) {
+    return "none of " + frames + " is a tilt angle whose SYNC frame came before; expected id " +
+           hexadecimal(*robot.tilt_sync_id) + " before each, as the robot's description has it";
+  }
+  if (counters.malformed > 0) {
+    return std::to_string(counters.malformed) + " of " + frames +
+           " have the tilt signal's id and none holds an angle; expected " +
+           std::to_string(can::bytes_needed(robot.tilt_signal)) + " bytes or more and at most " +
+           shortest(TiltReading::furthest_rad) + " rad";
+  }
+  return "none of " + frames + " is the tilt signal; expected " + frame_of(robot.tilt_signal) +
+         " as the robot's description has it";
 }
 
 }  // namespace curbline::tools

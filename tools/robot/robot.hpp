@@ -4,6 +4,7 @@
 
 #include "curbline/can/servo_presets.hpp"
 #include "curbline/can/signal.hpp"
+#include "curbline/can/tilt_decoder.hpp"
 #include "curbline/settings.hpp"
 
 #include <cstdint>
@@ -62,6 +63,9 @@ Robot read_robot(const std::string& path);
 
 /// Throws BadInput if the robot needs a log whose name is empty: `can` of the tilt, or `poses`.
 void check_logs(const Robot& robot, const std::string& can, const std::string& poses);
+
+/// Why a CAN log gave no tilt readings at all, for the user.
+std::string without_readings(const Robot& robot, const can::TiltDecoderCounters& counters);
 
 /// The settings for Pipeline::init().
 inline Settings pipeline_settings(const Robot& robot) {
