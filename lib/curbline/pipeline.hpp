@@ -153,6 +153,7 @@ class Pipeline {
   Viewpoint view() const {
     Viewpoint view{p_map_tilt_.x() - dem_.origin_x_m(), p_map_tilt_.y() - dem_.origin_y_m(), p_map_tilt_.z()};
     view.divergence_rad = settings_.laser.beam_divergence_rad;
+    view.bearing_step_rad = magnitude(settings_.laser.bearing_step_rad);
     view.localisation_steps = line_intake_.pose_offset().localisation_steps();
     if (settings_.pose.still || settings_.window.fixed) return view;
     view.end_x_m = dem_.length_m(0);

@@ -6,6 +6,7 @@ namespace curbline {
 /// Bound of growth_m_s: a servo at 3 rad/s, ground 10 m away. Beyond, a tilt reading is wrong.
 inline constexpr float most_growth_m_s = 31.0f;
 
+inline constexpr float usual_bearing_step_rad = 0.004363323f;  ///< a quarter of a degree
 inline constexpr float usual_divergence_rad = 0.01f;  ///< of a beam, full angle; data sheets state 5 to 15 mrad
 
 /// Metres, in the map frame; variance_m2 is that of z, from range, bearing, tilt, mount and pose (ProjectedLine).
@@ -40,8 +41,9 @@ struct Viewpoint {
   /// The window's size on a robot that drives: cells were seen from as far away as the window's end. 0 on one that
   /// stands.
   float end_x_m = 0.0f, end_y_m = 0.0f;
-  bool localisation_steps = false;              ///< it has been found to step: PoseOffset::localisation_steps()
-  float divergence_rad = usual_divergence_rad;  ///< of a beam: LaserSettings::beam_divergence_rad
+  bool localisation_steps = false;                  ///< it has been found to step: PoseOffset::localisation_steps()
+  float divergence_rad = usual_divergence_rad;      ///< of a beam: LaserSettings::beam_divergence_rad
+  float bearing_step_rad = usual_bearing_step_rad;  ///< from beam to beam, above 0
 
   /// Length of a beam's spot on level ground that lies above_m below the laser, sqrt(range_m2) away.
   float spot_m(float range_m2, float above_m) const { return divergence_rad * range_m2 / above_m; }

@@ -33,10 +33,10 @@ struct WindowSettings {
 
 /// The range-finder, from its data sheet.
 struct LaserSettings {
-  int beams = 1081;                         ///< 1 to Limits::beams
-  float first_bearing_rad = -2.3561945f;    ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
-  float bearing_step_rad = 0.004363323f;    ///< [-1, 1], negative for a scanner that turns clockwise; not 0.
-                                            ///< first_bearing_rad + beams * this: [-4 pi, 4 pi]
+  int beams = 1081;                       ///< 1 to Limits::beams
+  float first_bearing_rad = -2.3561945f;  ///< of beam 0, counterclockwise about the laser's z axis, [-2 pi, 2 pi]
+  float bearing_step_rad = usual_bearing_step_rad;  ///< [-1, 1], negative for a scanner that turns clockwise; not 0.
+                                                    ///< first_bearing_rad + beams * this: [-4 pi, 4 pi]
   float beam_interval_s = 25e-3f / 1440.f;  ///< between beams, [0, 1]: a UTM-30LX takes 1440 steps a turn of 25 ms
   float min_range_m = 0.1f;                 ///< readings below, and 0, mean no return; [0, 1e6]
   float max_range_m = 30.0f;                ///< readings at or above mean no return; (min_range_m, 1e6]. Of a UTM-30LX

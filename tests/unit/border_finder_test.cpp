@@ -660,5 +660,32 @@ TEST_CASE("border finder: a face lies where it is seen, however many cells befor
   }
 }
 
+//               x____x____x____x____      the cell that the edge crosses lies beside one that a single line has crossed
+//  ______x____x_
+TEST_CASE("border finder: an edge lies where it is in its cell, wherever a scan line has crossed the cell before it") {
+  for (const double line_m : {0.01, 0.09}) {
+    for (const bool turned : {false, true}) {
+      Stages<small_limits> stages(small_settings());
+      test::Noise noise;
+      const auto add = [&](double across, double along) {
+        const auto x = static_cast<float>(turned ? along : across), y = static_cast<float>(turned ? across : along);
+        const double height = (across < 1.205 ? 0.0 : 0.12) + 0.01 * noise.normal();
+        stages.dem.add({x, y, static_cast<float>(height), 1e-4f});
+      };
+      for (double along = 0.01; along < 2.4; along += 0.02) {
+        for (int i = 0; i < 24; ++i) {
+          if (i != 12) add(0.1 * i + line_m, along);
+        }
+        for (double at = 0.0025; at < 0.1; at += 0.005) add(1.2 + at, along);
+      }
+      stages.settle();
+      stages.trace(turned ? 1.2f : 0.0f, turned ? 0.0f : 1.2f);
+      REQUIRE(stages.tracer.curbs().size() == 1);
+      const Curb& curb = stages.tracer.curbs()[0];
+      CHECK(0.5f * (turned ? curb.y0_m + curb.y1_m : curb.x0_m + curb.x1_m) == Approx(1.205).margin(0.006));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace curbline

@@ -132,21 +132,25 @@ TEST_CASE("curb piece: where two surfaces meet at a single cell the curb is as l
   CHECK(curb.face_width_m == Approx(0.1 * std::sqrt(0.5)).margin(0.001));  // of the cell, measured across the curb
 }
 
-/// Variance of a step's position, with 24 borders in gaps of one cell of 10 cm, without the part due to the uncertainty
-/// of its height. Each border may be anywhere within half a cell, and deviates by a cell's own error relative to the
-/// step.
-double place_variance_m2(const Stages<>& stages, const Curb& curb) {
+/// Variance of a step's position, with 24 borders between cells of 10 cm that hold one side each, without the part due
+/// to the uncertainty of its height: the edge may be anywhere between two scan lines, one a cell, as the four points of
+/// a cell are fewer than the beams that fit into it. Each border deviates by a cell's own error relative to the step.
+double place_variance_m2(const Stages<>& stages, const Curb& curb, double lines) {
   const double cells_m2 = 0.5 * static_cast<double>(stages.mixture.plane(curb.near_label).fit_variance_m2 +
                                                     stages.mixture.plane(curb.far_label).fit_variance_m2);
   const double step_m2 = static_cast<double>(curb.height_m * curb.height_m);
-  return 0.05 * 0.05 / (3.0 * 24.0) + 0.2 * 0.1 * cells_m2 / step_m2 / 24.0;
+  return 0.1 * 0.1 / (12.0 * lines) + 0.2 * 0.1 * cells_m2 / step_m2 / 24.0;
 }
 
-TEST_CASE("curb piece: a curb's place is known to its gaps, over the root of their number") {
-  const auto stages = traced(up);
-  REQUIRE(stages->tracer.curbs().size() == 1);
-  const Curb& curb = stages->tracer.curbs()[0];
-  CHECK(curb.position_sd_m == Approx(std::sqrt(place_variance_m2(*stages, curb))).epsilon(0.02));
+TEST_CASE("curb piece: a curb's place is known to what parts two scan lines, over the root of those that cross it") {
+  const auto along = traced(up), across = traced([](double x, double y) { return up(y, x); });
+  for (const auto* stages : {&along, &across}) {
+    INFO((stages == &along ? "along" : "across"));
+    REQUIRE((*stages)->tracer.curbs().size() == 1);
+    const Curb& curb = (*stages)->tracer.curbs()[0];
+    const double lines = stages == &along ? 1.0 : 25.0;  // of 24 cells, with what is between their ends
+    CHECK(curb.position_sd_m == Approx(std::sqrt(place_variance_m2(**stages, curb, lines))).epsilon(0.02));
+  }
 }
 
 //      ________      scan lines run along the edge, three empty cells apart: no border shows where it lies between them
@@ -159,13 +163,43 @@ TEST_CASE("curb piece: a step between the same two scan lines is known to all th
   CHECK(curb.position_sd_m == Approx(0.3 / std::sqrt(12.0)).epsilon(0.02));  // regardless of the number of borders
 }
 
+//      x  x |x  x        on every row the same scan lines, at the same places: all rows are wrong by as much
+//  x  x     |
+TEST_CASE("curb piece: a step that scan lines run along lies between two of them, anywhere in what parts them") {
+  const double pitch_m = GENERATE(0.1, 0.05);
+  double errors_m2 = 0.0, told_m2 = 0.0;
+  const double beam_m = 0.025;  // from beam to beam, 1.6 m from the laser
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    Noise noise(seed);
+    const double first_m = pitch_m * noise.uniform(), edge_m = 1.15 + 0.1 * noise.uniform();
+    Stages<> stages(small_settings());
+    for (double x = first_m; x < 2.4; x += pitch_m) {
+      for (double y = 0.5 * beam_m; y < 2.4; y += beam_m)
+        stages.dem.add({static_cast<float>(x), static_cast<float>(y),
+                        (x < edge_m ? 0.0f : 0.12f) + 0.001f * static_cast<float>(noise.normal()), 1e-4f});
+    }
+    stages.view.bearing_step_rad = static_cast<float>(beam_m) / 1.6f;
+    stages.settle();
+    stages.trace(0.0f, 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    const Curb& curb = stages.tracer.curbs()[0];
+    errors_m2 += std::pow(0.5 * static_cast<double>(curb.x0_m + curb.x1_m) - edge_m, 2) / 60;
+    told_m2 += std::pow(static_cast<double>(curb.position_sd_m), 2) / 60;
+  }
+  INFO("mm: " << 1e3 * std::sqrt(errors_m2) << ", told " << 1e3 * std::sqrt(told_m2) << ", of lines " << pitch_m);
+  CHECK(errors_m2 < 1.5 * pitch_m * pitch_m / 12.0);
+  CHECK(told_m2 > 0.4 * errors_m2);
+  CHECK(told_m2 < 2.0 * errors_m2);
+}
+
 TEST_CASE("curb piece: a low step's place is known less well, as its height is") {
   const auto stages = traced([](double x, double) { return x < 1.4 ? 0.0 : 0.025; });
   REQUIRE(stages->tracer.curbs().size() == 1);
   const Curb& curb = stages->tracer.curbs()[0];
   REQUIRE(curb.kind == CurbKind::step_up);
   // Cells of 10 cm, each deviating by half of the height's uncertainty relative to the height.
-  const double others_m2 = place_variance_m2(*stages, curb), by_height_m = 0.1 * 0.5 * curb.height_sd_m / curb.height_m;
+  const double others_m2 = place_variance_m2(*stages, curb, 1.0),
+               by_height_m = 0.1 * 0.5 * curb.height_sd_m / curb.height_m;
   CHECK(curb.position_sd_m == Approx(std::sqrt(others_m2 + by_height_m * by_height_m)).epsilon(0.02));
   CHECK(by_height_m > 0.001);
 }

@@ -93,7 +93,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   const bool rising = gap.first().label < gap.second().label;
   const auto& one = rising ? gap.first() : gap.second();
   const auto& other = rising ? gap.second() : gap.first();
-  const auto [along_m, open, empty, sloped] = gap.middle();
+  const auto [along_m, open, parted, empty, sloped] = gap.middle();
   Border border = Borders<limits>::on(gap.line(), along_m);
   border.probability = 1.0f - gap.same_plane();
   border.half_gap_m = 0.5f * static_cast<float>(gap.length()) * gap.line().pitch_m();
@@ -102,6 +102,7 @@ auto BorderFinder<limits>::border_of(const Gap& gap) const -> Border {
   border.sign = static_cast<std::int8_t>(rising ? 1 : -1);
   border.sloped_cells = sloped;
   border.open = open;
+  border.parted = parted;
   border.empty = static_cast<std::uint8_t>(std::min(empty, 255));
   border.beside_one = beside(gap, along_m, -border.sign, one);
   border.beside_other = beside(gap, along_m, border.sign, other);

@@ -80,6 +80,7 @@ class PlaneGap {
   struct Middle {
     float along_m;  ///< from the line's beginning
     bool open;      ///< Borders::Border::open
+    bool parted;    ///< Borders::Border::parted
     int empty;      ///< cells without a point
     float sloped;   ///< Borders::Border::sloped_cells
   };
@@ -96,13 +97,15 @@ class PlaneGap {
   Sides sides() const {
     return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
   }
-  /// The cells of the gap that hold both heights of a step up, and so lie on neither plane, from the first one to the
-  /// last; without any, the cells on both sides.
+  /// The cells that hold both heights of a step up, from the first one to the last; without any, the cells on both
+  /// sides of the gap.
   struct Face {
     int first, last;
+    bool parted = false;  ///< of two cells side by side, each holds one height
   };
+  bool mixed(int along, const Plane& plane) const;
   Face seen_face(bool second_is_upper) const;
-  bool unseen_reaches(int along, const Face& face) const;
+  float centroid_share(int along, const Face& face) const;
   bool behind_obstacle(int along) const;
 
   const CurbStages<limits>& stages_;
@@ -175,36 +178,45 @@ auto PlaneGap<limits>::middle() const -> Middle {
       covered += 1.0f;
       before += 0.5f;
     } else {
-      const bool inner = along != first_.along && along != second_.along;
       const float far_share = line_.above_m(along, first_.plane) / step_m;
-      before += before_middle({far_share, 0.5f + (inner || unseen_reaches(along, face) ? line_.offset(cell) : 0.0f)});
-      if (inner) sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
+      before += before_middle({far_share, 0.5f + centroid_share(along, face) * line_.offset(cell)});
+      if (along != first_.along && along != second_.along)
+        sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
   const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
   if (2.0f * step_m * step_m <= gate * (first_.plane.variance_m2 + second_.plane.variance_m2))
-    return {halfway_m, open, empty, 0.0f};
+    return {halfway_m, open, false, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
-  return {(static_cast<float>(first_.along) + before) * cell_m, open, empty, sloped};
+  return {(static_cast<float>(first_.along) + before) * cell_m, open, face.parted, empty, sloped};
+}
+
+/// Do the heights in a cell spread more than those of a plane?
+template <Limits limits>
+bool PlaneGap<limits>::mixed(int along, const Plane& plane) const {
+  return line_.dem.mixed(line_.dem.cell(line_.slot(along)), line_.dem.slope_m2(plane));
 }
 
 /// Seen from its upper side, a step hides what is below its edge: empty cells there are no sign of missing scan lines.
 template <Limits limits>
 auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
-  if (length() == 1) return {first_.along, second_.along};
   const Side& lower = second_is_upper ? first_ : second_;
   const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
   const bool second_is_far = line_.away(from, lower.along) > 0;
-  if (second_is_far != second_is_upper) return {first_.along, second_.along};
+  Face face{first_.along, second_.along};
+  if (second_is_far != second_is_upper) return face;
+  if (length() == 1) {
+    const bool in_first = mixed(first_.along, first_.plane), in_second = mixed(second_.along, second_.plane);
+    if (in_first == in_second) return {first_.along, second_.along, !in_first};
+    return in_first ? Face{first_.along, first_.along} : Face{second_.along, second_.along};
+  }
   const auto lies_on = [&](int along, const Cell& cell, const Plane& plane) {
     return stages_.lies_on(line_.row(along), line_.col(along), cell, plane);
   };
-  Face face{first_.along, second_.along};
   for (int along = first_.along + 1; along < second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
-    if (!cell.valid() || stages_.mixture.covered(s) || !line_.dem.mixed(cell, line_.dem.slope_m2(first_.plane)))
-      continue;
+    if (!cell.valid() || stages_.mixture.covered(s) || !mixed(along, first_.plane)) continue;
     if (lies_on(along, cell, first_.plane) || lies_on(along, cell, second_.plane)) continue;
     if (face.first == first_.along) face.first = along;
     face.last = along;
@@ -212,14 +224,18 @@ auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
   return face;
 }
 
-/// May what is not seen of the gap reach into the cell on a side? If not, its centroid tells only where scan lines
-/// crossed it, an error that all rows share if lines run along the edge.
+/// What share of a cell's centroid, from its middle, counts. Where scan lines crossed a cell that lies on one plane
+/// tells nothing of a face in another, and all rows share this error if lines run along the edge. If the face is in no
+/// cell, it is between two lines, of which evenly spaced ones move the centroids of both cells alike: half of each
+/// counts. What is unseen of a gap may reach into the cells on both sides: all of it counts.
 template <Limits limits>
-bool PlaneGap<limits>::unseen_reaches(int along, const Face& face) const {
-  if (face.first > first_.along) return false;
-  if (length() == 1) return true;
+float PlaneGap<limits>::centroid_share(int along, const Face& face) const {
+  if (along != first_.along && along != second_.along) return 1.0f;
+  if (face.parted) return 0.5f;
+  if (length() == 1) return along < face.first || along > face.last ? 0.0f : 1.0f;
+  if (face.first > first_.along) return 0.0f;
   const int s = line_.slot(along == first_.along ? along + 1 : along - 1);
-  return !line_.dem.cell(s).valid() || stages_.mixture.covered(s);
+  return line_.dem.cell(s).valid() && !stages_.mixture.covered(s) ? 0.0f : 1.0f;
 }
 
 /// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is

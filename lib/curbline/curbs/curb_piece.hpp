@@ -92,6 +92,7 @@ struct CurbPiece {
  private:
   void take_means(const Part& part);
   void take_variances(const Part& part, const LineFit& fit);
+  float lines_seen() const;
   void take_widths(const Part& part);
 };
 
@@ -135,11 +136,13 @@ void CurbPiece<limits>::take_means(const Part& part) {
 
 template <Limits limits>
 void CurbPiece<limits>::take_variances(const Part& part, const LineFit& fit) {
-  float located = 0.0f, open = 0.0f;
+  float located = 0.0f, open = 0.0f, parted_m = 0.0f;
   bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
     if (border.open) {
       open += part.share(border) / border.half_gap_m;
+    } else if (border.parted) {
+      parted_m += border.weight() * stages.dem.cell_m(border.axis);
     } else {
       const float pitch_m = stages.dem.cell_m(border.axis), empty_m = static_cast<float>(border.empty) * pitch_m;
       located += square(border.weight()) * (2.0f * border.half_gap_m - empty_m) * pitch_m;
@@ -155,8 +158,24 @@ void CurbPiece<limits>::take_variances(const Part& part, const LineFit& fit) {
   borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight() * grown;
   // Each cell of a gap shows how much of it is before the edge, with an independent error of anything within the cell.
   // Open borders are anywhere in their gaps, all alike; so are others in empty cells, of a shadow or between two scan
-  // lines.
+  // lines. Parted ones lie between the same two lines as far as those run along the piece.
+  located += square(parted_m) / lines_seen();
   located_variance_m2 = ((1.0f / 12) * located + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
+}
+
+/// How many scan lines have seen the rows of cells beside the piece, all together: those that crossed a cell, for each
+/// row that the piece leads ahead. A line leaves as many points in a cell as beams fit into it.
+template <Limits limits>
+float CurbPiece<limits>::lines_seen() const {
+  const auto [one, other] = planes;
+  const Viewpoint& view = stages.view;
+  const float above_m = view.z_m - one.height_m(x_m, y_m);
+  const float range_m = square_root(square(above_m) + square(view.x_m - x_m) + square(view.y_m - y_m));
+  const float beams = std::max(1.0f, stages.pitch_m() / (view.bearing_step_rad * range_m));
+  const SinCos& ahead = stages.dem.ahead_is();
+  const float ahead_m = magnitude((line.x1_m - line.x0_m) * ahead.cos + (line.y1_m - line.y0_m) * ahead.sin);
+  const float lines = std::max(1.0f, square_root(one.points_a_cell * other.points_a_cell) / beams);
+  return lines * (1.0f + ahead_m / stages.pitch_m());
 }
 
 template <Limits limits>
