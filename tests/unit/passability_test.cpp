@@ -113,6 +113,23 @@ TEST_CASE("passability: a step beside a cell is in the way on any side of it, ac
   CHECK(beside(3));
 }
 
+TEST_CASE("passability: a step is not passable in two parts, by way of a cell of readings that mix both sides") {
+  const double share = GENERATE(0.3, 0.5, 0.7);  // ____-~~~~
+  const bool up = GENERATE(true, false);
+  const auto step = [=](double x, double) {
+    const double climbed = x < 1.3 ? 0.0 : x < 1.4 ? share : 1.0;
+    return 0.12 * (up ? climbed : -climbed);
+  };
+  const auto across = [&](float max_step_m) {
+    return cell_passable(step, 12, {max_step_m, 0.1f}) && cell_passable(step, 13, {max_step_m, 0.1f}) &&
+           cell_passable(step, 14, {max_step_m, 0.1f});
+  };
+  CHECK_FALSE(across(0.09f));
+  CHECK(across(0.13f));
+  CHECK(cell_passable(step, 11, {0.09f, 0.1f}));
+  CHECK(cell_passable(step, 15, {0.09f, 0.1f}));
+}
+
 TEST_CASE("passability: what spreads within a cell by more than the step is in the way, noise is not") {
   const auto with_spread = [](double spread_m, float max_step_m) {
     Stages<small_limits> stages(small_settings());

@@ -5,6 +5,7 @@
 #include "curbline/curbs/curb.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 
 namespace curbline {
@@ -23,8 +24,9 @@ bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobil
 
 /// May a wheel stand in cell (i, j), which must be one of the window, and leave it? Yes, if its plane is ground and not
 /// too steep, if the heights within it spread over no more than the step (the width of a uniform distribution of their
-/// variance, less that of noise and of the plane's slope), and if neither it nor the next cell within two cells along x
-/// and y lies a step off the plane. O(1).
+/// variance, less that of noise and of the plane's slope), if neither it nor the next cell within two cells along x and
+/// y lies a step off the plane, and if the next ones to either side lie no more than a step apart: a cell of readings
+/// that mix both sides of a step would make two lower ones of it. O(1).
 template <Limits limits>
 bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field, int i,
               int j, const Mobility& mobility) {
@@ -33,17 +35,17 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
   if (!dem.cell(slot).valid() || label == no_label || !passable(mixture.plane(label), mobility)) return false;
   const Plane& plane = mixture.plane(label);
   const float square_m2 = mobility.max_step_m * mobility.max_step_m;
-  const auto level = [&](int a, int b, const Cell& cell) {
-    const float off_m = dem.above_m(a, b, cell, plane);
-    return off_m * off_m <= square_m2;
-  };
   const Cell& here = dem.cell(slot);
   const float spread_m2 = dem.spread_m2(here) - dem.slope_m2(plane) * here.weight;
-  if (!level(i, j, here) || 12.0f * spread_m2 > square_m2 * here.weight) return false;
+  if (square(dem.above_m(i, j, here, plane)) > square_m2 || 12.0f * spread_m2 > square_m2 * here.weight) return false;
+  float before_m = 0.0f;
   for (std::size_t d = 0; d < directions; ++d) {
     const int g = dem.next_valid(slot, static_cast<int>(d), 2);
     const int a = i + g * step_i[d], b = j + g * step_j[d];
-    if (g > 0 && !level(a, b, dem.cell(dem.slot(a, b)))) return false;
+    const float above_m = g > 0 ? dem.above_m(a, b, dem.cell(dem.slot(a, b)), plane) : 0.0f;
+    const bool other_side = d % 2 != 0;
+    if (square(above_m) > square_m2 || (other_side && square(above_m - before_m) > square_m2)) return false;
+    before_m = above_m;
   }
   return true;
 }
