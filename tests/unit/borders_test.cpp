@@ -3,6 +3,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <vector>
 
 #include "support/small_map.hpp"
@@ -66,6 +67,41 @@ TEST_CASE("borders: a chain goes on to the next border within reach, of the same
                     false) == 2);
     }
   }
+}
+
+//  B . 3 . B    Between two borders of A and B lies one of A and 3 alone, or also one of 3 and B, or one found along
+//  them. A . A . A
+TEST_CASE("borders: the edge is another where one of their planes borders on others, not along a strip of those") {
+  Stages<small_limits> stages(small_settings());
+  const bool along_x = GENERATE(false, true);
+  const auto cells_of_other = [&](double apart, bool other_side, bool across, Label third = 3,
+                                  bool other_height = true) {
+    Borders<small_limits> borders;
+    borders.clear();
+    const auto add = [&](double along, double aside, Label one, Label other, bool axis_y) {
+      Borders<small_limits>::Border border{};
+      border.x_m = static_cast<float>(along_x ? along : aside);
+      border.y_m = static_cast<float>(along_x ? aside : along);
+      border.one = one;
+      border.other = other;
+      border.axis = axis_y ? 1 : 0;
+      REQUIRE(borders.add(stages.dem, border));
+    };
+    add(0.35, 1.25, 0, 1, along_x);
+    add(0.35 + apart, 1.25, 0, 1, along_x);
+    add(0.35 + apart / 2, 1.22, 0, third, across ? along_x : !along_x);
+    if (other_side) add(0.35 + apart / 2, 1.32, 1, 3, along_x);
+    REQUIRE(borders.chain(stages.dem, 0, 5) == 2);
+    return borders.other_edge_after(stages.dem, 0, [&](const auto&) { return other_height; });
+  };
+  for (const double apart : {0.3, 0.4, 0.5}) {
+    CHECK(cells_of_other(apart, false, true) == static_cast<int>(std::lround(apart * 10)) - 1);
+    CHECK(cells_of_other(apart, true, true) == 0);
+    CHECK(cells_of_other(apart, false, false) == 0);
+    CHECK(cells_of_other(apart, false, true, no_label) == 0);  // a brink
+    CHECK(cells_of_other(apart, false, true, 3, false) == 0);
+  }
+  CHECK(cells_of_other(0.2, false, true) == 0);  // within two cells: a single column that bears another label
 }
 
 TEST_CASE("borders: those that one obstacle leaves open count as one observation, unless a curb has no others") {

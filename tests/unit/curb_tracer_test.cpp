@@ -364,6 +364,34 @@ TEST_CASE("curb tracer: one edge is told once, though cells that it crosses bear
   }
 }
 
+//  B B B B   A part b of the pavement B, lower or higher than that, meets the road A. The curb on both sides of it is
+//  no B b b B   single one that reaches over it, and for which the piece before b would be a duplicate: a step of 12 cm
+//  was A A A A   told as one of 4 cm.
+TEST_CASE("curb tracer: a curb does not reach over a part of another height, which is told as high as it is") {
+  const double part_m = GENERATE(0.2, 0.3, 0.4), part_z_m = GENERATE(0.04, 0.12);
+  const bool along_x = GENERATE(false, true);
+  INFO("a part of " << part_m << " m, " << part_z_m << " m high");
+  const auto ground = [=](double across, double along) {
+    const bool in_part = across < 2.1 && along > 1.0 && along < 1.0 + part_m;
+    return across < 1.4 ? 0.0 : in_part ? part_z_m : 0.16 - part_z_m;
+  };
+  const auto stages = traced([=](double x, double y) { return along_x ? ground(y, x) : ground(x, y); });
+  double told_m = 0.0;
+  for (const Curb& curb : stages->tracer.curbs()) {
+    const double across0 = along_x ? curb.y0_m : curb.x0_m, across1 = along_x ? curb.y1_m : curb.x1_m;
+    if (std::abs(across0 - 1.4) > 0.05 || std::abs(across1 - 1.4) > 0.05) continue;
+    const double along0 = along_x ? curb.x0_m : curb.y0_m, along1 = along_x ? curb.x1_m : curb.y1_m;
+    const double in_part_m = std::min(std::max(along0, along1), 1.0 + part_m) - std::max(std::min(along0, along1), 1.0);
+    INFO("from " << along0 << " to " << along1 << ", " << curb.height_m);
+    if (curb.height_m == Approx(part_z_m).margin(0.01)) {
+      told_m += in_part_m;
+    } else {
+      CHECK(in_part_m < 0.06);
+    }
+  }
+  CHECK(told_m == Approx(part_m).margin(0.02));
+}
+
 TEST_CASE("curb tracer: a curb keeps its number as long as it is found, a new one gets another") {
   const auto stages = traced(up);
   REQUIRE(stages->tracer.curbs().size() == 1);

@@ -12,6 +12,7 @@
 #include "curbline/grid.hpp"
 #include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
+#include "curbline/math.hpp"
 #include "curbline/per_cell.hpp"
 
 namespace curbline {
@@ -111,11 +112,22 @@ class Borders {
   /// chain. About 50 look-ups a border; (2 reach + 1)^2 where no other is within two cells.
   int chain(const Dem<limits>& dem, int border, int reach);
   const Border& at(int place) const { return border_[chain_[static_cast<std::size_t>(place)]]; }
+  /// Is the edge another one between at(place) and at(place + 1), more than two cells apart? It is if one of their
+  /// planes borders on others there, with steps for which is_other(border); if both do, a strip of a third plane lies
+  /// along the edge: cells that it crosses. Brinks, of which no other ground is seen, do not count. Returns the cells
+  /// between them, 0 if it is the same edge.
+  template <typename IsOther>
+  int other_edge_after(const Dem<limits>& dem, int place, IsOther&& is_other) const;
+  /// From here on only at(first) to at(last) are the chain.
+  void narrow(int first, int last) {
+    first_ = first;
+    last_ = last;
+  }
   /// The borders at(first) to at(last).
   Part part(int first, int last) const {
     const auto size = static_cast<std::size_t>(last - first) + 1;
     return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size),
-                {first == 0, last == length_ - 1});
+                {first == first_, last == last_});
   }
 
  private:
@@ -134,7 +146,7 @@ class Borders {
   std::array<Border, limits.borders> border_;
   PerCell<Index, limits> in_cell_;
   std::array<Index, limits.borders> chain_;  ///< the current polyline, in order
-  int length_;                               ///< of that
+  int first_, last_;                         ///< its places
   int size_;
 };
 
@@ -154,8 +166,9 @@ int Borders<limits>::chain(const Dem<limits>& dem, int border, int reach) {
   // Walk to an end of the polyline, then chain it from there.
   const int walked = walk(dem, static_cast<Index>(border), reach);
   for (int k = 0; k < walked; ++k) border_[chain_[static_cast<std::size_t>(k)]].chained = false;
-  length_ = walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
-  return length_;
+  const int length = walk(dem, chain_[static_cast<std::size_t>(walked - 1)], reach);
+  narrow(0, length - 1);
+  return length;
 }
 
 template <Limits limits>
@@ -193,6 +206,36 @@ auto Borders<limits>::nearest(const Dem<limits>& dem, const Border& from, int re
     }
   }
   return best;
+}
+
+template <Limits limits>
+template <typename IsOther>
+int Borders<limits>::other_edge_after(const Dem<limits>& dem, int place, IsOther&& is_other) const {
+  const Border &from = at(place), &to = at(place + 1);
+  const float u = from.x_m / dem.cell_x_m(), du = to.x_m / dem.cell_x_m() - u;
+  const float v = from.y_m / dem.cell_y_m(), dv = to.y_m / dem.cell_y_m() - v;
+  const bool along_x = du * du > dv * dv;
+  const int steps = static_cast<int>(magnitude(along_x ? du : dv) + 0.5f);
+  if (steps <= 2 || from.other == no_label) return 0;
+  bool of_one = false, of_other = false;
+  for (int k = 1; k < steps; ++k) {
+    const float share = static_cast<float>(k) / static_cast<float>(steps);
+    const int i = static_cast<int>(u + share * du), j = static_cast<int>(v + share * dv);
+    for (int aside = -1; aside <= 1; ++aside) {
+      const int a = along_x ? i : i + aside, c = along_x ? j + aside : j;
+      if (!dem.contains(a, c)) continue;
+      for (Index b = in_cell_[number(a, c)]; b != none; b = border_[b].next_in_cell) {
+        const Border& there = border_[b];
+        // Not of an edge that leads across, nor a brink: it shows no other ground.
+        if ((there.axis == 1) != along_x || there.other == no_label) continue;
+        const bool has_one = there.one == from.one || there.other == from.one;
+        const bool has_other = there.one == from.other || there.other == from.other;
+        if (has_one == has_other || !is_other(there)) continue;
+        (has_one ? of_one : of_other) = true;
+      }
+    }
+  }
+  return of_one != of_other ? steps - 1 : 0;
 }
 
 }  // namespace curbline

@@ -65,7 +65,8 @@ class CurbTracer {
   using Border = typename Borders<limits>::Border;
   using Part = typename Borders<limits>::Part;
 
-  static void cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters);
+  static void divide(CurbMaker<limits>& maker, int length, const Dem<limits>& dem, Work& work, Counters& counters);
+  static void cut(CurbMaker<limits>& maker, int start, int stop, Work& work, Counters& counters);
   static void give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters);
   template <typename Out>
   static void leave_out(Work& work, Out&& out);
@@ -87,7 +88,7 @@ void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits
   BorderFinder<limits>(stages).find(work.borders, counters);
   CurbMaker<limits> maker(stages);
   for (int b = 0; b < work.borders.size(); ++b) {
-    if (!work.borders.chained(b)) cut(maker, work.borders.chain(dem, b, settings_.link_reach), work, counters);
+    if (!work.borders.chained(b)) divide(maker, work.borders.chain(dem, b, settings_.link_reach), dem, work, counters);
   }
   leave_out(work, [&](std::size_t k) { return maker.behind_obstacle(work.curb[k]); });
   surfaces_.follow(stages, work.surfaces, work.found());
@@ -142,18 +143,40 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
   }
 }
 
-/// Splits the chain at its corners, halves straight parts until their height is even, and gives out the pieces in
+/// Divides the chain where another edge, of another height, lies between two of its borders. A part of no more borders
+/// than there are cells of that edge beside it is none: cells that mix what lies beside them.
+template <Limits limits>
+void CurbTracer<limits>::divide(CurbMaker<limits>& maker, int length, const Dem<limits>& dem, Work& work,
+                                Counters& counters) {
+  for (int start = 0, place = 0, cells_before = 0; place < length; ++place) {
+    const bool last = place + 1 == length;
+    const PlanePair planes = maker.planes_of(work.borders.at(place));
+    const auto is_other = [&](const Border& there) {
+      const float there_m = maker.planes_of(there).step_m(there.x_m, there.y_m);
+      const float change_m = magnitude(there_m) - magnitude(planes.step_m(there.x_m, there.y_m));
+      return magnitude(change_m) > PlanePair::most_change_m;
+    };
+    const int cells = last ? 0 : work.borders.other_edge_after(dem, place, is_other);
+    if (cells == 0 && !last) continue;
+    work.borders.narrow(start, place);
+    if (place - start >= std::max(cells, cells_before)) cut(maker, start, place, work, counters);
+    start = place + 1;
+    cells_before = cells;
+  }
+}
+
+/// Splits a chain's part at its corners, halves straight parts until their height is even, and gives out the pieces in
 /// order.
 template <Limits limits>
-void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int length, Work& work, Counters& counters) {
-  int first = 0;
+void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int start, int stop, Work& work, Counters& counters) {
+  int first = start;
   const PlanePair planes = maker.planes_of(work.borders.at(first));
   const auto even_to = [&](const Border& to) {
     const Border& from = work.borders.at(first);
     return planes.even(to.x_m - from.x_m, to.y_m - from.y_m);
   };
   std::size_t parts = 0;  // whose ends are known; the next one's end comes last
-  work.ends[parts++] = length - 1;
+  work.ends[parts++] = stop;
   while (parts > 0) {
     const int last = work.ends[parts - 1], corner = corner_of<limits>(work.borders.part(first, last));
     if (corner >= 0) {

@@ -21,12 +21,13 @@ struct MeasuredStep {
 struct PlanePair {
   const Plane &one, &other;  ///< of the lower number, and of the higher
 
-  /// Does the step between them keep its height over (dx, dy)? From one end of a piece to the other it may change by
-  /// no more than the repeatability of a range-finder.
-  bool even(float dx_m, float dy_m) const {
-    constexpr float most_change_m = 0.02f;
-    return magnitude(change_m(dx_m, dy_m)) <= most_change_m;
-  }
+  /// From one end of a piece to the other a step may change by no more than the repeatability of a range-finder.
+  static constexpr float most_change_m = 0.02f;
+
+  /// Height of the step at a place: that of `other` above `one`.
+  float step_m(float x_m, float y_m) const { return other.height_m(x_m, y_m) - one.height_m(x_m, y_m); }
+  /// Does it keep its height over (dx, dy)?
+  bool even(float dx_m, float dy_m) const { return magnitude(change_m(dx_m, dy_m)) <= most_change_m; }
   /// By how much that height changes.
   float change_m(float dx_m, float dy_m) const {
     return (other.slope_x - one.slope_x) * dx_m + (other.slope_y - one.slope_y) * dy_m;
