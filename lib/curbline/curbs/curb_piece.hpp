@@ -57,6 +57,12 @@ struct CurbPiece {
   bool one_sided() const { return first.other == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }
   float middle_y_m() const { return 0.5f * (line.y0_m + line.y1_m); }
+  /// How many rows of cells across the way ahead it goes through: scan lines run along them, and each row has its own.
+  float rows_ahead() const {
+    const SinCos& ahead = stages.dem.ahead_is();
+    const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
+    return 1.0f + magnitude(dx_m * ahead.cos + dy_m * ahead.sin) / stages.pitch_m();
+  }
   /// Change of its height from end to end, by its planes.
   float change_m() const { return planes.change_m(line.x1_m - line.x0_m, line.y1_m - line.y0_m); }
   /// Variance of a plane's height at the middle.
@@ -163,8 +169,8 @@ void CurbPiece<limits>::take_variances(const Part& part, const LineFit& fit) {
   located_variance_m2 = ((1.0f / 12) * located + (1.0f / 3) * square(open)) / square(fit.weight()) * grown;
 }
 
-/// How many scan lines have seen the rows of cells beside the piece, all together: those that crossed a cell, for each
-/// row that the piece leads ahead. A line leaves as many points in a cell as beams fit into it.
+/// How many scan lines have seen the cells beside the piece, all together: those that crossed one, in each row. A line
+/// leaves as many points in a cell as beams fit into it.
 template <Limits limits>
 float CurbPiece<limits>::lines_seen() const {
   const auto [one, other] = planes;
@@ -172,10 +178,8 @@ float CurbPiece<limits>::lines_seen() const {
   const float above_m = view.z_m - one.height_m(x_m, y_m);
   const float range_m = square_root(square(above_m) + square(view.x_m - x_m) + square(view.y_m - y_m));
   const float beams = std::max(1.0f, stages.pitch_m() / (view.bearing_step_rad * range_m));
-  const SinCos& ahead = stages.dem.ahead_is();
-  const float ahead_m = magnitude((line.x1_m - line.x0_m) * ahead.cos + (line.y1_m - line.y0_m) * ahead.sin);
   const float lines = std::max(1.0f, square_root(one.points_a_cell * other.points_a_cell) / beams);
-  return lines * (1.0f + ahead_m / stages.pitch_m());
+  return lines * rows_ahead();
 }
 
 template <Limits limits>

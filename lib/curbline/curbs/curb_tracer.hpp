@@ -150,11 +150,9 @@ void CurbTracer<limits>::divide(CurbMaker<limits>& maker, int length, const Dem<
                                 Counters& counters) {
   for (int start = 0, place = 0, cells_before = 0; place < length; ++place) {
     const bool last = place + 1 == length;
-    const PlanePair planes = maker.planes_of(work.borders.at(place));
     const auto is_other = [&](const Border& there) {
-      const float there_m = maker.planes_of(there).step_m(there.x_m, there.y_m);
-      const float change_m = magnitude(there_m) - magnitude(planes.step_m(there.x_m, there.y_m));
-      return magnitude(change_m) > PlanePair::most_change_m;
+      const auto step_m = [&](const Border& of) { return magnitude(maker.planes_of(of).step_m(there.x_m, there.y_m)); };
+      return magnitude(step_m(there) - step_m(work.borders.at(place))) > PlanePair::most_change_m;
     };
     const int cells = last ? 0 : work.borders.other_edge_after(dem, place, is_other);
     if (cells == 0 && !last) continue;

@@ -31,9 +31,7 @@ class StepHeight {
 
   /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
   explicit StepHeight(Piece& piece) : stages_(piece.stages), piece_(piece) {
-    const auto [one, other] = piece.planes;
-    const float x_m = piece.middle_x_m(), y_m = piece.middle_y_m();
-    height_m_ = other.height_m(x_m, y_m) - one.height_m(x_m, y_m) - piece.drop_m;
+    height_m_ = piece.planes.step_m(piece.middle_x_m(), piece.middle_y_m()) - piece.drop_m;
   }
 
   /// For PlanePair::kind(), to decide whether it is a step.
@@ -62,7 +60,6 @@ class StepHeight {
     Deviation one, other;
   };
   Deviations deviations() const;
-  float line_m2_along() const;
   /// Variances of the planes' heights beside the piece, and their covariance.
   struct PlaneErrors {
     float one_m2, other_m2, covariance_m2;
@@ -277,18 +274,10 @@ template <Limits limits>
 auto StepHeight<limits>::deviations() const -> Deviations {
   const float up = height_m_ < 0.0f ? -1.0f : 1.0f;
   const float beyond_cells = shadow_m_ > 0.0f ? -0.5f * up * shadow_m_ / piece_.cell_m : 0.0f;  // cell_m may be 0
-  const float common_m2 = stages_.dem.common_m2(), line_m2 = line_m2_along();
+  // Of the mean over the piece: all of a line's error if lines run along it, less where it leads ahead.
+  const float common_m2 = stages_.dem.common_m2(), line_m2 = stages_.dem.line_m2() / piece_.rows_ahead();
   return {deviation(piece_.beside_one, piece_.planes.one, -up, -beyond_cells, common_m2, line_m2),
           deviation(piece_.beside_other, piece_.planes.other, up, beyond_cells, common_m2, line_m2)};
-}
-
-/// Dem::line_m2() of the mean over the piece: all of it if scan lines run along it. Where it leads ahead, each cell's
-/// length of it is seen by others.
-template <Limits limits>
-float StepHeight<limits>::line_m2_along() const {
-  const SinCos& ahead = stages_.dem.ahead_is();
-  const float x_m = piece_.line.x1_m - piece_.line.x0_m, y_m = piece_.line.y1_m - piece_.line.y0_m;
-  return stages_.dem.line_m2() / (1.0f + magnitude(x_m * ahead.cos + y_m * ahead.sin) / stages_.pitch_m());
 }
 
 /// As the fits state, of cells that err each on its own, and by the scan lines that have seen one plane or both.
