@@ -77,6 +77,7 @@
 // Labels to borders.
 #include "curbline/borders/curb_stages.hpp"     // the stages that borders and curbs are found in
 #include "curbline/borders/beside.hpp"          // the ground beside a border
+#include "curbline/borders/border.hpp"          // where labels change on a row or column
 #include "curbline/borders/borders.hpp"         // where labels change, and chains of such points
 #include "curbline/borders/plane_gap.hpp"       // where between two planes the edge lies, to a part of a cell
 #include "curbline/borders/border_finder.hpp"   // all such points of the window

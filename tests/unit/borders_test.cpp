@@ -22,7 +22,7 @@ TEST_CASE("borders: one that lies before the window or beyond it is found from i
   for (const float x : {before, beyond}) {
     borders.clear();
     for (const float y : {0.05f, 0.15f}) {
-      Borders<small_limits>::Border border{};
+      Border border{};
       border.x_m = y < 0.1f ? x : x < 0.0f ? 0.02f : 2.38f;
       border.y_m = y;
       border.other = 1;
@@ -38,7 +38,7 @@ TEST_CASE("borders: a chain goes on to the next border within reach, of the same
   const auto chained = [&](const std::vector<std::array<double, 2>>& places, bool of_others) {
     borders.clear();
     for (const auto& [x, y] : places) {
-      Borders<small_limits>::Border border{};
+      Border border{};
       border.x_m = static_cast<float>(x);
       border.y_m = static_cast<float>(y);
       border.one = of_others && borders.size() == 1 ? 1 : 0;
@@ -79,7 +79,7 @@ TEST_CASE("borders: the edge is another where one of their planes borders on oth
     Borders<small_limits> borders;
     borders.clear();
     const auto add = [&](double along, double aside, Label one, Label other, bool axis_y) {
-      Borders<small_limits>::Border border{};
+      Border border{};
       border.x_m = static_cast<float>(along_x ? along : aside);
       border.y_m = static_cast<float>(along_x ? aside : along);
       border.one = one;
@@ -110,7 +110,7 @@ TEST_CASE("borders: those that one obstacle leaves open count as one observation
   const auto observations = [&](int clear, int open) {
     borders.clear();
     for (int k = 0; k < clear + open; ++k) {
-      Borders<small_limits>::Border border{};
+      Border border{};
       border.x_m = 1.25f;
       border.y_m = 0.05f + 0.1f * static_cast<float>(k);
       border.other = 1;

@@ -7,22 +7,20 @@
 namespace curbline {
 namespace {
 
-constexpr Limits limits{};
-
 struct Chain {
-  std::vector<Borders<limits>::Border> borders{};
-  std::vector<Borders<limits>::Index> order{};
+  std::vector<Border> borders{};
+  std::vector<Border::Index> order{};
 
   void add(float x_m, float y_m, float half_gap_m, bool open = false) {
-    order.push_back(static_cast<Borders<limits>::Index>(borders.size()));
-    Borders<limits>::Border border{};
+    order.push_back(static_cast<Border::Index>(borders.size()));
+    Border border{};
     border.x_m = x_m;
     border.y_m = y_m;
     border.half_gap_m = half_gap_m;
     border.open = open;
     borders.push_back(border);
   }
-  int corner() const { return corner_of<limits>({borders.data(), order, {true, true}}); }
+  int corner() const { return corner_of({borders.data(), order, {true, true}}); }
 };
 
 /// Residuals of a third of half a gap, this way and that.

@@ -40,10 +40,7 @@ struct Beside {
 /// square. (Of values scattered by a variance A about 0, found with an error of variance t^2, the best estimate is the
 /// share A / (A + t^2) of what is found, and the square of what is found estimates A + t^2: empirical Bayes, Efron and
 /// Morris 1973, for a single one.)
-inline float share_beyond(float chance_m2, float found_m) {
-  const float found_m2 = square(found_m);
-  return found_m2 > chance_m2 ? 1.0f - chance_m2 / found_m2 : 0.0f;
-}
+float share_beyond(float chance_m2, float found_m);
 
 /// Height of the ground of a side above its plane, by cells a little farther from the border than those that may mix
 /// both sides. A plane may hold more than one surface, parted by a crease too weak to be found, and deviate from both
@@ -59,11 +56,7 @@ struct GroundAlong {
   /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane.
   /// Chance alone decides the share, and by chance cells err independently. In variance_m2 each border is one
   /// observation: what the cells behind one are off from the ground there, they are off alike.
-  static GroundAlong of(float cells, float borders, float above_m, const Plane& plane) {
-    if (!(cells > 0.0f)) return {};
-    const float mean_m = above_m / cells, share = share_beyond(4.0f * plane.fit_variance_m2 / cells, mean_m);
-    return {share * mean_m, share, plane.fit_variance_m2 / borders};
-  }
+  static GroundAlong of(float cells, float borders, float above_m, const Plane& plane);
 };
 
 /// How much farther the ground of a side is from the other side than its plane is, as the mean of the borders; below 0
@@ -92,14 +85,7 @@ struct Deviation {
 /// half of common_m2, the variance that points of one place share, and their nearer and their farther cells, each on
 /// their own, by the scan lines along the borders, with the variance line_m2 over the points of a cell. 0 without
 /// borders.
-inline Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2,
-                           float line_m2) {
-  const float n = beside.borders;
-  if (!(n > 0.0f)) return {};
-  const float away_m = away * (beside.off_m + further_cells * beside.rise_m) / n;
-  const float q = beside.away_cells / n + further_cells;
-  const float both = square(1.0f + q) + square(q);
-  return {away_m, both * plane.fit_variance_m2 / n, 0.5f * common_m2 + both * line_m2 * beside.inverse_points / n, n};
-}
+Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2,
+                    float line_m2);
 
 }  // namespace curbline

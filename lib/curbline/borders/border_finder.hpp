@@ -32,7 +32,6 @@ class BorderFinder {
   void find(Borders<limits>& borders, Counters& counters) const;
 
  private:
-  using Border = typename Borders<limits>::Border;
   using Line = CellLine<limits>;
   using Gap = PlaneGap<limits>;
 

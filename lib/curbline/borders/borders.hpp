@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "curbline/borders/beside.hpp"
+#include "curbline/borders/border.hpp"
 #include "curbline/grid.hpp"
 #include "curbline/map/cell_line.hpp"
 #include "curbline/map/dem.hpp"
@@ -20,72 +20,7 @@ namespace curbline {
 template <Limits limits>
 class Borders {
  public:
-  using Index = std::uint16_t;
-
-  struct Border {
-    float x_m, y_m;                   ///< in the window's frame
-    float probability;                ///< that the cells on both sides belong to different planes
-    float half_gap_m;                 ///< half the distance between the cells of both planes
-    float drop_m;                     ///< of a brink: down to the lowest visible behind it; else 0
-    float sloped_cells;               ///< length of the slope from plane to plane that the cells in between show
-    Beside beside_one, beside_other;  ///< on the sides of `one` and `other`
-    Label one, other;  ///< the planes, one < other by number; other is no_label at the end of a face and at a brink
-    std::int8_t axis;  ///< 0: found along x, 1: along y
-    std::int8_t sign;  ///< +1 if `other` is in the positive direction of the axis
-    bool open : 1;     ///< the edge may be anywhere in the gap: an obstacle stands there, or hides it
-    bool parted : 1;   ///< the edge of a step up is between the scan lines of two cells side by side
-    bool chained : 1;
-    std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
-    Index next_in_cell;  ///< another border in the same cell
-
-    /// In the fit of a line: residuals are in half gaps.
-    float weight() const { return 1.0f / (half_gap_m * half_gap_m); }
-    /// The direction (grid.hpp) toward the side of one of its planes.
-    std::size_t toward(Label label) const {
-      return static_cast<std::size_t>(direction(axis, label == other ? sign : -sign));
-    }
-  };
-
-  /// Consecutive borders of a chain. Open ones err alike, as the obstacle before them hides the edge from all: together
-  /// they count as one observation, each of k as 1 / k. If all are open, each counts as one.
-  class Part {
-   public:
-    struct Iterator {
-      const Border* all;
-      const Index* at;
-      const Border& operator*() const { return all[*at]; }
-      Iterator& operator++() { return ++at, *this; }
-      bool operator!=(const Iterator& other) const { return at != other.at; }
-    };
-
-    /// Whether its first and last border are those of its chain.
-    struct Ends {
-      bool first, second;
-    } ends;
-
-    Part(const Border* all, std::span<const Index> part, Ends of_chain) : ends(of_chain), all_(all), part_(part) {
-      int open = 0;
-      for (const Border& border : *this) open += border.open;
-      if (open > 0 && open < size()) open_share_ = 1.0f / static_cast<float>(open);
-      for (const Border& border : *this) observations_ += share(border);
-    }
-
-    int size() const { return static_cast<int>(part_.size()); }
-    const Border& operator[](int k) const { return all_[part_[static_cast<std::size_t>(k)]]; }
-    const Border& front() const { return all_[part_.front()]; }
-    const Border& back() const { return all_[part_.back()]; }
-    Iterator begin() const { return {all_, part_.data()}; }
-    Iterator end() const { return {all_, part_.data() + part_.size()}; }
-
-    /// Number of observations that a border counts for, and all of them.
-    float share(const Border& border) const { return border.open ? open_share_ : 1.0f; }
-    float observations() const { return observations_; }
-
-   private:
-    const Border* all_;
-    std::span<const Index> part_;
-    float open_share_ = 1.0f, observations_ = 0.0f;
-  };
+  using Index = Border::Index;
 
   /// A border on a row or column, with only its place set.
   static Border on(const CellLine<limits>& line, float along_m) {
@@ -124,10 +59,10 @@ class Borders {
     last_ = last;
   }
   /// The borders at(first) to at(last).
-  Part part(int first, int last) const {
+  ChainPart part(int first, int last) const {
     const auto size = static_cast<std::size_t>(last - first) + 1;
-    return Part(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size),
-                {first == first_, last == last_});
+    return ChainPart(border_.data(), std::span<const Index>(chain_).subspan(static_cast<std::size_t>(first), size),
+                     {first == first_, last == last_});
   }
 
  private:

@@ -24,7 +24,6 @@ namespace curbline {
 template <Limits limits>
 class GroundEnds {
  public:
-  using Border = typename Borders<limits>::Border;
   using Line = CellLine<limits>;
   using Gap = PlaneGap<limits>;
 

@@ -79,10 +79,10 @@ class PlaneGap {
   float same_plane() const;
   struct Middle {
     float along_m;  ///< from the line's beginning
-    bool open;      ///< Borders::Border::open
-    bool parted;    ///< Borders::Border::parted
+    bool open;      ///< Border::open
+    bool parted;    ///< Border::parted
     int empty;      ///< cells without a point
-    float sloped;   ///< Borders::Border::sloped_cells
+    float sloped;   ///< Border::sloped_cells
   };
   /// The middle of what parts the planes.
   Middle middle() const;

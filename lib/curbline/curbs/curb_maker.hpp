@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "curbline/borders/borders.hpp"
+#include "curbline/borders/border.hpp"
 #include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/curb.hpp"
 #include "curbline/curbs/curb_piece.hpp"
@@ -24,9 +24,6 @@ namespace curbline {
 template <Limits limits>
 class CurbMaker {
  public:
-  using Border = typename Borders<limits>::Border;
-  using Part = typename Borders<limits>::Part;
-
   explicit CurbMaker(const CurbStages<limits>& stages) : stages_(stages) {
     raised_m2_.fill(std::numeric_limits<float>::infinity());
   }
@@ -34,7 +31,7 @@ class CurbMaker {
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
   /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
-  std::optional<Curb> make(const Part& part);
+  std::optional<Curb> make(const ChainPart& part);
 
   /// Is it the drop behind an obstacle, where no robot gets to: does a step up that is higher than any curb lead onto
   /// its near side, nearer to the laser? Behind a pit such a step leads up to the same ground. Call when all are made.
@@ -57,7 +54,7 @@ class CurbMaker {
 };
 
 template <Limits limits>
-std::optional<Curb> CurbMaker<limits>::make(const Part& part) {
+std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   Piece piece(stages_, part);
   if (part.ends.first) piece.go_on(Piece::End::first);
   if (part.ends.second) piece.go_on(Piece::End::second);

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "curbline/borders/beside.hpp"
-#include "curbline/borders/borders.hpp"
+#include "curbline/borders/border.hpp"
 #include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/line_fit.hpp"
 #include "curbline/curbs/plane_pair.hpp"
@@ -17,16 +17,14 @@
 
 namespace curbline {
 
+/// Residuals of borders from their line, in half gaps, are normal with an unknown variance, inverse gamma a priori:
+/// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
+inline constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
+
 /// Borders on one line, and means over them.
 template <Limits limits>
 struct CurbPiece {
-  using Border = typename Borders<limits>::Border;
-  using Part = typename Borders<limits>::Part;
   using Stages = CurbStages<limits>;
-
-  /// Residuals of borders from their line, in half gaps, are normal with an unknown variance, inverse gamma a priori:
-  /// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
-  static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
 
   const Stages& stages;
   const Border& first;  ///< all have the same planes
@@ -38,7 +36,7 @@ struct CurbPiece {
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_one{}, beside_other{};  ///< sums
   float borders;                        ///< their number
-  float observations;                   ///< the number that they weigh as, Borders::Part
+  float observations;                   ///< the number that they weigh as, ChainPart
   float place_variance_m2 = 0.0f;       ///< of a border, across the line
   float borders_variance_m2 = 0.0f;     ///< of the line's middle, across it, if each border is anywhere in its gap
   float located_variance_m2 = 0.0f;     ///< the same for a step, which the cells of the gap locate
@@ -47,7 +45,7 @@ struct CurbPiece {
   bool one_is_right = false;            ///< of the line, from its first end to its second
 
   /// Fits the line to the borders and computes the means.
-  CurbPiece(const Stages& in, const Part& part);
+  CurbPiece(const Stages& in, const ChainPart& part);
 
   static PlanePair planes_of(const Stages& in, const Border& border) {
     const Label beyond = border.other == no_label ? border.one : border.other;
@@ -96,14 +94,14 @@ struct CurbPiece {
   }
 
  private:
-  void take_means(const Part& part);
-  void take_variances(const Part& part, const LineFit& fit);
+  void take_means(const ChainPart& part);
+  void take_variances(const ChainPart& part, const LineFit& fit);
   float lines_seen() const;
-  void take_widths(const Part& part);
+  void take_widths(const ChainPart& part);
 };
 
 template <Limits limits>
-CurbPiece<limits>::CurbPiece(const Stages& in, const Part& part)
+CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& part)
     : stages(in),
       first(part.front()),
       planes(planes_of(in, first)),
@@ -128,7 +126,7 @@ CurbPiece<limits>::CurbPiece(const Stages& in, const Part& part)
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_means(const Part& part) {
+void CurbPiece<limits>::take_means(const ChainPart& part) {
   for (const Border& border : part) {
     const float each = part.share(border) / observations;
     drop_m += each * border.drop_m;
@@ -141,7 +139,7 @@ void CurbPiece<limits>::take_means(const Part& part) {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_variances(const Part& part, const LineFit& fit) {
+void CurbPiece<limits>::take_variances(const ChainPart& part, const LineFit& fit) {
   float located = 0.0f, open = 0.0f, parted_m = 0.0f;
   bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
@@ -183,7 +181,7 @@ float CurbPiece<limits>::lines_seen() const {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_widths(const Part& part) {
+void CurbPiece<limits>::take_widths(const ChainPart& part) {
   for (const Border& border : part) {
     const float cosine = border.axis == 0 ? line.normal_x : line.normal_y;
     const float across = part.share(border) / observations * magnitude(cosine);

@@ -62,12 +62,9 @@ class CurbTracer {
   const Surfaces<limits>& surfaces() const { return surfaces_; }
 
  private:
-  using Border = typename Borders<limits>::Border;
-  using Part = typename Borders<limits>::Part;
-
   static void divide(CurbMaker<limits>& maker, int length, const Dem<limits>& dem, Work& work, Counters& counters);
   static void cut(CurbMaker<limits>& maker, int start, int stop, Work& work, Counters& counters);
-  static void give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters);
+  static void give_out(CurbMaker<limits>& maker, const ChainPart& part, Work& work, Counters& counters);
   template <typename Out>
   static void leave_out(Work& work, Out&& out);
   void keep_ids(Work& work, float near_m);
@@ -176,7 +173,7 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int start, int stop, Work
   std::size_t parts = 0;  // whose ends are known; the next one's end comes last
   work.ends[parts++] = stop;
   while (parts > 0) {
-    const int last = work.ends[parts - 1], corner = corner_of<limits>(work.borders.part(first, last));
+    const int last = work.ends[parts - 1], corner = corner_of(work.borders.part(first, last));
     if (corner >= 0) {
       work.ends[parts++] = first + corner;
       continue;
@@ -193,7 +190,7 @@ void CurbTracer<limits>::cut(CurbMaker<limits>& maker, int start, int stop, Work
 
 /// A full store loses obstacles, too: what is behind them may then be given out.
 template <Limits limits>
-void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const Part& part, Work& work, Counters& counters) {
+void CurbTracer<limits>::give_out(CurbMaker<limits>& maker, const ChainPart& part, Work& work, Counters& counters) {
   if (work.curbs == work.curb.size()) {
     ++counters.curbs_full;
     return;

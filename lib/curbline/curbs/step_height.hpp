@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "curbline/borders/beside.hpp"
-#include "curbline/borders/borders.hpp"
+#include "curbline/borders/border.hpp"
 #include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/line_weights.hpp"
@@ -25,8 +25,6 @@ namespace curbline {
 template <Limits limits>
 class StepHeight {
  public:
-  using Border = typename Borders<limits>::Border;
-  using Part = typename Borders<limits>::Part;
   using Piece = CurbPiece<limits>;
 
   /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
@@ -38,7 +36,7 @@ class StepHeight {
   MeasuredStep measured() const;
   /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
   /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
-  void refine(const Part& part, bool is_step);
+  void refine(const ChainPart& part, bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
@@ -50,12 +48,12 @@ class StepHeight {
 
  private:
   bool other_is_upper() const { return height_m_ > 0.0f; }
-  Viewpoint lower_seen_from(const Part& part) const;
+  Viewpoint lower_seen_from(const ChainPart& part) const;
   void leave_shadow(const Viewpoint& view);
   int cell_beside(const Border& border, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
-  GroundAlong ground_along(const Part& part, Label label) const;
-  void follow_ground(const Part& part);
+  GroundAlong ground_along(const ChainPart& part, Label label) const;
+  void follow_ground(const ChainPart& part);
   struct Deviations {
     Deviation one, other;
   };
@@ -83,7 +81,7 @@ MeasuredStep StepHeight<limits>::measured() const {
 }
 
 template <Limits limits>
-void StepHeight<limits>::refine(const Part& part, bool is_step) {
+void StepHeight<limits>::refine(const ChainPart& part, bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
   float ground_share = 0.0f;  // of the step
@@ -145,7 +143,7 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
 
 /// From where the lower side was last seen: mean over its cells next to the borders.
 template <Limits limits>
-Viewpoint StepHeight<limits>::lower_seen_from(const Part& part) const {
+Viewpoint StepHeight<limits>::lower_seen_from(const ChainPart& part) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
   const Label lower = other_is_upper() ? piece_.first.one : piece_.first.other;
@@ -222,7 +220,7 @@ float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) 
 /// By the cells of a side a little farther from the borders, along rows or along columns, whichever are more across the
 /// piece, so that each cell counts once.
 template <Limits limits>
-GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) const {
+GroundAlong StepHeight<limits>::ground_along(const ChainPart& part, Label label) const {
   const Dem<limits>& dem = stages_.dem;
   const Plane& plane = stages_.mixture.plane(label);
   const float slope_m2 = dem.slope_m2(plane);
@@ -250,7 +248,7 @@ GroundAlong StepHeight<limits>::ground_along(const Part& part, Label label) cons
 /// Where the ground next to the borders deviates from a plane, the step begins at that ground, by its share; for the
 /// rest at the ground along the step, by that one's share; and for the rest of that at the plane.
 template <Limits limits>
-void StepHeight<limits>::follow_ground(const Part& part) {
+void StepHeight<limits>::follow_ground(const ChainPart& part) {
   const Deviations beside = deviations();
   const PlaneErrors planes = plane_errors();
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
