@@ -74,7 +74,7 @@ class PlaneGap {
   int length() const { return second_.along - first_.along; }
 
   /// Does a step down hide the rest of a wide gap?
-  [[gnu::noinline]] bool hidden() const;  // twice inlined it would not fit the flash budget
+  [[gnu::cold]] bool hidden() const;  // for size: few gaps are wide enough to ask
   /// Probability that the cells on both sides belong to one plane.
   float same_plane() const;
   struct Middle {
@@ -106,7 +106,7 @@ class PlaneGap {
   bool mixed(int along, const Plane& plane) const;
   Face seen_face(bool second_is_upper) const;
   float centroid_share(int along, const Face& face) const;
-  bool behind_obstacle(int along) const;
+  [[gnu::cold]] bool behind_obstacle(int along) const;
 
   const CurbStages<limits>& stages_;
   const Line& line_;

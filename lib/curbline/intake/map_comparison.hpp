@@ -41,7 +41,9 @@ class MapComparison {
   static constexpr int reach_of_climbs = 2;
 
   using Place = typename Dem<limits>::Place;
-  void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach, PoseOffset& offset) const;
+  // For size: only lines at a jump of the poses, or after a step, are compared.
+  [[gnu::cold]] void compare(const ProjectedLine<limits>& line, const TiltLatency& latency, int reach,
+                             PoseOffset& offset) const;
   /// The ground at a point, by a cell.
   struct Ground {
     float above_m, variance_m2;  ///< the point's height above it; variance of the ground's own height ...
