@@ -83,6 +83,7 @@ void put_lines(JsonLine& json, const Report& s) {
     put(json, "damaged", s.scanner->damaged);
     put(json, "other_beams", s.scanner->other_beams);
   }
+    put(json, "device_errors", s.scanner->device_errors);
   put(json, "lines", s.lines.pushed);
   put(json, "covered", s.lines.covered);
   put(json, "overdue", s.lines.overdue);

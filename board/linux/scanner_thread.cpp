@@ -51,6 +51,7 @@ void ScannerThread::run() {
     state_.problem = link_.session->problem();
     state_.connections = scanner_.connections();
     state_.damaged = c.bad_checksum + c.wrong_length + c.cut + c.malformed;
+    state_.device_errors = c.device_errors;
   }
 }
 

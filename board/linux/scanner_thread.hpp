@@ -22,8 +22,9 @@ struct ScannerState {
   int error = 0;               ///< errno of the last failure, ETIMEDOUT: no lines; 0: it closed the connection
   std::string_view problem{};  ///< what the scanner refused or reported; static text
   std::uint64_t connections = 0;
-  std::uint64_t other_beams = 0;  ///< lines dropped because their number of beams is not that of the robot's laser
-  std::uint64_t damaged = 0;      ///< damaged telegrams
+  std::uint64_t other_beams = 0;    ///< lines dropped because their number of beams is not that of the robot's laser
+  std::uint64_t damaged = 0;        ///< damaged telegrams
+  std::uint64_t device_errors = 0;  ///< faults that the scanner reports about itself, though its lines come
 };
 
 class ScannerThread {

@@ -100,6 +100,7 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {scanner.damaged, "damaged telegrams of the scanner"},
       {s.server.too_slow, "a client was too slow, and dropped"},
       {s.server.refused, "more clients than there is room for"},
+      {scanner.device_errors, "faults, or a dirty front screen, that the scanner reports"},
   };
   static_assert(std::size(all) == std::tuple_size_v<decltype(counted_)>, "what was told of each lies in counted_");
   for (std::size_t i = 0; i < counted_.size(); ++i) {

@@ -106,7 +106,7 @@ TEST_CASE("reports: a status has each counter under its name") {
       .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
   s.tilt = s.nod = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency, s.sight = &watch;
   ScannerState scanner;
-  scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53;
+  scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53, scanner.device_errors = 54;
   s.scanner = &scanner;
   const auto bus = std::make_unique<socketcan::SocketCan>();
   s.bus = bus.get();
@@ -129,7 +129,8 @@ TEST_CASE("reports: a status has each counter under its name") {
                   {"connected", false},
                   {"connections", 51},
                   {"damaged", 52},
-                  {"other_beams", 53}});
+                  {"other_beams", 53},
+                  {"device_errors", 54}});
   check("pipeline", {{"lines", 11},
                      {"points", 61},
                      {"no_returns", 62},

@@ -27,9 +27,10 @@ class LiveScan {
  public:
   using Damage = decltype(tools::ServerOptions::damage);
 
-  explicit LiveScan(int lines, Damage damage = {}, const LaserSettings& laser = tools::Robot{}.laser)
+  explicit LiveScan(int lines, Damage damage = {}, const LaserSettings& laser = tools::Robot{}.laser,
+                    tools::Protocol protocol = tools::Protocol::scip2)
       : log_(write_scan_log(directory_, lines)),
-        server_(tools::Protocol::scip2, tools::ScanFeed::from_log(log_), log_, {.damage = std::move(damage)}),
+        server_(protocol, tools::ScanFeed::from_log(log_), log_, {.damage = std::move(damage)}),
         serving_([this] { server_.run(stop_); }),
         thread(server_.address(), tools::scanner_link(server_.address(), laser), laser, *inbox, 0.5f) {
     inbox->init(tools::Robot{}, 1.0f);
@@ -140,6 +141,24 @@ TEST_CASE("scanner thread: damaged telegrams of every kind are counted, and cost
   scan.end();
   CHECK(scan.inbox->counters().pushed == 38);
   CHECK(scan.thread.state().damaged == 2);
+}
+
+TEST_CASE("scanner thread: a scanner that reports a front screen too dirty to measure is told, though its lines come") {
+  constexpr std::size_t status_at = 8 + 16 + 8 + 1;  // behind frame, name of the telegram, version and serial number
+  constexpr std::uint8_t too_dirty = 4;
+  LiveScan scan(
+      40,
+      [](tools::Bytes& telegram, long line) {
+        if (line < 10) return;
+        telegram[status_at] ^= too_dirty;
+        telegram.back() ^= too_dirty;  // the checksum
+      },
+      tools::Robot{}.laser, tools::Protocol::cola);
+  for (int i = 0; i < 500 && scan.inbox->counters().pushed < 40; ++i) std::this_thread::sleep_for(10ms);
+  scan.end();
+  CHECK(scan.inbox->counters().pushed == 40);
+  CHECK(scan.thread.state().damaged == 0);
+  CHECK(scan.thread.state().device_errors == 30);
 }
 
 TEST_CASE("scanner thread: a scanner with other beams than the robot's laser gives no scan lines") {

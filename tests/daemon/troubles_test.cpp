@@ -39,6 +39,7 @@ TEST_CASE("troubles: each counter is told in its own words, with its count") {
   says(scanner.damaged, "damaged telegrams of the scanner");
   says(report.server.too_slow, "a client was too slow, and dropped");
   says(report.server.refused, "more clients than there is room for");
+  says(scanner.device_errors, "faults, or a dirty front screen, that the scanner reports");
 }
 
 }  // namespace
