@@ -64,6 +64,7 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
   tilt_watch_.init(std::max(robot.tilt.max_gap_s, least_stale_s), robot.tilt.fixed);
   nod_watch_.init(longest_sweep_s(robot), robot.tilt.fixed);
+  radians_watch_.init(longest_sweep_s(robot));
   sight_.init(robot.tilt.fixed ? least_stale_s : longest_sweep_s(robot));
   poses_.open(robot, options.poses, log_.has_value(), std::max(robot.pose.max_extrapolation_s, least_stale_s));
   server_.open(options.curbs);
@@ -183,6 +184,7 @@ void Daemon::take_frame(can::Frame frame) {
   if (!reading || !pipeline_->add_tilt(*reading)) return;
   newest_tilt_ns_ = reading->time_ns;
   if (const SourceEvent event = nod_watch_.update(*reading); event != SourceEvent::none) nod_event_ = event;
+  radians_watch_.update(*reading);
   newest_frame_ns_ = received_ns;
   newest_arrival_ns_ = scanner::steady_now_ns();
   by_frame_ = true;
@@ -307,6 +309,8 @@ Report Daemon::make_report() {
     s.tilt_frames = &tilt_counters_;
     s.tilt_latency = &pipeline_->tilt_latency();
     s.latency = &latency_;
+    s.angles_in_doubt = radians_watch_.in_doubt();
+    s.angles_beyond = radians_watch_.beyond();
   }
   s.poses = poses_.report();
   s.sight = &sight_.watch();

@@ -23,6 +23,7 @@
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
 #include "pose_source.hpp"
+#include "radians_watch.hpp"
 #include "reports.hpp"
 #include "robot/robot.hpp"
 #include "scan_log.hpp"
@@ -92,6 +93,7 @@ class Daemon {
   can::TiltDecoderCounters tilt_counters_{};
   SourceWatch tilt_watch_;
   NodWatch nod_watch_;
+  RadiansWatch radians_watch_;
   SourceEvent nod_event_ = SourceEvent::none;  ///< to be told
   std::string wanted_tilt_;                    ///< name of the frame that is waited for, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();

@@ -41,6 +41,7 @@ void put_tilt(JsonLine& json, const Report& s) {
   put(json, "malformed", s.tilt_frames->malformed);
   put(json, "without_sync", s.tilt_frames->without_sync);
   put(json, "dropped", s.pipeline.tilt_dropped);
+  put(json, "beyond_a_turn", s.angles_beyond);
   const TiltLatency::Usual late = s.tilt_latency->usual();
   json.key("latency_offset_s").real(late.offset_s).key("latency_sd_s").real(late.sd_s);
   put(json, "latency_steps", s.tilt_latency->steps());
@@ -82,8 +83,8 @@ void put_lines(JsonLine& json, const Report& s) {
     put(json, "connections", s.scanner->connections);
     put(json, "damaged", s.scanner->damaged);
     put(json, "other_beams", s.scanner->other_beams);
-  }
     put(json, "device_errors", s.scanner->device_errors);
+  }
   put(json, "lines", s.lines.pushed);
   put(json, "covered", s.lines.covered);
   put(json, "overdue", s.lines.overdue);
@@ -160,6 +161,7 @@ std::string_view state_of(const Report& s) {
     return s.poses.watch->state() == SourceState::stale ? "poses_stale" : "poses_missing";
   }
   if (s.scanner != nullptr && !s.scanner->connected) return "scanner_lost";
+  if (s.angles_in_doubt) return "tilt_not_radians";
   if (s.sight != nullptr && s.sight->state() == SourceState::stale) return "laser_blind";
   if (s.nod != nullptr && s.nod->state() == SourceState::stale) return "tilt_resting";
   return "ok";

@@ -34,6 +34,8 @@ struct Report {
   std::string_view wanted_tilt{};    ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;
+  bool angles_in_doubt = false;     ///< they are not radians: radians_watch.hpp
+  std::uint64_t angles_beyond = 0;  ///< more than a turn from where a sweep began, while that was so
   PoseReport poses{};
   const socketcan::SocketCan* bus = nullptr;
   const ScannerState* scanner = nullptr;
@@ -52,7 +54,7 @@ struct Report {
 };
 
 /// The most serious problem, as a word: ok, can_down, bus_off, tilt_missing, tilt_stale, poses_missing, poses_stale,
-/// scanner_lost, laser_blind or tilt_resting.
+/// scanner_lost, tilt_not_radians, laser_blind or tilt_resting.
 std::string_view state_of(const Report& status);
 
 std::string_view status_line(const Report& status, std::span<char> buffer);

@@ -90,6 +90,8 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {s.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped"},
       {s.poses.damaged, "lines that are no poses, passed over"},
       {s.pipeline.poses_dropped, "poses that are impossible or not later than the one before, dropped"},
+      {s.angles_beyond,
+       "tilt angles more than a turn from where the sweep began; expected radians, see scale of tilt.signal"},
       {s.tilt_latency == nullptr ? 0 : s.tilt_latency->steps(), "the tilt frames are late by another time"},
       {s.not_recorded, "tilt frames that the recording does not have"},
       {std::uint64_t{s.lines.dropped} + s.lines.crowded, "scan lines came faster than they are taken"},
@@ -98,9 +100,9 @@ void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
       {s.lines_without_pose, "scan lines with no pose at their time, dropped"},
       {scanner.other_beams + s.lines.too_long, "scan lines whose beams are not those of the robot's laser, dropped"},
       {scanner.damaged, "damaged telegrams of the scanner"},
+      {scanner.device_errors, "faults, or a dirty front screen, that the scanner reports"},
       {s.server.too_slow, "a client was too slow, and dropped"},
       {s.server.refused, "more clients than there is room for"},
-      {scanner.device_errors, "faults, or a dirty front screen, that the scanner reports"},
   };
   static_assert(std::size(all) == std::tuple_size_v<decltype(counted_)>, "what was told of each lies in counted_");
   for (std::size_t i = 0; i < counted_.size(); ++i) {

@@ -26,7 +26,7 @@ class Troubles {
 
   socketcan::LinkState link_ = socketcan::LinkState::up;
   bool scanner_connected_ = false, scanner_told_ = false;
-  std::array<Trouble, 23> counted_{};
+  std::array<Trouble, 24> counted_{};
 };
 
 }  // namespace curbline::daemon

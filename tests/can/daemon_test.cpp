@@ -75,6 +75,10 @@ void send_well(SocketCan& bus, const can::Frame& frame) {
   REQUIRE(bus.send(frame) == socketcan::Status::ok);
 }
 
+void send_each(SocketCan& bus, const can::Frame& frame, double) {
+  send_well(bus, frame);
+}
+
 /// Plays the recording's log through `send`. Returns the client's lines and how the daemon ended.
 struct Drive {
   std::vector<nlohmann::json> lines;
@@ -283,7 +287,7 @@ TEST_CASE("daemon: a curb beside the way is no curb ahead on CAN", "[daemon]") {
   REQUIRE(receiver.open("vcan0", ids) == socketcan::Status::ok);
   Service service(
       {"--can", "vcan0", "--scans", beside.path("scans.carmen"), "--robot", beside.path("robot.toml"), "--can-out"});
-  play(beside.path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  play(beside.path("can.log"), send_each);
   CHECK(status_of(service.end()).at("pipeline").at("curbs") == 1);
   const auto frames = socketcan::testing::receive_all(receiver);
   CHECK(frames.size() > 100);
@@ -297,7 +301,7 @@ TEST_CASE("daemon: a curb beside the way is no curb ahead on CAN", "[daemon]") {
 TEST_CASE("daemon: a robot that drives through a log has the curbs of replay, every one", "[daemon]") {
   Service service(driven_words(driven().path("poses.tum")));
   std::this_thread::sleep_for(800ms);  // the log begins with the first frame
-  play(driven().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  play(driven().path("can.log"), send_each);
   const Outcome outcome = service.end();
   const nlohmann::json status = status_of(outcome);
   check_same(distinct_curbs(service.lines()), replayed_curbs(driven().replay()));
@@ -538,6 +542,18 @@ TEST_CASE("daemon: an encoder that is stuck is a state, told once, and on CAN, u
   CHECK_FALSE(told.resting);
 }
 
+TEST_CASE("daemon: a servo described in degrees is a state, told once", "[daemon]") {
+  const TemporaryDirectory directory;
+  const std::string degrees = directory.write("degrees.toml", "[tilt.signal]\nscale = 3.4332275390625e-4\n");
+  Service service({"--can", "vcan0", "--scans", recording().path("scans.carmen"), "--robot", degrees});
+  play(recording().path("can.log"), send_each);
+  const Outcome outcome = service.end();
+  const nlohmann::json status = status_of(outcome);
+  CHECK(status.at("state") == "tilt_not_radians");
+  CHECK(times_said(outcome.err, "expected radians, see scale of tilt.signal") == 1);
+  CHECK(status_of(drive(send_each).outcome).at("tilt").at("beyond_a_turn") == 0);
+}
+
 TEST_CASE("daemon: sources that may be silent for longer, by the robot's description, are not told as silent sooner",
           "[daemon]") {
   const TemporaryDirectory directory;
@@ -621,7 +637,7 @@ TEST_CASE("daemon: dropped scan lines are reported while servo and localisation 
   Words words = daemon_words();
   words.back() = dir.write("gap.toml", robot);
   Service gap(words), drives(daemon_words({"--poses", late}));
-  play(recording().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  play(recording().path("can.log"), send_each);
   const Outcome of_gap = gap.end(), of_drive = drives.end();
   CHECK(status_of(of_gap).at("pipeline").at("lines") == 0);
   CHECK(times_said(of_gap.err, "scan lines with no tilt angle at their time, dropped; see max_gap_s (") == 1);
@@ -636,7 +652,7 @@ TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus 
   const std::string scans = lines_of(address.data()).front();
   Service service({"--can", "vcan0", "--scans", scans, "--robot", recording().path("robot.toml")});
   CHECK(service.says("the scanner gives scan lines"));
-  play(recording().path("can.log"), [](SocketCan& bus, const can::Frame& frame, double) { send_well(bus, frame); });
+  play(recording().path("can.log"), send_each);
   CHECK(service.says("no scan lines from the scanner"));  // its feed has ended
   service.signal(SIGINT);
   const Outcome outcome = service.end();

@@ -104,6 +104,7 @@ TEST_CASE("reports: a status has each counter under its name") {
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{
       .frames = 41, .readings = 42, .others = 43, .syncs = 44, .malformed = 45, .without_sync = 46};
+  s.angles_in_doubt = true, s.angles_beyond = 47;
   s.tilt = s.nod = &watch, s.tilt_frames = &frames, s.tilt_latency = &latency, s.sight = &watch;
   ScannerState scanner;
   scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53, scanner.device_errors = 54;
@@ -150,6 +151,7 @@ TEST_CASE("reports: a status has each counter under its name") {
                  {"malformed", 45},
                  {"without_sync", 46},
                  {"dropped", 15},
+                 {"beyond_a_turn", 47},
                  {"times_lost", 0},
                  {"times_rested", 0}});
   for (const char* counter :
@@ -191,6 +193,12 @@ TEST_CASE("reports: the reported state is the worst of all problems") {
   CHECK(state_of(s) == "ok");
   nod.update(0, 6'000'000'001);
   CHECK(state_of(s) == "tilt_resting");
+  s.angles_in_doubt = true;
+  CHECK(state_of(s) == "tilt_not_radians");
+  sight.update(10'000'000'001, 30'000'000'001);
+  CHECK(state_of(s) == "tilt_not_radians");  // where a laser is taken to look if its angles are degrees
+  scanner.connected = false;
+  CHECK(state_of(s) == "scanner_lost");
   const auto closed = std::make_unique<socketcan::SocketCan>();
   s.bus = closed.get();
   CHECK(state_of(s) == "can_down");

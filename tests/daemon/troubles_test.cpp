@@ -28,6 +28,8 @@ TEST_CASE("troubles: each counter is told in its own words, with its count") {
   says(report.pipeline.tilt_dropped, "tilt readings that are not later than the one before, dropped");
   says(report.poses.damaged, "lines that are no poses, passed over");
   says(report.pipeline.poses_dropped, "poses that are impossible or not later than the one before, dropped");
+  says(report.angles_beyond,
+       "tilt angles more than a turn from where the sweep began; expected radians, see scale of tilt.signal");
   says(report.not_recorded, "tilt frames that the recording does not have");
   says(report.lines.dropped, "scan lines came faster than they are taken");
   says(report.lines.crowded, "scan lines came faster than they are taken");
@@ -37,9 +39,9 @@ TEST_CASE("troubles: each counter is told in its own words, with its count") {
   says(scanner.other_beams, "scan lines whose beams are not those of the robot's laser, dropped");
   says(report.lines.too_long, "scan lines whose beams are not those of the robot's laser, dropped");
   says(scanner.damaged, "damaged telegrams of the scanner");
+  says(scanner.device_errors, "faults, or a dirty front screen, that the scanner reports");
   says(report.server.too_slow, "a client was too slow, and dropped");
   says(report.server.refused, "more clients than there is room for");
-  says(scanner.device_errors, "faults, or a dirty front screen, that the scanner reports");
 }
 
 }  // namespace
