@@ -25,7 +25,8 @@ struct Counters {
                                          ///< the last line
   std::uint32_t lines_off_map = 0;       ///< measured while poses jumped or the robot climbed, and off the map: taken
                                          ///< without points or, where there is no map, without the doubtful ones
-  std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no unit quaternion, before init()
+  std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no unit quaternion, the robot on
+                                         ///< its back, before init()
   // Bounds that were hit.
   std::uint32_t cells_deferred = 0;  ///< labels put off to a later call (LabelSettings::max_messages)
   std::uint32_t regions_full = 0;    ///< leaves that found no room, and are in no region

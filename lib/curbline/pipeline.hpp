@@ -66,7 +66,8 @@ class Pipeline {
   bool add_tilt(const TiltReading& reading) { return line_intake_.add_tilt(reading); }
 
   /// A pose of the base in the map frame. False if dropped: not finite, not later than the one before, beyond
-  /// Pose::furthest_m, its quaternion not of unit length, or before init().
+  /// Pose::furthest_m, its quaternion not of unit length, the robot on its back, as by a quaternion with qw first, or
+  /// before init().
   bool add_pose(const Pose& pose);
 
   /// Takes a scan line: observe(), then one half of infer(): after one line regions and planes, after the next labels

@@ -12,7 +12,7 @@ struct Pose {
   static constexpr float furthest_m = 1e6f;  ///< along each axis: beyond, float cannot tell cells apart
   std::int64_t time_ns = 0;                  ///< nanoseconds of the epoch of ScanLine::time_ns
   float x_m = 0.0f, y_m = 0.0f, z_m = 0.0f;
-  float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;
+  float qx = 0.0f, qy = 0.0f, qz = 0.0f, qw = 1.0f;  ///< qw last; z of the base up, within 90 degrees
 };
 
 }  // namespace curbline

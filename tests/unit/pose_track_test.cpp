@@ -164,6 +164,20 @@ TEST_CASE("pose track: poses that are not later, not finite or not unit quaterni
   CHECK(track.push(driving(t0 + 100 * ms)));
 }
 
+TEST_CASE("pose track: poses of a robot that lies on its back, as a quaternion with qw first makes them, are dropped") {
+  Track track = track_of(2);
+  const auto turned = [](float qx, float qy, float qz, float qw) {
+    Pose pose = driving(t0 + 100 * ms);
+    pose.qx = qx, pose.qy = qy, pose.qz = qz, pose.qw = qw;
+    return pose;
+  };
+  CHECK_FALSE(track.push(turned(1.0f, 0.0f, 0.0f, 0.0f)));
+  CHECK_FALSE(track.push(turned(0.9986f, 0.01f, -0.02f, 0.05f)));  // pitched by 1 degree, heading 6 degrees to the left
+  CHECK_FALSE(track.push(turned(0.0f, 0.72f, 0.0f, 0.694f)));      // 92 degrees
+  CHECK(track.newest().time_ns == t0 + 50 * ms);
+  CHECK(track.push(turned(0.0f, 0.694f, 0.0f, 0.72f)));  // 88 degrees
+}
+
 TEST_CASE("pose track: after a pose of the future, or a clock that is set back, poses are taken again") {
   Track track = track_of(5);
   REQUIRE(track.push(driving(t0 + 3'600'000 * ms)));

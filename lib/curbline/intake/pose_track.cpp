@@ -30,8 +30,9 @@ bool acceptable(const Pose& pose) {
     if (!is_finite(value)) return false;
   }
   if (!near_origin(pose)) return false;
-  const float norm_2 = pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz + pose.qw * pose.qw;
-  return norm_2 > 0.98f && norm_2 < 1.02f;
+  const float across = pose.qx * pose.qx + pose.qy * pose.qy, along = pose.qz * pose.qz + pose.qw * pose.qw;
+  const float norm_2 = across + along;
+  return norm_2 > 0.98f && norm_2 < 1.02f && across <= along;  // z of the base up
 }
 
 bool near_origin(const Pose& pose) {

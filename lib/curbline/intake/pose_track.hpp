@@ -81,7 +81,8 @@ class PoseTrack {
 
   /// Takes a pose. It replaces the newest if that one came within 12 ms of the one before, so the pose of a line
   /// depends on how many have come by then. False if it is not finite or beyond 1000 km, its quaternion not of unit
-  /// length within 1 %, or not later than the one before (rising_times.hpp). O(1).
+  /// length within 1 % or tilting the robot by more than 90 degrees, or not later than the one before
+  /// (rising_times.hpp). O(1).
   bool push(const Pose& pose);
 
   /// The pose at a time; false if there is none within max_extrapolation_s. O(poses).
