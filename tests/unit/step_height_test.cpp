@@ -59,6 +59,33 @@ TEST_CASE("step height: an edge is as high as its planes are apart, though its c
   }
 }
 
+/// The curb between a pavement of 12 cm and a single row of cells before it, seen close to the edge alone, that hold
+/// readings from low_m to high_m.
+Curb before_row(double low_m, double high_m) {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  const auto add = [&](double x, double y, double z) {
+    stages->dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1e-6f});
+  };
+  for (double y = 0.025; y < 2.4; y += 0.05) {
+    for (double x = 1.425; x < 2.4; x += 0.05) add(x, y, 0.12);
+    for (int k = 0; k < 4; ++k) add(1.39, y, low_m + (high_m - low_m) * k / 3);
+  }
+  stages->settle();
+  stages->trace(0.0f, 1.2f);
+  const auto curbs = stages->tracer.curbs();
+  REQUIRE(curbs.size() == 1);
+  CHECK(curbs[0].kind == CurbKind::step_up);
+  return curbs[0];
+}
+
+TEST_CASE("step height: as long as only part of a face is seen of one side, the step may be much higher") {
+  const Curb from_face = before_row(0.074, 0.112), from_strip = before_row(0.093, 0.093);
+  CHECK(from_face.height_m == Approx(0.027f).margin(0.005));
+  CHECK(from_face.height_m + 2.0f * from_face.height_sd_m > 0.06f);
+  CHECK(from_strip.height_m == Approx(0.027f).margin(0.005));
+  CHECK(from_strip.height_m + 2.0f * from_strip.height_sd_m < 0.045f);
+}
+
 /// A step of 12 cm at x = 1.4 m; over the last 0.2 m before it the road falls by depth_m.
 auto with_gutter(double depth_m) {
   return [depth_m](double x, double) { return x > 1.4 ? 0.12 : x > 1.2 ? -depth_m * (x - 1.2) / 0.2 : 0.0; };

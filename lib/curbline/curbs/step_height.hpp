@@ -18,6 +18,7 @@
 #include "curbline/map/dem.hpp"
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
+#include "curbline/planes/strip_tally.hpp"
 #include "curbline/point.hpp"
 
 namespace curbline {
@@ -63,6 +64,7 @@ class StepHeight {
     float one_m2, other_m2, covariance_m2;
   };
   PlaneErrors plane_errors() const;
+  float hidden_m2(bool of_other) const;
   [[gnu::cold]] float lower_m2(typename Piece::End end) const;
   float ground_share_of_slope(const Viewpoint& view) const;
 
@@ -101,8 +103,9 @@ void StepHeight<limits>::refine(const ChainPart& part, bool is_step) {
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
   variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
-  // Beyond an end of the chain the ground may be another plane's.
   if (!is_step || one_sided) return;
+  variance_m2_ += hidden_m2(false) + hidden_m2(true);
+  // Beyond an end of the chain the ground may be another plane's.
   if (part.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
   if (part.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
 }
@@ -131,6 +134,19 @@ float StepHeight<limits>::lower_m2(typename Piece::End end) const {
     }
   }
   return most_m2;
+}
+
+/// A side may be a face, of which so far only a part is seen, as when a sweep arrives at it: behind most borders no
+/// cell holds the side's plane alone, and its readings spread over the step. Then its ground lies anywhere within them,
+/// and as much again as is seen may be hidden, uniformly: the variance of that.
+template <Limits limits>
+float StepHeight<limits>::hidden_m2(bool of_other) const {
+  const Beside& beside = of_other ? piece_.beside_other : piece_.beside_one;
+  const Plane& plane = of_other ? piece_.planes.other : piece_.planes.one;
+  const float spread_m2 = plane.variance_m2 - plane.rough_m2 - stages_.dem.prior().noise_m2;
+  const float step_m2 = square(height_m_);
+  if (2.0f * beside.borders >= piece_.borders || !spreads_over(step_m2, spread_m2)) return 0.0f;
+  return spread_m2 + step_m2 * (1.0f / 3);
 }
 
 /// Where slopes differ, the height is as uncertain as the piece's position. If the localisation steps, both sides may

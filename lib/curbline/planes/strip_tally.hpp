@@ -33,12 +33,21 @@ struct Shadowed {
   bool falls_with_rays() const { return 2.0f * fall.own_m >= fall.of_rays_m; }
 };
 
+/// Cells: a wider strip has cells of its own.
+inline constexpr float narrow_cells = 1.5f;
+
+/// Do the heights within the cells of a strip, of variance spread_m2 beyond noise, spread over a step, step_m2 in
+/// square, as those of a face do? A step spread evenly over a width of w cells has a standard deviation of step / (w
+/// sqrt(12)) within each.
+inline bool spreads_over(float step_m2, float spread_m2) {
+  return step_m2 <= narrow_cells * narrow_cells * 12.0f * spread_m2;
+}
+
 struct StripTally {
   /// Cells: as many as a face of one and a half touches at an angle to the grid, and the length of a 10 mrad beam's
   /// spot on the ground 6 m away, seen from 1.2 m above it.
   static constexpr int longest_strip = 3;
-  static constexpr float narrow = 1.5f;  ///< cells: a wider strip has cells of its own
-  static constexpr int sparse_gap = 5;   ///< cells: scan lines on the ground are up to that far apart
+  static constexpr int sparse_gap = 5;  ///< cells: scan lines on the ground are up to that far apart
 
   float cells = 0.0f;                   ///< of the plane's region
   std::array<float, 2> silent_cells{};  ///< in short strips that are alone, by axis
@@ -73,8 +82,7 @@ struct StripTally {
   bool face() const {
     if (!(strips > 0.0f) || 2.0f * strip_cells < cells - std::max(silent_cells[0], silent_cells[1])) return false;
     const float mean_step_m = step_m / strips, step_m2 = mean_step_m * mean_step_m * strip_weight;
-    // A step spread evenly over a width of w cells has a standard deviation of step / (w sqrt(12)) within each.
-    return step_m2 <= narrow * narrow * 12.0f * strip_spread_m2 || stands_between_cells(step_m2);
+    return spreads_over(step_m2, strip_spread_m2) || stands_between_cells(step_m2);
   }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
@@ -92,15 +100,15 @@ struct StripTally {
   /// cells do not scatter, many times as much.
   bool stands_between_cells(float step_m2) const {
     const float lacking_m2 = two_levels_m2 - strip_spread_m2;
-    return lacking_m2 <= 2.0f * narrow * narrow * strip_spread_m2 &&
-           lacking_m2 * strip_cells <= narrow * (1.0f / 6) * step_m2 * strips;
+    return lacking_m2 <= 2.0f * narrow_cells * narrow_cells * strip_spread_m2 &&
+           lacking_m2 * strip_cells <= narrow_cells * (1.0f / 6) * step_m2 * strips;
   }
   /// The blur of an edge goes from one plane to the other: over n cells it falls by 1 - 1/n of the step. What falls by
   /// less than a quarter of that is no blur but the tread of a stair, level but for what its end cells hold of the
   /// next.
   bool follows_step() const { return 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
   bool veil(const Shadowed& in_shadow) const {
-    return most(in_shadow.cells) && (in_shadow.cells < narrow * in_shadow.strips || in_shadow.falls_with_rays());
+    return most(in_shadow.cells) && (in_shadow.cells < narrow_cells * in_shadow.strips || in_shadow.falls_with_rays());
   }
 };
 
