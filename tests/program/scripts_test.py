@@ -3,6 +3,7 @@
 is reported in one line too, with exit status 1, and earlier figures are kept."""
 import glob
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -79,6 +80,22 @@ class Scripts(unittest.TestCase):
             text = "".join(line[2:] + "\n" for line in head)
             for word in ["--help", "-h"]:
                 self.assertEqual(self.shell(script, word), (0, text, ""))
+
+    def test_a_folder_that_a_plain_cmake_has_configured_is_built_as_one_of_tools_build_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "tools"))
+            script = shutil.copy(os.path.join(TOOLS, "build"), os.path.join(folder, "tools"))
+            for name, text in [("tools/setup", "#!/bin/sh\n"), ("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(small LANGUAGES NONE)\n"
+                                "add_custom_target(part ALL COMMAND ${CMAKE_COMMAND} -E touch part)\n")]:
+                with open(os.path.join(folder, name), "w") as file:
+                    file.write(text)
+            os.chmod(os.path.join(folder, "tools", "setup"), 0o700)
+            plain = os.path.join(folder, "build")
+            subprocess.run(["cmake", "-G", "Unix Makefiles", "-S", folder, "-B", plain], check=True, capture_output=True, timeout=30)
+            for words, build in [([], plain), ([os.path.join(folder, "new")], os.path.join(folder, "new"))]:
+                done = subprocess.run([script, *words], capture_output=True, text=True, timeout=30)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertTrue(os.path.exists(os.path.join(build, "part")))
 
     def stopped(self, script, folder, status=1, program=sys.argv[1], stdout=subprocess.DEVNULL, interrupted_at=None):
         """Runs a script that must stop with this status; returns its error output."""
