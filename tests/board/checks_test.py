@@ -56,6 +56,16 @@ class Stack(Built):
     def test_a_call_through_a_pointer_is_refused(self):
         self.refuses('extern "C" int root(int (*f)()) { return f() + 1; }', "through a pointer")
 
+    def test_code_without_a_call_graph_is_followed_through_every_branch(self):
+        deep = 'extern "C" [[gnu::noinline]] int deep(int n) { volatile char a[200]; a[0] = 1; return a[0] + n; }\n'
+        code = 'asm(".thumb_func\\n.type other, %function\\nother: {}\\n bx lr");\nextern "C" int other(int);\nextern "C" int root(int n) {{ return other(n) + 1; }}'
+        for branch in ["b", "bl", "bge", "bmi", "blt", "ble"]:
+            with self.subTest(branch=branch):
+                self.assertEqual(self.worst(deep + code.format(f"cmp r0, #0\\n {branch}.w deep" if branch != "bl" else "bl deep"))[1], ["root", "other", "deep"])
+        for branch in ["blx r3", "bx r3"]:
+            with self.subTest(branch=branch):
+                self.refuses(code.format(branch), "through a pointer")
+
     def test_a_virtual_call_is_refused(self):
         self.refuses('struct A { virtual int f() = 0; };\nextern "C" int root(A& a) { return a.f() + 1; }', "through a pointer")
 

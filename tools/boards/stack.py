@@ -12,6 +12,7 @@ from stages import run
 
 NODE = re.compile(r'node: \{ title: "([^"]*)" label: "([^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]*)" targetname: "([^"]*)"')
+BRANCH = re.compile(r"(b|bl|bx|blx)(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)?")
 SIZE = re.compile(r"(\d+) bytes \((static|dynamic[^)]*)\)")
 
 
@@ -69,10 +70,8 @@ class CallGraph:
             self.bytes[name] += int(taken[1])
         elif operation in ("str", "strd") and (taken := re.search(r"\[sp, #-(\d+)\]!", operands)):
             self.bytes[name] += int(taken[1])
-        elif operation in ("bl", "b", "beq", "bne", "bls", "bcc", "bhi", "bcs") and (target := re.search(r"<([^+>]+)>", operands)) and target[1] != name:
-            self.calls.setdefault(name, set()).add(target[1])
-        elif operation == "blx" and re.match(r"r\d+|ip", operands):
-            self.calls.setdefault(name, set()).add("__indirect_call")
+        elif BRANCH.fullmatch(operation) and (target := re.search(r"<([^+>]+)>|^(?:r\d+|ip)\b", operands)) and target[1] != name:
+            self.calls.setdefault(name, set()).add(target[1] or "__indirect_call")
 
     def worst(self, root):
         """(bytes, [functions of the deepest path]) of a function and what it calls; named by its linker name, or by a part of its readable
