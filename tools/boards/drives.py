@@ -1,9 +1,9 @@
 """The drives for the boards: every recorded sweep of ../shared, if that exists, and simulated scenes."""
-import subprocess
 import sys
 from pathlib import Path
 
 import boards
+import stages
 
 sys.path.append(str(boards.ROOT / "tools"))
 import scoring
@@ -24,12 +24,6 @@ def all_drives(build):
     return sorted(folder(build).glob("*.drive"))
 
 
-def check(line):
-    done = subprocess.run([str(w) for w in line], capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(map(str, line))}: {done.stderr.strip()}")
-
-
 def write(build, robot, scans, can, poses, name):
     """Writes a drive unless it is newer than its sources."""
     out = folder(build) / f"{name}.drive"
@@ -37,7 +31,7 @@ def write(build, robot, scans, can, poses, name):
     sources = [tool, robot, scans, can] + ([poses] if poses else [])
     if out.exists() and all(out.stat().st_mtime > s.stat().st_mtime for s in sources):
         return
-    check([tool, "write", "--robot", robot, "--scans", scans, "--can", can, *(["--poses", poses] if poses else []), "--out", out])
+    stages.run([tool, "write", "--robot", robot, "--scans", scans, "--can", can, *(["--poses", poses] if poses else []), "--out", out])
 
 
 def make(build):
@@ -58,6 +52,6 @@ def make(build):
         program, scans, robot = Path(build) / "bin" / "curbline", logs / "scans.carmen", robots / f"{LASER}.toml"
         if not scans.exists() or scans.stat().st_mtime < program.stat().st_mtime:
             simulated = scoring.late_robot(LASER, logs, ERRORS[scene]) if scene in ERRORS else robot
-            check([program, "simulate", "--scene", scene, "--robot", simulated, "--out", logs])
+            stages.run([program, "simulate", "--scene", scene, "--robot", simulated, "--out", logs])
         poses = logs / "poses.tum"
         write(build, robot, scans, logs / "can.log", poses if poses.exists() else None, name)

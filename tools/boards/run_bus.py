@@ -3,12 +3,12 @@
 desk, with the frames that the board says it received. Every frame must arrive undamaged and within LATEST_NS; curbs and counters must be the
 same bytes."""
 import struct
-import subprocess
 import sys
 
 import boards
 import drives
 import run_drives
+import stages
 
 LATEST_NS = 1_000_000
 HEADER, FRAME_TIME = struct.Struct("<II"), struct.Struct("<q")
@@ -59,7 +59,7 @@ def check_curbs(build, drive, results):
 
 
 def curbs_of(build, results):
-    return subprocess.run([f"{build}/bin/curbline-drive-log", "curbs", results], capture_output=True, text=True, check=True).stdout.splitlines()[1:]
+    return stages.run([f"{build}/bin/curbline-drive-log", "curbs", results]).splitlines()[1:]
 
 
 def reference_of(build, drive):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """undefined_symbols.py BUILD BOARD: the symbols that the optimised library, the pipeline, and the ports that run anywhere (candump, the
-scanners' protocols) need from outside. The exit status is 1 if these are more than copying, comparing and searching memory, the square root and the compiler's arithmetic helpers: no heap, no I/O, no clock, no
-exceptions, no locks."""
+scanners' protocols) need from outside. The exit status is 1 if these are more than copying, comparing and searching memory, the square
+root and the compiler's arithmetic helpers: no heap, no I/O, no clock, no exceptions, no locks."""
 import re
 import sys
 
