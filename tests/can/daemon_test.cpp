@@ -645,7 +645,8 @@ TEST_CASE("daemon: dropped scan lines are reported while servo and localisation 
 }
 
 TEST_CASE("daemon: lines of a live scanner are joined with frames of a live bus on the host's clock", "[daemon]") {
-  const std::string command = CURBLINE_SCANNER " scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
+  const std::string command =
+      "'" CURBLINE_SCANNER "' scip2 --port 0 --scans '" + recording().path("scans.carmen") + "'";
   std::FILE* const scanner = ::popen(command.c_str(), "r");
   std::array<char, 80> address{};
   REQUIRE(std::fgets(address.data(), address.size(), scanner) != nullptr);

@@ -299,13 +299,6 @@ TEST_CASE("program: a file that cannot be written is refused before the work beg
   check_refused(curbline({"evaluate", logs.folder(), "--picture", bitmap}), bitmap + ": ", "ends in .png");
 }
 
-/// A shell command line that runs the program.
-std::string line_of(const Words& arguments) {
-  std::string line = CURBLINE_PROGRAM;
-  for (const std::string& word : arguments) line += " '" + word + "'";
-  return line;
-}
-
 TEST_CASE("program: a pipe to write is opened when there is something to write") {
   const Recording logs = standing();
   const std::string in = logs.path("in"), out = logs.path("out");

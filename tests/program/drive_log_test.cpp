@@ -90,7 +90,7 @@ TEST_CASE("drive log: nothing is left of what a signal ends") {
   const std::string fifo = dir.path("scans");
   std::filesystem::create_directory(dir.path("out"));
   REQUIRE(std::system(("mkfifo " + fifo).c_str()) == 0);
-  const std::string write = std::string(CURBLINE_DRIVE_LOG) + " write --robot " + logs.path("robot.toml") + " --can " +
+  const std::string write = "'" CURBLINE_DRIVE_LOG "' write --robot " + logs.path("robot.toml") + " --can " +
                             logs.path("can.log") + " --scans " + fifo + " --out " + dir.path("out/drive");
   const std::string feed = "(cat " + logs.path("scans.carmen") + "; sleep 2) > " + fifo + " & ";
   const std::string run = "{ " + feed + write + " & program=$!; sleep 1; ls " + dir.path("out") + " > " +

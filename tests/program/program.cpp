@@ -62,6 +62,12 @@ Outcome curbline(const Words& arguments, const std::string& out_file) {
   return run(CURBLINE_PROGRAM, arguments, out_file);
 }
 
+std::string line_of(const Words& arguments) {
+  std::string line = "'" CURBLINE_PROGRAM "'";
+  for (const std::string& word : arguments) line += " '" + word + "'";
+  return line;
+}
+
 Words lines_of(const std::string& text) {
   Words lines;
   std::size_t begin = 0;

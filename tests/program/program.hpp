@@ -30,6 +30,9 @@ struct Outcome {
 Outcome curbline(const Words& arguments, const std::string& out_file = {});
 Outcome run(const char* program, const Words& arguments, const std::string& out_file = {});
 
+/// A command line for the shell that runs curbline.
+std::string line_of(const Words& arguments);
+
 Words lines_of(const std::string& text);
 
 /// The description of a shipped robot.

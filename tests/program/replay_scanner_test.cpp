@@ -119,7 +119,7 @@ TEST_CASE("program: a scanner in a scene gives the lines that simulate writes") 
 TEST_CASE("program: curbline-scanner says what is wrong with its arguments and input") {
   const Recording logs("straight_curb", "utm30lx", {"--duration", "1"});
   const auto status_of = [](const std::string& arguments) {
-    return WEXITSTATUS(std::system((std::string(CURBLINE_SCANNER) + " " + arguments + " >/dev/null 2>&1").c_str()));
+    return WEXITSTATUS(std::system(("'" CURBLINE_SCANNER "' " + arguments + " >/dev/null 2>&1").c_str()));
   };
   const std::string scans = logs.path("scans.carmen");
   CHECK(status_of("") == 2);
@@ -180,9 +180,8 @@ TEST_CASE("program: Ctrl-C ends a live scan as the end of a log does") {
     if (sent == 80) ::kill(std::stoi(read_file(pid)), SIGINT);
   };
   const Playing scanner(Protocol::scip2, logs.path("scans.carmen"), {.speed = 1, .damage = press_ctrl_c});
-  std::string line = "echo $$ > '" + pid + "'; exec " CURBLINE_PROGRAM;
-  for (const std::string& word : logs.replay("scans", scanner.address()) + Words{"--json"}) line += " '" + word + "'";
-  CHECK(std::system((line + " > '" + out + "'").c_str()) == 0);
+  const std::string replay = line_of(logs.replay("scans", scanner.address()) + Words{"--json"});
+  CHECK(std::system(("echo $$ > '" + pid + "'; exec " + replay + " > '" + out + "'").c_str()) == 0);
   const auto summary = nlohmann::json::parse(read_file(out));
   CHECK(summary.at("lines") > 20);
   CHECK(summary.at("lines") <= 81);
