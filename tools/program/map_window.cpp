@@ -53,8 +53,8 @@ void apply_window(const MapOptions& options, WindowSettings& window) {
   }
   const double longest = std::max(options.size[0] / side.x_m, options.size[1] / side.y_m);
   if (!(longest <= most_cells + count_slack)) {
-    throw CLI::ValidationError("--size",
-                               "more than 512 cells along one side; expected larger cells or a smaller window");
+    throw CLI::ValidationError("--size", "more than " + std::to_string(most_cells) +
+                                             " cells along one side; expected larger cells or a smaller window");
   }
   window.fixed = true;
   window.origin_x_m = static_cast<float>(options.origin[0]);

@@ -18,7 +18,7 @@ constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
 /// A time in the logs that belong to live scan lines; nothing if there are none, or CAN is live too.
 std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
-  if (logs.can.starts_with("can:")) return std::nullopt;
+  if (live_interface(logs.can)) return std::nullopt;
   if (!robot.tilt.fixed) {
     const auto frame = CanLogReader(logs.can).next();
     return frame ? std::optional(frame->time_ns) : std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "curbline/map/dem.hpp"
 #include "curbline/setting_ranges.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
@@ -54,8 +55,9 @@ void read_pose(TomlTable table, PoseSettings& pose) {
 
 void read_window(TomlTable table, WindowSettings& window) {
   for (const auto& [key, value] : {std::pair{"rows", &window.rows}, {"cols", &window.cols}}) {
-    table.read_whole(key, *value, 4, 512);
-    if (*value % 4 != 0) table.refuse(key, "is " + std::to_string(*value) + "; expected a multiple of 4");
+    table.read_whole(key, *value, block_side, most_cells);
+    if (*value % block_side != 0)
+      table.refuse(key, "is " + std::to_string(*value) + "; expected a multiple of " + std::to_string(block_side));
   }
   table.read("cell_x_m", window.cell_x_m, ranges::cell_m);
   table.read("cell_y_m", window.cell_y_m, ranges::cell_m);

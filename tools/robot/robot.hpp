@@ -13,8 +13,8 @@
 
 namespace curbline::tools {
 
-/// Largest number of beams that the host programs support.
-inline constexpr int most_beams = 2881;
+/// The most that the host programs support: beams, and cells along one side of a window.
+inline constexpr int most_beams = 2881, most_cells = 512;
 
 /// Properties of the robot's sensors that only the simulator needs.
 struct SimulatedErrors {

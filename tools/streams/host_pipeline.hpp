@@ -30,7 +30,6 @@ inline constexpr Limits wide_limits{.rows = 128,
                                     .links = 16000,
                                     .borders = 8192,
                                     .curbs = 2048};
-inline constexpr int most_cells = 512;  ///< along one side of a window
 /// The margin around the window that is mapped too for a finished map (map_cloud.hpp): one block.
 inline constexpr int margin_cells = 4;
 inline constexpr Limits largest_limits{.rows = most_cells + 2 * margin_cells,
