@@ -52,7 +52,5 @@ void unexpected() {
 void reset() {
   *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xFu << 20;  // CPACR: full access to CP10 and CP11, the FPU
   asm volatile("dsb\n isb" ::: "memory");
-  constexpr std::size_t own_frames = 128;  // of this function and those that it calls
-  curbline::board::paint_stack(static_cast<const std::byte*>(__builtin_frame_address(0)) - own_frames);
   curbline::board::run_main();
 }

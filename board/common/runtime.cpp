@@ -17,12 +17,10 @@ constexpr Word paint = 0xC0DEC0DEu;
 }
 
 // volatile, because the compiler would otherwise call memset and memcpy, whose own stack is part of what is painted.
-
-void paint_stack(const void* below) {
-  for (volatile Word* p = stack_begin; p < below; ++p) *p = paint;
-}
-
 void run_main() {
+  constexpr std::size_t own_frames = 128;  // of this function and those that it calls
+  const void* const below = static_cast<const std::byte*>(__builtin_frame_address(0)) - own_frames;
+  for (volatile Word* p = stack_begin; p < below; ++p) *p = paint;
   const Word* from = data_load;
   for (volatile Word* to = data_begin; to < data_end; ++to, ++from) *to = *from;
   for (volatile Word* to = bss_begin; to < bss_end; ++to) *to = 0;

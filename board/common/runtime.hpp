@@ -6,11 +6,8 @@
 
 namespace curbline::board {
 
-/// Fills the stack from its low end to `below` with a pattern, for stack_used().
-void paint_stack(const void* below);
-
-/// Copies initial values, clears the other data, runs constructors, then main(), and leaves with its status. The FPU
-/// must be on.
+/// Fills the free stack with a pattern, for stack_used(), copies initial values, clears the other data, runs
+/// constructors, then main(), and leaves with its status. The FPU must be on.
 [[noreturn]] void run_main();
 
 /// Each board defines this: called when main() returns, and for unhandled exceptions. leave_to_host.cpp reports the
