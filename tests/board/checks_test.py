@@ -9,6 +9,7 @@ from pathlib import Path
 
 BOARDS = Path(__file__).resolve().parents[2] / "tools" / "boards"
 sys.path.insert(0, str(BOARDS))
+import boards  # noqa: E402
 import budget  # noqa: E402
 import stack  # noqa: E402
 import undefined_symbols  # noqa: E402
@@ -96,6 +97,11 @@ class Stack(Built):
 
 
 class Drives(unittest.TestCase):
+    def test_a_blank_in_the_name_of_a_build_folder_parts_no_word_of_a_firmware(self):
+        board = boards.BOARDS["cortex-m7"]
+        line = boards.command(board, Path("/a b/board/cortex-m7/drive.elf"), ["/a b/board/drives/x.drive", "/a b/board/results/x.results"])
+        self.assertIn("enable=on,target=native,arg=drive.elf,arg=../drives/x.drive,arg=../results/x.results", line)
+
     def test_a_build_that_is_not_there_is_told_and_not_begun(self):
         with tempfile.TemporaryDirectory() as folder:
             for script, *words in [["make_drives.py"], ["run_drives.py", "cortex-m7"]]:
@@ -125,7 +131,7 @@ class UndefinedSymbols(Built):
 
 class Budget(unittest.TestCase):
     def test_a_figure_above_its_budget_is_exceeded_and_one_at_it_is_not(self):
-        board = budget.boards.BOARDS["cortex-m7"]
+        board = boards.BOARDS["cortex-m7"]
         rows = [("stack", "pipeline", 4097), ("ram", "pipeline", 100), ("", "dem", 90)]
         self.assertEqual(budget.print_table(board, rows, {"stack": {"pipeline": 4096}, "ram": {"pipeline": 100}}, {("stack", "pipeline"): 4000}), 1)
 
@@ -146,7 +152,7 @@ class Budget(unittest.TestCase):
                     budget.check({**good, group: wrong}, "budget.toml")
 
     def test_the_mean_of_simulated_drives_alone_is_not_judged_by_the_budget_of_all(self):
-        board = budget.boards.BOARDS["cortex-m7"]
+        board = boards.BOARDS["cortex-m7"]
         rows = [("instructions", "worst", 7), ("", "mean", 4)]
         allowed = {"instructions": {"worst": 6, "mean": 3}}
         self.assertEqual(budget.print_table(board, rows, allowed, {}), 2)

@@ -56,10 +56,10 @@ BY_INSTRUCTIONS = ["-icount", "shift=4,sleep=off"]
 
 
 def command(board, program, words, extra=()):
-    """The command line that runs a board's program with these words."""
+    """The command line that runs a board's program with these words: of a core, files, from its own folder, since a blank in a word parts it."""
     if not board.core:
         return [*board.run, str(program), *words]
-    arguments = "".join(f",arg={w}" for w in (program.name, *words))
+    arguments = "".join(f",arg={w}" for w in (program.name, *(os.path.relpath(w, program.parent) for w in words)))
     line = [*board.run, *QUIET, "-semihosting-config", "enable=on,target=native" + arguments, *extra]
     if board.folder == "zcu102_r5":
         return [*line, "-device", f"loader,file={program}", "-device", f"loader,file={program.parent / 'wake_r5.elf'},cpu-num=0"]
@@ -71,7 +71,8 @@ def run(board, program, words, extra=(), timeout_s=900):
     line = command(board, program, words, extra)
     environment = {**os.environ, "QEMU_AUDIO_DRV": "none"}
     try:
-        done = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout_s, env=environment)
+        done = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout_s, env=environment,
+                              cwd=program.parent if board.core else None)
     except FileNotFoundError:
         sys.exit(f"{line[0]}: not found; expected Debian's package, which tools/setup installs")
     except subprocess.TimeoutExpired:

@@ -32,7 +32,7 @@ def counting(board, build, program, results):
     newest_source = max(path.stat().st_mtime for path in (program, Path(stages.__file__)))
     if not map_file.exists() or map_file.stat().st_mtime < newest_source:
         stages.write_map(program, map_file, board.compilers)
-    plugin = Path(build) / "board" / "count_plugin.so"
+    plugin = Path(build).resolve() / "board" / "count_plugin.so"
     return ["-plugin", f"{plugin},map={map_file},out={results.with_suffix('.counts')}"]
 
 
