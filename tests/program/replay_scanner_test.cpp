@@ -132,6 +132,8 @@ TEST_CASE("program: curbline-scanner says what is wrong with its arguments and i
   for (const std::string bad : {"99999", "-1", "x"})
     check_wrong_usage(run(CURBLINE_SCANNER, {"scip2", "--scans", scans, "--port", bad}),
                       "--port: " + bad + "; expected a whole number from 0 to 65535\n");
+  check_wrong_usage(run(CURBLINE_SCANNER, {"lms200", "--scans", scans, "--port", "2112"}),
+                    "--port: expected it with scip2 or cola; an LMS-200 has a serial line\n");
   CHECK(status_of("scip2 --scene street") == 2);
   CHECK(status_of("scip2 --scans /no/such/log") == 1);
   CHECK(status_of("lms200 --scans " + scans) == 1);  // 1081 beams

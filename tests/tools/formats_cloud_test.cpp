@@ -1,9 +1,13 @@
 #include "formats/cloud.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <thread>
 
 #include "formats_support.hpp"
 
@@ -72,6 +76,12 @@ TEST_CASE("cloud: KITTI records are float32 x y z intensity") {
   const auto error = [&](const std::string& text) { return error_of([&] { read_cloud(dir.write("a.bin", text)); }); };
   CHECK(error(good + "x").starts_with("a.bin: 33 bytes; expected a multiple of 16"));
   CHECK(error("").starts_with("a.bin: no points"));
+
+  const std::string pipe = dir.path("pipe.bin");  // has no size
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << good << "x"; });
+  CHECK(error_of([&] { read_cloud(pipe); }).starts_with("pipe.bin: 33 bytes; expected a multiple of 16"));
+  writer.join();
 }
 
 TEST_CASE("cloud: a point that is not finite is no point, whatever the format, as organised clouds have them") {

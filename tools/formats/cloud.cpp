@@ -92,18 +92,16 @@ std::vector<Point3> read_text(const std::string& path) {
 }
 
 std::vector<Point3> read_kitti(const std::string& path) {
-  std::error_code error;
-  const auto bytes = std::filesystem::file_size(path, error);
-  if (!error && bytes % 16 != 0) {
-    throw BadInput(path + ": " + std::to_string(bytes) + " bytes; expected a multiple of 16, float32 x y z intensity");
-  }
   LineReader source(path);
   std::vector<Point3> points;
   std::array<float, 4> record{};
-  while (source.read_bytes(record.data(), sizeof record)) {
+  std::size_t bytes = 0;
+  while ((bytes = source.read_bytes(record.data(), sizeof record)) == sizeof record) {
     points.push_back({record[0], record[1], record[2]});
   }
-  return points;
+  if (bytes == 0) return points;
+  throw BadInput(path + ": " + std::to_string(points.size() * sizeof record + bytes) +
+                 " bytes; expected a multiple of 16, float32 x y z intensity");
 }
 
 }  // namespace

@@ -87,19 +87,19 @@ void LineReader::fill() {
   end_ += static_cast<std::size_t>(got);
 }
 
-bool LineReader::read_bytes(void* to, std::size_t bytes) {
-  char* out = static_cast<char*>(to);
-  while (bytes > 0) {
+std::size_t LineReader::read_bytes(void* to, std::size_t bytes) {
+  std::size_t read = 0;
+  while (read < bytes) {
     if (begin_ == end_) {
-      if (at_end_) return false;
+      if (at_end_) break;
       fill();
     }
-    const std::size_t ready = std::min(bytes, end_ - begin_);
-    out = std::copy_n(buffer_.data() + begin_, ready, out);
+    const std::size_t ready = std::min(bytes - read, end_ - begin_);
+    std::copy_n(buffer_.data() + begin_, ready, static_cast<char*>(to) + read);
     begin_ += ready;
-    bytes -= ready;
+    read += ready;
   }
-  return true;
+  return read;
 }
 
 void LineReader::fail(const std::string& what) const {

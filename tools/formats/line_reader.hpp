@@ -30,8 +30,8 @@ class LineReader {
   /// reading fails.
   std::optional<std::string_view> next();
 
-  /// Reads the bytes after the last line, for formats with a text header. False if the file ends before.
-  bool read_bytes(void* to, std::size_t bytes);
+  /// Reads the bytes after the last line, for formats with a text header. How many: fewer where the file ends.
+  std::size_t read_bytes(void* to, std::size_t bytes);
 
   const std::string& path() const { return path_; }
   long line() const { return line_; }  ///< number of the last line returned, from 1

@@ -161,7 +161,7 @@ double number_at(const std::vector<char>& record, const Place& place) {
 /// x, y, z of the next point; nothing if the file ends before it.
 std::optional<std::array<double, 3>> read_binary_point(LineReader& source, const Layout& layout,
                                                        std::vector<char>& record) {
-  if (!source.read_bytes(record.data(), record.size())) return std::nullopt;
+  if (source.read_bytes(record.data(), record.size()) < record.size()) return std::nullopt;
   return std::array{number_at(record, layout.axes[0]), number_at(record, layout.axes[1]),
                     number_at(record, layout.axes[2])};
 }

@@ -39,6 +39,8 @@ void run(const Options& o) {
   if (o.scene.empty() == o.scans.empty()) throw CLI::ValidationError("--scene", "expected it or --scans, and not both");
   if (o.scene.empty() != o.robot.empty())
     throw CLI::ValidationError("--robot", "expected it with --scene, and only there");
+  if (o.port && o.protocol == "lms200")
+    throw CLI::ValidationError("--port", "expected it with scip2 or cola; an LMS-200 has a serial line");
   ScanFeed feed =
       o.scene.empty() ? ScanFeed::from_log(o.scans) : ScanFeed::from_scene(find_scene(o.scene), read_robot(o.robot));
   ServerOptions options;

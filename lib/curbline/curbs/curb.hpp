@@ -28,7 +28,8 @@ struct Curb {
                           ///< with a shadow, at its edge, unless the ground next to the curb deviates from its plane,
                           ///< as in a gutter. Along a piece of three cells or more it changes by at most 2 cm
   float height_sd_m = 0.0f;   ///< of that: both planes' posteriors and roughness, the ground next to the curb, a slope
-                              ///< between the planes, and the piece's position where slopes differ (lib/formulas.md)
+                              ///< between the planes, what is unseen of a face that a sweep has just come upon, and
+                              ///< the piece's position where slopes differ (lib/formulas.md)
   float probability = 0.0f;   ///< that the cells on both sides belong to different planes, mean along the piece
   float face_width_m = 0.0f;  ///< between the cells of both planes, across the piece, less the shadow of a step down;
                               ///< resolves a cell; 0 for the end of a face
