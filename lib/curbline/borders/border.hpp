@@ -41,6 +41,10 @@ struct Border {
 /// they count as one observation, each of k as 1 / k. If all are open, each counts as one.
 class ChainPart {
  public:
+  /// Residuals of borders from their line, in half gaps, are normal with an unknown variance, inverse gamma a priori:
+  /// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
+  static constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
+
   struct Iterator {
     const Border* all;
     const Border::Index* at;

@@ -1,6 +1,5 @@
 #include "curbline/curbs/corner.hpp"
 
-#include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/line_fit.hpp"
 #include "curbline/math.hpp"
 
@@ -25,7 +24,9 @@ int corner_of(const ChainPart& part) {
     found = k;
   }
   if (found < 0) return -1;
-  const float gain = (place_a0 + 0.5f * n) * log((place_prior + one) / (place_prior + two)) - 1.5f * log(n);
+  const float gain =
+      (ChainPart::place_a0 + 0.5f * n) * log((ChainPart::place_prior + one) / (ChainPart::place_prior + two)) -
+      1.5f * log(n);
   return gain > 0.0f ? found : -1;
 }
 

@@ -17,10 +17,6 @@
 
 namespace curbline {
 
-/// Residuals of borders from their line, in half gaps, are normal with an unknown variance, inverse gamma a priori:
-/// a0, and b0 as for residuals anywhere from -1 to 1. place_prior is 2 b0, to which the sum of squares is added.
-inline constexpr float place_a0 = 2.0f, place_prior = 2.0f * place_a0 / 3.0f;
-
 /// Borders on one line, and means over them.
 template <Limits limits>
 struct CurbPiece {
@@ -156,7 +152,8 @@ void CurbPiece<limits>::take_variances(const ChainPart& part, const LineFit& fit
   }
   const float n = observations;
   // The expected variance, in half gaps, times the mean square of half a gap.
-  place_variance_m2 = (place_prior + fit.squares()) / (2.0f * place_a0 - 2.0f + n) * n / fit.weight();
+  place_variance_m2 =
+      (ChainPart::place_prior + fit.squares()) / (2.0f * ChainPart::place_a0 - 2.0f + n) * n / fit.weight();
   const float grown = fit.grown(middle_x_m(), middle_y_m());
   // Each is anywhere in its gap, independently; borders that err alike are known no better than one.
   borders_variance_m2 = (1.0f / 3) * (alike ? n : 1.0f) / fit.weight() * grown;
