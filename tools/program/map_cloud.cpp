@@ -9,6 +9,7 @@
 
 #include "peers/peers.hpp"
 #include "program/map_window.hpp"
+#include "program/mistimed_lines.hpp"
 #include "streams/host_pipeline.hpp"
 
 namespace curbline::tools {
@@ -106,12 +107,14 @@ Map map_about(const Point3& place, std::span<const Point3> cloud, MapOptions opt
   const PlanePrior& prior = settings.planes.prior;
   const float variance_m2 = prior.noise_m2 - prior.texture_m2;
   const double first_x_m = grid.x0_m + place.x, first_y_m = grid.y0_m + place.y;
+  const std::vector<double> lift_m = mistimed_lift_m(cloud);
   std::vector<Point> points;
   points.reserve(cloud.size());
-  for (const Point3& p : cloud) {
+  for (std::size_t k = 0; k < cloud.size(); ++k) {
+    const Point3& p = cloud[k];
     points.push_back({static_cast<float>(within_cell(p.x, first_x_m, grid.dx_m) - place.x),
                       static_cast<float>(within_cell(p.y, first_y_m, grid.dy_m) - place.y),
-                      static_cast<float>(p.z - place.z), variance_m2});
+                      static_cast<float>(p.z - lift_m[k] - place.z), variance_m2});
   }
   const auto pipeline = make_host_pipeline(settings);
   pipeline->observe(points);
