@@ -1,7 +1,8 @@
 // The angle of the tilt servo at each beam of a line, interpolated between the readings that a TiltTrack held when the
 // line came, and extrapolated a little. A driver that has no new angle may send its last one again, under a new stamp:
-// between readings that show how the servo moved, such a repeat is replaced by the angle on the line through them.
-// Working memory of one line. Cost: a step a beam, a search for the rate a reading, a comparison for every second one.
+// between readings that show how the servo moved, such a repeat is replaced by the angle on the line through them; so
+// is a single reading whose angle or stamp is wrong. Working memory of one line. Cost: a step a beam, a search for the
+// rate a reading, 40 operations for every second one.
 #pragma once
 
 #include <algorithm>
@@ -67,6 +68,8 @@ class TiltSnapshot {
   bool tells(int before, int at, int next) const;
   bool goes_on(int before, int at, int next) const;
   void fill(int at, int next, float rate_rad_s);
+  void mend();
+  bool wrong(int at) const;
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
@@ -103,6 +106,7 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
   time_variance_s2_ = square(settings.time_sd_s);
   most_repeats_ = repeats;
   fill_repeats();
+  mend();
 }
 
 /// Looks at half of what a track holds, up to the reading that the line has awaited, so that none depends on how many
@@ -170,6 +174,34 @@ void TiltSnapshot<limits>::fill(int at, int next, float rate_rad_s) {
     TiltReading& repeat = readings_[static_cast<std::size_t>(k)];
     repeat.angle_rad += seconds(repeat.time_ns - reading(at).time_ns) * rate_rad_s;
   }
+}
+
+/// Puts single wrong readings on the line between their neighbours; among those that fill_repeats() looks at.
+template <Limits limits>
+void TiltSnapshot<limits>::mend() {
+  for (int k = std::max(2, awaited_ - limits.tilt_samples / 2); k + 1 < awaited_; ++k) {
+    const TiltReading &before = reading(k - 1), &next = reading(k + 1);
+    TiltReading& at = readings_[static_cast<std::size_t>(k)];
+    if (next.time_ns - before.time_ns > max_gap_ns_ || !wrong(k)) continue;
+    at.angle_rad = before.angle_rad + seconds(at.time_ns - before.time_ns) * slope_rad_s(before, next);
+  }
+}
+
+/// Is a reading off the line between its neighbours by more than three standard deviations, and off that through the
+/// two before it by more than the next one? A servo that turns round, stops or accelerates leaves the latter farther
+/// and farther. Of two readings a moment apart (extrapolation.hpp) either may be wrong: the second is not judged.
+template <Limits limits>
+bool TiltSnapshot<limits>::wrong(int at) const {
+  const TiltReading &here = reading(at), &before = reading(at - 1), &next = reading(at + 1);
+  const auto off_rad = [&](const TiltReading& reading, float rate_rad_s) {
+    return reading.angle_rad - before.angle_rad - seconds(reading.time_ns - before.time_ns) * rate_rad_s;
+  };
+  const float rate_rad_s = slope_rad_s(before, next), earlier_rad_s = slope_rad_s(reading(at - 2), before);
+  const float share = to_float(here.time_ns - before.time_ns) / to_float(next.time_ns - before.time_ns);
+  const float variance = angle_variance_ + square(rate_rad_s) * time_variance_s2_;
+  return share >= 0.25f &&
+         square(off_rad(here, rate_rad_s)) > gate * variance * (1.0f + square(share) + square(1.0f - share)) &&
+         square(off_rad(next, earlier_rad_s)) < square(off_rad(here, earlier_rad_s));
 }
 
 template <Limits limits>
