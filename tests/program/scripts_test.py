@@ -2,6 +2,7 @@
 """Scripts refuse wrong usage before they begin: one line, exit status 2, nothing written. What stops a script that scores many scenes later
 is reported in one line too, with exit status 1, and earlier figures are kept."""
 import glob
+import json
 import os
 import shutil
 import signal
@@ -14,6 +15,7 @@ import unittest
 import unittest.mock
 
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools")
+DATA = os.path.join(TOOLS, "..", "..", "shared", "data", "clausius")
 
 
 def program_in(folder, commands):
@@ -42,6 +44,7 @@ class Scripts(unittest.TestCase):
         for latency in ["-5", "nan", "2"]:
             self.refuses(latency, "streets", "1", "--latency", latency)
         self.refuses("0", "paper", "--seeds", "0")
+        self.refuses("left", "turned", "left")
         self.refuses("-1", "long-drive", "--seed", "-1")
         self.refuses("100", "long-drive", "100")
         self.refuses("250 m", "long-drive", "250")
@@ -57,6 +60,7 @@ class Scripts(unittest.TestCase):
     def test_clouds_that_are_not_there(self):
         self.refuses("/nonexist", "paper", "/nonexist")
         self.refuses("/", "paper", "/")
+        self.refuses("no clouds|no score", "turned", "--data", "/")
 
     def shell(self, script, *words):
         done = subprocess.run([os.path.join(TOOLS, script), *words], capture_output=True, text=True, timeout=5)
@@ -128,6 +132,28 @@ class Scripts(unittest.TestCase):
             with unittest.mock.patch.dict(os.environ, {"ONLY_REPLAY": "1"}):
                 error = self.stopped("long-drive", os.path.join(folder, "long-drive"), program=program)
                 self.assertIn("it rains; expected room for it: exit status 1 of curbline replay ", error)
+
+    def test_turned_clouds_are_scored_in_all_their_windows(self):
+        if not os.path.isdir(DATA):
+            return print(f"SKIPPED: no data set at {DATA}")
+        with tempfile.TemporaryDirectory() as folder:
+            data = os.path.join(folder, "data")
+            os.mkdir(data)
+            for name in ["scan-08.xyz", "scan-08.gt"]:  # with a line whose tilt is mistimed
+                os.symlink(os.path.abspath(os.path.join(DATA, name)), os.path.join(data, name))
+            words = [sys.executable, os.path.join(TOOLS, "turned"), "0", "20", "--data", data, "--out", os.path.join(folder, "out")]
+            done = subprocess.run(words, env={**os.environ, "CURBLINE": sys.argv[1]}, capture_output=True, text=True, timeout=200)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            with open(os.path.join(folder, "out", "turned.json")) as file:
+                figures = json.load(file)
+            self.assertEqual(list(figures), ["0", "0, mirrored", "20", "20, mirrored", "all"])
+            self.assertGreater(figures["0"]["windows"], 15)
+            self.assertGreater(figures["all"]["v"], 0.86)
+            self.assertGreater(figures["all"]["f1"], 0.93)
+            failing = program_in(folder, "echo it rains >&2; exit 1\n")
+            done = subprocess.run(words, env={**os.environ, "CURBLINE": failing}, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, "^it rains: exit status 1 of curbline map [^\n]*\n$")
 
     def test_a_file_or_a_directory_in_the_way(self):
         with tempfile.TemporaryDirectory() as folder:
