@@ -137,7 +137,7 @@ std::unique_ptr<TiltTrack<Limits{}>> track_with(int repeats) {
   push_mrad(*track, t0 - 1000 * ms, angles);
   TiltSnapshot<Limits{}> told;
   track->snapshot(told, 0.0f, INT64_MAX);
-  REQUIRE(told.most_repeats() == repeats);
+  REQUIRE(told.history().most_repeats == repeats);
   return track;
 }
 
@@ -233,6 +233,26 @@ TEST_CASE("tilt track: a single wrong reading is put on the line between its nei
   TiltSnapshot<Limits{}> told;
   late->snapshot(told, 0.0f, INT64_MAX);
   CHECK(told.at(t0 + 30 * ms).angle_rad == Approx(0.015));
+}
+
+TEST_CASE("tilt track: a wrong reading is counted once, however many lines see it") {
+  const auto track = track_with(0);
+  const std::uint32_t before = track->corrected();
+  std::int64_t time_ns = t0;
+  const auto push_and_look = [&](const std::vector<float>& angles) {
+    for (const float angle : angles) {
+      REQUIRE(track->push({time_ns, 1e-3f * angle}));
+      TiltSnapshot<Limits{}> line;
+      track->snapshot(line, 0.0f, time_ns - 5 * ms);
+      time_ns += 10 * ms;
+    }
+  };
+  push_and_look({0, 5, 10, 45, 20, 25, 30, 35});
+  CHECK(track->corrected() - before == 1);
+  push_and_look({40, 45, 20, 55, 60, 65, 99, 75, 80});
+  CHECK(track->corrected() - before == 3);
+  track->init(TiltSettings{});
+  CHECK(track->corrected() == 0);
 }
 
 TEST_CASE("tilt track: a servo that turns round, starts, stops or accelerates has no wrong readings") {

@@ -26,20 +26,27 @@ struct TiltAngle {
   float rate_rad_s = 0.0f;  ///< over at least 15 ms around the time, if there are readings
 };
 
+/// What the snapshots of a track have seen so far.
+struct TiltHistory {
+  int most_repeats = 0;         ///< of an angle, in a row
+  std::uint32_t judged = 0;     ///< number of the newest reading that was judged, counted since init()
+  std::uint32_t corrected = 0;  ///< wrong readings, each once
+};
+
 /// Readings ascending in time; times are those at which the angles were true.
 template <Limits limits>
 class TiltSnapshot {
  public:
   /// For TiltTrack: put() stores `count` readings, number 0 the oldest, and begin() uses the newest `whole` of them, as
   /// far as their times rise. `written` counts the readings up to the newest since init(). Angles between readings do
-  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `repeats`: the
-  /// largest number in a row that earlier snapshots have seen.
+  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `history`: that
+  /// of earlier snapshots.
   void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
   void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
-             std::int64_t until_ns, int repeats);
+             std::int64_t until_ns, const TiltHistory& history);
 
-  /// The same with those that this one sees.
-  int most_repeats() const { return most_repeats_; }
+  /// The same with what this one sees.
+  const TiltHistory& history() const { return history_; }
 
   /// The angle at a time; Source::none where no readings are near. Times must not fall, except after rewind(). O(1) on
   /// average.
@@ -74,7 +81,7 @@ class TiltSnapshot {
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
-  int most_repeats_ = 0;       ///< in a row
+  TiltHistory history_{};
   int awaited_ = 0;            ///< readings up to the first one later than the line's last beam
   std::uint32_t written_ = 0;  ///< readings up to the newest, since init()
   int cursor_ = 0;             ///< the first reading later than the last time asked for, or size_
@@ -91,7 +98,7 @@ class TiltSnapshot {
 
 template <Limits limits>
 void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written,
-                                 const TiltSettings& settings, std::int64_t until_ns, int repeats) {
+                                 const TiltSettings& settings, std::int64_t until_ns, const TiltHistory& history) {
   std::uint32_t kept = whole > 0 ? 1 : 0;  // readings before times went back are of another time base
   while (kept < whole && readings_[count - kept - 1].time_ns < readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) readings_[k] = readings_[count - kept + k];
@@ -104,7 +111,7 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
   max_extrapolation_ns_ = static_cast<std::int64_t>(settings.max_extrapolation_s * 1e9f);
   angle_variance_ = square(settings.angle_sd_rad);
   time_variance_s2_ = square(settings.time_sd_s);
-  most_repeats_ = repeats;
+  history_ = history;
   fill_repeats();
   mend();
 }
@@ -120,11 +127,11 @@ void TiltSnapshot<limits>::fill_repeats() {
     const int next = other_angle(at), repeats = next - at - 1;
     if (repeats > 0 && moves(before, at)) {
       if (next == awaited_) {
-        if (repeats <= most_repeats_ && before > first && tells(before, at, next))
+        if (repeats <= history_.most_repeats && before > first && tells(before, at, next))
           fill(at, next, slope_rad_s(reading(before), reading(at)));
       } else if (moves(at, next) && goes_on(before, at, next)) {
         fill(at, next, slope_rad_s(reading(at), reading(next)));
-        most_repeats_ = std::max(most_repeats_, repeats);
+        history_.most_repeats = std::max(history_.most_repeats, repeats);
       }
     }
     before = at;
@@ -180,9 +187,13 @@ void TiltSnapshot<limits>::fill(int at, int next, float rate_rad_s) {
 template <Limits limits>
 void TiltSnapshot<limits>::mend() {
   for (int k = std::max(2, awaited_ - limits.tilt_samples / 2); k + 1 < awaited_; ++k) {
+    const std::uint32_t number = written_ - static_cast<std::uint32_t>(size_ - 1 - k);
+    const bool first_time = static_cast<std::int32_t>(number - history_.judged) > 0;  // as numbers wrap
+    if (first_time) history_.judged = number;
     const TiltReading &before = reading(k - 1), &next = reading(k + 1);
     TiltReading& at = readings_[static_cast<std::size_t>(k)];
     if (next.time_ns - before.time_ns > max_gap_ns_ || !wrong(k)) continue;
+    history_.corrected += first_time;
     at.angle_rad = before.angle_rad + seconds(at.time_ns - before.time_ns) * slope_rad_s(before, next);
   }
 }
