@@ -541,6 +541,18 @@ TEST_CASE("program: a window that no point falls in is told") {
   CHECK(outcome.err.ends_with(" points lies in the window\n"));
 }
 
+TEST_CASE("program: a window whose corner no float is near enough to is empty where nothing was mapped") {
+  const Recording logs("street", "utm30lx", {"--duration", "0.5"});
+  for (const Words& corner : {Words{"99999.999", "0"}, {"0", "99999.999"}, {"-99999.997", "99999.997"}}) {
+    INFO(corner[0] << " " << corner[1]);
+    const std::string labels = logs.path("labels.csv");
+    const Words window = Words{"--origin"} + corner + Words{"--size", "0.04", "0.04", "--cell", "0.001"};
+    const Outcome outcome = curbline(logs.replay() + window + Words{"--labels", labels});
+    CHECK(outcome.status == 0);
+    CHECK(read_labels(labels).empty());
+  }
+}
+
 TEST_CASE("program: poses in millimetres, which carry the window away from all it has mapped, are told") {
   const TemporaryDirectory dir;
   const std::string scene =

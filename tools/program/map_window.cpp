@@ -80,15 +80,15 @@ Grid asked_grid(const MapOptions& options, const WindowSettings& window) {
 }
 
 Map crop(const Map& map, const Grid& asked) {
-  const auto first_i = std::lround((asked.x0_m - map.grid.x0_m) / asked.dx_m);
-  const auto first_j = std::lround((asked.y0_m - map.grid.y0_m) / asked.dy_m);
+  const auto first_i = static_cast<int>(std::lround((asked.x0_m - map.grid.x0_m) / asked.dx_m));
+  const auto first_j = static_cast<int>(std::lround((asked.y0_m - map.grid.y0_m) / asked.dy_m));
   Map out;
   out.grid = asked;
   out.cells.resize(asked.cells());
   std::set<int> labels;
-  for (int i = 0; i < asked.rows; ++i) {
-    for (int j = 0; j < asked.cols; ++j) {
-      const MapCell& cell = map.cells[map.grid.at(static_cast<int>(first_i) + i, static_cast<int>(first_j) + j)];
+  for (int i = std::max(0, -first_i); i < std::min(asked.rows, map.grid.rows - first_i); ++i) {
+    for (int j = std::max(0, -first_j); j < std::min(asked.cols, map.grid.cols - first_j); ++j) {
+      const MapCell& cell = map.cells[map.grid.at(first_i + i, first_j + j)];
       out.cells[asked.at(i, j)] = cell;
       labels.insert(cell.label);
       labels.insert(plane_label_of(cell));
