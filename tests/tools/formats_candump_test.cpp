@@ -207,6 +207,8 @@ TEST_CASE("can log: bad lines are refused with their line") {
   CHECK(error("(1.0) can0 181#00\n(1.0) can0 181#0").starts_with("c.log:2: odd number of data digits"));
   CHECK(error("(1.0) can0 181#00\n(1.0) can0 181#0").ends_with("(the file ends within this line)"));
   CHECK(error("junk\n").starts_with("c.log:1: no time"));
+  CHECK(error("(4000000000.0) can0 181#00\n(4000000000.000001) can0 181#00\n") ==
+        "c.log:2: the time is more than 126 years from 1970; expected seconds");
   CHECK(error("# nothing\n") == "c.log: no CAN frame; expected at least one line of candump -L");
 }
 

@@ -91,6 +91,8 @@ TEST_CASE("carmen: fields that are no finite numbers are refused by name") {
   CHECK(error_in(dir, with("-1.0", "left")) == "s.carmen:1: start_angle is \"left\"; expected a number");
   CHECK(error_in(dir, with("60.00", "-1")).starts_with("s.carmen:1: maximum_range is "));
   CHECK(error_in(dir, with("12.025", "now")) == "s.carmen:1: ipc_timestamp is \"now\"; expected a time in seconds");
+  CHECK(error_in(dir, with("12.025", "9223372036.85")) ==
+        "s.carmen:1: ipc_timestamp is \"9223372036.85\"; expected a time in seconds");
   CHECK(error_in(dir, with("12.030", "12.030 5")).starts_with("s.carmen:1: more fields, from"));
 }
 

@@ -72,6 +72,8 @@ TEST_CASE("trajectory: cut lines, junk and times that go back are refused") {
   CHECK(error_in(dir, "1 0 0 0 0 0 0 1 1\n").starts_with("p.tum:1: more fields, from"));
   CHECK(error_in(dir, "1 0 nan 0 0 0 0 1\n") == "p.tum:1: ty is \"nan\"; expected a finite number");
   CHECK(error_in(dir, "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n").starts_with("p.tum:2: the time goes back"));
+  for (const std::string late : {"9223372036.85", "9.3e9"})
+    CHECK(error_in(dir, late + " 0 0 0 0 0 0 1\n") == "p.tum:1: time is \"" + late + "\"; expected a time in seconds");
   CHECK(error_in(dir, "# none\n").starts_with("p.tum: no pose"));
 }
 

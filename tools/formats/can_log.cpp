@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "candump/candump.hpp"
+#include "curbline/intake/rising_times.hpp"
 #include "formats/decimals.hpp"
 #include "formats/parse_number.hpp"
 
@@ -24,6 +25,8 @@ std::optional<can::Frame> CanLogReader::next() {
     }
     const candump::ParsedLine parsed = candump::parse_line(*text);
     if (!parsed.ok()) source_.fail(std::string(parsed.error));
+    if (!RisingTimes::is_time(parsed.frame.time_ns))
+      source_.fail("the time is more than 126 years from 1970; expected seconds");
     interface_name_ = parsed.interface_name;
     return parsed.frame;
   }

@@ -16,8 +16,8 @@ class CanLogReader {
   explicit CanLogReader(const std::string& path) : source_(path) {}
 
   /// The next frame, whatever its id; nothing at the end. Blank lines and # comments are skipped; candump -d's reports
-  /// of lost frames are counted. Throws BadInput for any other line that candump does not write, and for a file without
-  /// a frame.
+  /// of lost frames are counted. Throws BadInput for any other line that candump does not write, for a time that the
+  /// pipeline would not take, and for a file without a frame.
   std::optional<can::Frame> next();
 
   const std::string& path() const { return source_.path(); }

@@ -27,7 +27,7 @@ std::string shown(std::string_view text) {
 }  // namespace
 
 std::optional<std::int64_t> parse_time_ns(std::string_view text) {
-  if (const auto exact = candump::parse_time(text)) return exact;
+  if (const auto exact = candump::parse_time(text)) return *exact <= latest_ns ? exact : std::nullopt;
   // With an exponent, as numerical tools write it: as accurate as a double, 0.2 us in this century.
   const auto seconds = parse_number<double>(text);
   if (!seconds || !is_time_s(*seconds)) return std::nullopt;

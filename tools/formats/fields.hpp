@@ -11,13 +11,16 @@
 
 namespace curbline::tools {
 
-/// Whether 64 bits of nanoseconds can represent these seconds.
+/// 291 years after 1970. Whoever adds some seconds to such a time stays within 64 bits.
+inline constexpr std::int64_t latest_ns = 9'200'000'000'000'000'000;
+
+/// Whether nanoseconds up to the latest can represent these seconds.
 inline bool is_time_s(double seconds) {
-  return seconds >= 0.0 && seconds < 9.2e9;
+  return seconds >= 0.0 && seconds <= 1e-9 * static_cast<double>(latest_ns);
 }
 
-/// A time in seconds, converted to nanoseconds: exact if it is written in decimals. Nothing if the text is not a time.
-/// No heap.
+/// A time in seconds, converted to nanoseconds: exact if it is written in decimals. Nothing if the text is not a time,
+/// or one after the latest. No heap.
 std::optional<std::int64_t> parse_time_ns(std::string_view text);
 
 class Fields {
