@@ -1,6 +1,7 @@
 // An arbitrary file, read as the format named by FORMAT: it is read to its end, or refused with one line that names the
 // file. Nothing else is thrown, and what has been read satisfies what the format's reader promises.
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,9 +11,12 @@
 #include <string_view>
 
 #include "curbline/curbline.hpp"
+#include "drive_streams/drive_streams.hpp"
+#include "evaluation/scores.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
 #include "formats/cloud.hpp"
+#include "formats/csv.hpp"
 #include "formats/dbc.hpp"
 #include "formats/regions.hpp"
 #include "formats/trajectory.hpp"
@@ -20,6 +24,7 @@
 #include "pose_feed.hpp"
 #include "robot/robot.hpp"
 #include "simulator/ground_plan.hpp"
+#include "simulator/truth.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -40,21 +45,28 @@ class File {
   int descriptor_;
 };
 
-/// A second name of the file, with an ending, for readers that choose the format by it.
+/// A second name of the file, in a folder of its own, for readers that look for a name or choose the format by its
+/// ending.
 class Named {
  public:
-  Named(const File& file, const char* ending) : path_("/tmp/curbline-fuzz-" + std::to_string(::getpid()) + ending) {
+  Named(const File& file, const char* name)
+      : folder_("/tmp/curbline-fuzz-" + std::to_string(::getpid())), path_(folder_ + "/" + name) {
+    ::mkdir(folder_.c_str(), 0700);
     ::unlink(path_.c_str());  // left over from a process that was killed
     claim(::symlink(file.path().c_str(), path_.c_str()) == 0, "it has a second name");
   }
-  ~Named() { ::unlink(path_.c_str()); }
+  ~Named() {
+    ::unlink(path_.c_str());
+    ::rmdir(folder_.c_str());
+  }
   Named(const Named&) = delete;
   Named& operator=(const Named&) = delete;
 
+  const std::string& folder() const { return folder_; }
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_;
+  std::string folder_, path_;
 };
 
 void read_carmen(const File& file) {
@@ -84,16 +96,19 @@ void read_live_poses(const File& file) {
   claim(feed.descriptor() < 0, "what has ended is not asked again");
 }
 
-void read_points(const File& file, const char* ending) {
-  const Named named(file, ending);
+void read_points(const File& file, const char* name) {
+  const Named named(file, name);
   for (const tools::Point3& p : tools::read_cloud(named.path()))
     claim(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "every point is a place");
 }
 void read_cloud_text(const File& file) {
-  read_points(file, ".xyz");
+  read_points(file, "a.xyz");
 }
 void read_cloud_pcd(const File& file) {
-  read_points(file, ".pcd");
+  read_points(file, "a.pcd");
+}
+void read_cloud_kitti(const File& file) {
+  read_points(file, "a.bin");
 }
 
 void read_regions(const File& file) {
@@ -129,17 +144,78 @@ void read_scene(const File& file) {
   tools::GroundPlan(scene.regions).region_at(scene.path.waypoints.front());
 }
 
+/// What is scored beside the file: a pavement and a road, seen 1 m around a curb of 12 cm.
+const tools::Truth& small_truth() {
+  static const tools::Truth truth = [] {
+    tools::Truth t;
+    t.planes = {{"road", {}}, {"pavement", {.z0_m = 0.12}}};
+    t.regions = {{"road", {}, 0}, {"pavement", tools::rectangle({0, -1}, {1, 1}), 1}};
+    t.curbs = {{{0, -1}, {0, 1}, -0.12, -0.12, 0, 0.12, 0.12, "step"}};
+    return t;
+  }();
+  return truth;
+}
+std::vector<tools::LabelledCell> small_window() {
+  std::vector<tools::LabelledCell> cells;
+  for (int i = -10; i < 10; ++i) {
+    for (int j = -10; j < 10; ++j)
+      cells.push_back({(i + 0.5) * 0.1, (j + 0.5) * 0.1, {.height_m = i < 0 ? 0 : 0.12, .points = 1, .label = i >= 0}});
+  }
+  return cells;
+}
+const tools::MapCurb small_curb{.y0_m = -1, .y1_m = 1, .height_m = 0.12, .height_sd_m = 0.001, .kind = "step_up"};
+
+bool is_share(double value) {
+  return std::isnan(value) || (value >= -1e-9 && value <= 1 + 1e-9);
+}
+void score(const tools::Found& found, const tools::Truth& truth) {
+  tools::Seen seen;
+  for (const auto& window : found.windows) {
+    for (const tools::LabelledCell& cell : window) seen.add(cell.x_m, cell.y_m);
+  }
+  const tools::PlaneScores planes = tools::score_planes(found, truth);
+  claim(is_share(planes.v) && is_share(planes.v_readings), "a V-measure is a share");
+  for (const tools::StepRates& at : tools::score_curbs(found, truth, seen).at)
+    claim(is_share(at.precision) && is_share(at.recall) && is_share(at.f1), "and so are rates");
+  for (const tools::CurbMatch& match : tools::match_steps(found, truth, seen))
+    claim(is_share(match.covered), "and what is covered of a curb");
+}
+
+void read_labels(const File& file) {
+  const std::string path = file.path();
+  score({{tools::read_labels(path)}, {small_curb}, {}, path}, small_truth());
+}
+
+void read_curbs(const File& file) {
+  score({{small_window()}, tools::read_curbs(file.path()), tools::Point2{-1, 0}}, small_truth());
+}
+
+void read_truth(const File& file) {
+  const Named named(file, "truth.json");
+  score({{small_window()}, {small_curb}, tools::Point2{-1, 0}}, tools::read_truth(named.folder()));
+}
+
+void read_drive_results(const File& file) {
+  for (const tools::MapCurb& curb : tools::read_last_curbs(file.path()))
+    claim(!curb.kind.empty(), "a curb is of some kind");
+}
+
 struct Format {
   const char* name;
   void (*read)(const File&);
 };
-constexpr std::array<Format, 10> formats{{{"carmen", read_carmen},
+constexpr std::array<Format, 15> formats{{{"carmen", read_carmen},
                                           {"can_log", read_can_log},
                                           {"trajectory", read_trajectory},
                                           {"live_poses", read_live_poses},
                                           {"cloud_text", read_cloud_text},
                                           {"cloud_pcd", read_cloud_pcd},
+                                          {"cloud_kitti", read_cloud_kitti},
                                           {"regions", read_regions},
+                                          {"labels", read_labels},
+                                          {"curbs", read_curbs},
+                                          {"truth", read_truth},
+                                          {"drive_results", read_drive_results},
                                           {"dbc", read_dbc},
                                           {"robot", read_robot},
                                           {"scene", read_scene}}};
