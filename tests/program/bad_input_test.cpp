@@ -365,6 +365,13 @@ TEST_CASE("program: standard output that cannot be written is an error") {
     check_refused(curbline(words, "/dev/full"), "standard output: ", "cannot be written");
 }
 
+TEST_CASE("program: a scanner whose address cannot be told does not wait for readers that will not find it") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const Recording logs = standing();
+  const Words scanner{"10", CURBLINE_SCANNER, "scip2", "--port", "0", "--scans", logs.path("scans.carmen")};
+  check_refused(run("/usr/bin/timeout", scanner, "/dev/full"), "standard output: ", "cannot be written");
+}
+
 TEST_CASE("program: a cloud of an unknown kind is refused") {
   const TemporaryDirectory dir;
   const std::string cloud = dir.write("a.ply", "1 2 3\n");

@@ -49,7 +49,7 @@ void run(const Options& o) {
   ScannerServer server(protocol_of(o.protocol), std::move(feed), o.scene.empty() ? o.scans : o.robot, options);
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
-  std::cout << server.address() << std::endl;
+  if (!(std::cout << server.address() << std::endl)) return;  // which run_program() tells
   server.run(stopped);
 }
 
