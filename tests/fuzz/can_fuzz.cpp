@@ -1,4 +1,4 @@
-// Arbitrary frames, signals and lines of a candump log.
+// Arbitrary frames, as a driver has them too, signals and lines of a candump log.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,8 @@
 #include "curbline/can/tilt_decoder.hpp"
 #include "fuzz/claim.hpp"
 #include "fuzz/run.hpp"
+#include "socketcan/raw_frame.hpp"
+#include "xilinx_can/registers.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -101,13 +103,45 @@ void log_lines(Numbers& numbers) {
         "and can be written");
 }
 
+bool same(const can::Frame& a, const can::Frame& b) {
+  return a.id == b.id && a.extended == b.extended && a.remote == b.remote && a.length == b.length && a.data == b.data;
+}
+
+/// What the kernel and a controller may give.
+void driver_frames(Numbers& numbers) {
+  while (!numbers.used_up()) {
+    canfd_frame raw{};
+    raw.can_id = numbers.bits32();
+    raw.len = numbers.byte();
+    raw.flags = numbers.byte();
+    for (std::uint8_t& byte : raw.data) byte = numbers.byte();
+    const bool fd = numbers.flag();
+    const can::Frame frame = socketcan::to_frame(raw, fd, 0);
+    claim(frame.id <= can::highest_id(frame.extended) && frame.length <= (fd ? 64 : 8),
+          "a frame of the kernel has an id and a length");
+    if (can::valid(frame))
+      claim(same(socketcan::to_frame(socketcan::from_frame(frame), fd, 0), frame), "and is sent as it was");
+    const can::Frame of_controller =
+        xilinx_can::frame_of({numbers.bits32(), numbers.bits32(), numbers.bits32(), numbers.bits32()}, 0);
+    claim(can::valid(of_controller), "a controller's frame is one of a bus");
+    const std::uint32_t id = xilinx_can::id_word(of_controller.id, of_controller.extended, of_controller.remote);
+    const std::uint32_t length = static_cast<std::uint32_t>(of_controller.length) << 28;
+    const std::array words{id, length, xilinx_can::data_word(of_controller, 0),
+                           xilinx_can::data_word(of_controller, 4)};
+    claim(same(xilinx_can::frame_of(words, 0), of_controller), "and is sent as it was");
+  }
+}
+
 }  // namespace
 
 void run(Numbers& numbers) {
-  if (numbers.flag()) {
-    signals(numbers);
-  } else {
-    log_lines(numbers);
+  switch (numbers.whole(0, 3)) {
+    case 0:
+      return log_lines(numbers);
+    case 1:
+      return driver_frames(numbers);
+    default:
+      return signals(numbers);
   }
 }
 
