@@ -1,5 +1,5 @@
 // What the program does with files that can be read: logs of any times and contents are replayed to their end, or
-// refused with one line, and any points are mapped in any window, by every method, and drawn.
+// refused with one line, on a bus too, and any points are mapped in any window, by every method, and drawn.
 #include <cairo.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -22,6 +22,7 @@
 #include "program/map_cloud.hpp"
 #include "program/map_window.hpp"
 #include "program/replay.hpp"
+#include "streams/recorded_times.hpp"
 
 namespace curbline::fuzz {
 namespace {
@@ -157,6 +158,28 @@ void replay(Numbers& numbers) {
   }
 }
 
+/// Frames of a bus on which a log is played, some of them others, at any times of the host.
+void follow_bus(Numbers& numbers) {
+  const can::Signal signal = can::cia402_position(1);
+  const Log log(some_frames(numbers, signal));
+  CanLogReader played(log.path());
+  LogClock clock(RecordedTimes(log.path(), signal, std::nullopt));
+  std::int64_t host_ns = 0;
+  long given = 0;
+  try {
+    while (auto frame = played.next()) {
+      host_ns = next_time_ns(numbers, host_ns) % RisingTimes::furthest_ns;
+      frame->time_ns = host_ns;
+      if (numbers.seldom()) frame->data[0] = numbers.byte();
+      if (numbers.seldom()) continue;  // lost
+      clock.set_log_time(*frame, 1'000'000'000);
+      claim(clock.not_recorded() <= ++given && clock.recorded()->missed() >= 0, "each frame is counted once");
+    }
+  } catch (const BadInput& bad) {
+    check_line(bad);
+  }
+}
+
 void draw(const Map& map) {
   const picture::Page page = picture::lay_out(map, {});
   claim(page.width > 0 && page.width <= 2000 && page.height > 0 && page.height <= 2000, "a page has a size");
@@ -192,10 +215,14 @@ void map(Numbers& numbers) {
 }  // namespace
 
 void run(Numbers& numbers) {
-  if (numbers.flag()) {
-    replay(numbers);
-  } else {
-    map(numbers);
+  switch (numbers.whole(0, 4)) {
+    case 0:
+      return follow_bus(numbers);
+    case 1:
+    case 2:
+      return replay(numbers);
+    default:
+      return map(numbers);
   }
 }
 
