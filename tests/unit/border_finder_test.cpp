@@ -593,6 +593,28 @@ TEST_CASE("border finder: what the edge of another plane hides tells no step bet
   CHECK(of_platform == 1);
 }
 
+//  y  0 m ______________________ 0.9         seen from x = 0, y = 1.2: a step down of 12 cm along x, which hides less
+//     -0.12 m                                than a cell; of the ground above it cells next to each other have not
+//                                            been seen, on a row or up to the end of what is seen
+TEST_CASE("border finder: a step down lies where it is, whatever ground before it no scan line has met") {
+  const bool at_end = GENERATE(false, true), turned = GENERATE(false, true);
+  Stages<small_limits> stages(small_settings());
+  stages.view = turned ? Viewpoint{1.2f, 2.4f, 1.0f} : Viewpoint{0.0f, 1.2f, 1.0f};
+  test::fill(stages.dem, [=](double x, double y) {
+    const double ahead = turned ? 2.4 - y : x, aside = turned ? x : y;
+    const bool unseen = ahead > 1.6 && (at_end || ahead < 1.7);
+    if (aside > 0.9) return aside < 1.8 && unseen ? std::nan("") : 0.0;
+    return aside < 0.86 && (!at_end || ahead < 1.8) ? -0.12 : std::nan("");
+  });
+  stages.settle();
+  stages.trace(stages.view.x_m, stages.view.y_m);
+  REQUIRE_FALSE(stages.tracer.curbs().empty());
+  for (const Curb& curb : stages.tracer.curbs()) {
+    CHECK((turned ? curb.x0_m : curb.y0_m) == Approx(0.9).margin(0.05));
+    CHECK((turned ? curb.x1_m : curb.y1_m) == Approx(0.9).margin(0.05));
+  }
+}
+
 TEST_CASE("border finder: readings spread unevenly in a cell still locate its edge") {
   for (const bool turned : {false, true}) {
     Stages<small_limits> stages(small_settings());

@@ -103,6 +103,13 @@ class PlaneGap {
     int first, last;
     bool parted = false;  ///< of two cells side by side, each holds one height
   };
+  /// Whether the ray to the far cell, from where that was seen, has met ground of the near plane, at its height or up
+  /// to a blur before, and where nearest to the far cell.
+  struct Passed {
+    bool near = false;
+    float x_m = 0.0f, y_m = 0.0f;
+  };
+  Passed passed(const Sides& sides) const;
   bool mixed(int along, const Plane& plane) const;
   Face seen_face(bool second_is_upper) const;
   float centroid_share(int along, const Face& face) const;
@@ -113,30 +120,42 @@ class PlaneGap {
   const Side first_, second_;
 };
 
-/// If so, no obstacle stands in it, and the ray to its far cell grazes the near plane's edge: where the ray meets that
-/// plane, or up to a blur before, there are cells of it.
+/// If so, no obstacle stands in it, and the ray to its far cell grazes the near plane's edge: there are cells of that
+/// on its way. And that edge ends the near cell's ground: it runs on to there at 45 degrees or less to the line across;
+/// a flatter one has its borders on lines the other way. Else what is unseen of the near plane, as between scan lines,
+/// would count as hidden.
 template <Limits limits>
 bool PlaneGap<limits>::hidden() const {
+  for (int along = first_.along + 1; along < second_.along; ++along) {
+    if (stages_.mixture.obstructed(stages_.dem, line_.slot(along))) return false;
+  }
+  const Passed edge = passed(sides());
+  const float along_m = line_.axis == 0 ? edge.x_m : edge.y_m, across_m = line_.axis == 0 ? edge.y_m : edge.x_m;
+  const float along = along_m / line_.pitch_m() - 0.5f - static_cast<float>(sides().near.along);
+  const float across = (across_m - line_.across_m()) / line_.dem.cell_m(1 - line_.axis);
+  return edge.near && magnitude(along) <= magnitude(across) + widest_blur;
+}
+
+template <Limits limits>
+auto PlaneGap<limits>::passed(const Sides& sides) const -> Passed {
   const Dem<limits>& dem = stages_.dem;
-  const auto [near, far] = sides();
+  const auto [near, far] = sides;
   const int i = line_.row(far.along), j = line_.col(far.along), far_slot = dem.slot(i, j);
   const Viewpoint from = dem.seen_from(far_slot, stages_.view);
   const Cell& cell = dem.cell(far_slot);
   const float above_m = from.z_m - near.plane.height_m(from.x_m, from.y_m);
   const float below_m = -dem.above_m(i, j, cell, near.plane);
-  if (!(above_m > 0.0f) || !(below_m > 0.0f)) return false;
-  for (int along = first_.along + 1; along < second_.along; ++along) {
-    if (stages_.mixture.obstructed(dem, line_.slot(along))) return false;
-  }
+  if (!(above_m > 0.0f) || !(below_m > 0.0f)) return {};
   const float dx_m = dem.centroid_x_m(i, cell) - from.x_m, dy_m = dem.centroid_y_m(j, cell) - from.y_m;
   const float share = above_m / (above_m + below_m);  // of the ray, down to the plane
   const float cells = square_root(square(dx_m / dem.cell_x_m()) + square(dy_m / dem.cell_y_m()));
   for (int back = 0; back <= widest_blur; ++back) {
     const float at = share - static_cast<float>(back) / cells;
-    const int s = dem.slot_within(from.x_m + at * dx_m, from.y_m + at * dy_m);
-    if (s >= 0 && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return true;
+    const float x_m = from.x_m + at * dx_m, y_m = from.y_m + at * dy_m;
+    const int s = dem.slot_within(x_m, y_m);
+    if (s >= 0 && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return {true, x_m, y_m};
   }
-  return false;
+  return {};
 }
 
 template <Limits limits>
