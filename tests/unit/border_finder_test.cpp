@@ -366,6 +366,37 @@ TEST_CASE("border finder: the face of a step up, met from behind along a row, is
   CHECK(found.one_sided == 0);
 }
 
+//  y        /              a step up of 12 cm askew to the grid, seen from its foot at x = 0, y = 1.2: on every second
+//  12 cm   /  0 m          row scan lines have met its face, but not the ground before it
+//         /   <- o
+TEST_CASE("border finder: the face of a step up is no brink, though along a row nothing is seen beyond it") {
+  Stages<small_limits> stages(small_settings());
+  stages.view = {0.0f, 1.2f, 1.0f};
+  const auto edge_m = [](double x) {
+    return 1.1 - 1.5 * (x - 1.6);
+  };  // y of it: the ground is higher where that is more
+  const auto add = [&](double x, double y, double z) {
+    stages.dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1e-4f});
+  };
+  for (int i = 0; i < 24; ++i) {
+    const bool missed = i == 15 || i == 17 || i == 19;
+    for (int k = 0; k < 3 * 24 * 3; ++k) {
+      const double x = (i + (k % 3 + 0.5) / 3) / 10, y = (k / 3 + 0.5) / 30;
+      const double before_m = edge_m(x) - y;
+      if (before_m < 0.02 || !missed) add(x, y, before_m > 0 ? 0.0 : 0.12);
+    }
+    for (int k = 0; k < 10; ++k) {
+      const double x = (i + (k + 0.5) / 10) / 10;
+      for (const double z : {0.03, 0.09}) add(x, edge_m(x) - 0.001, z);
+    }
+  }
+  stages.settle();
+  stages.trace(0.0f, 1.2f);
+  const FoundBorders found = found_borders(stages);
+  CHECK(found.between_planes > 20);
+  CHECK(found.one_sided == 0);
+}
+
 /// The curbs of a platform up to `edge` and ground `drop` below it, which begins where the laser sees it, or `gap`
 /// beyond the edge, along x or turned.
 std::vector<Curb> curbs_of_platform(double edge, double drop, double gap, bool turned) {

@@ -39,6 +39,8 @@ class GroundEnds {
  private:
   static constexpr float widest_face_m = 0.3f;  ///< a curb stone
 
+  /// From an edge to a cell on either side of it, which is taken to bear the same label.
+  Gap gap_behind(const Line& line, const LabelledCell& edge, int along) const;
   bool out_of_reach(const Line& line, const LabelledCell& edge, int first_of_veil, int ground) const;
   Border border_behind(const Line& line, int last, int toward, float along_m) const;
 
@@ -73,7 +75,8 @@ auto GroundEnds<limits>::of_face(const Gap& gap, const typename Gap::Side& first
   return border;
 }
 
-/// The veil is extrapolated to the far side of its last cell. A plane that only may be a veil, as a bank seen from
+/// The veil is extrapolated to the far side of its last cell. What is seen over other ground is no veil behind this
+/// one, but the face of a step up, which falls along a row, too. A plane that only may be a veil, as a bank seen from
 /// above may, does not lead to ground out of reach over a step.
 template <Limits limits>
 auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std::optional<Border> {
@@ -110,6 +113,8 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     bank = bank || (stages_.mixture.region_label(s) != no_label && stages_.mixture.on_ground(s));
   }
   if (!below(last)) return std::nullopt;
+  if (gap_behind(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil).seen_over_other(toward > 0))
+    return std::nullopt;  // of a face, from its foot
 
   const auto cells = static_cast<float>(toward * (last - edge));
   Border border = border_behind(line, edge, toward, static_cast<float>(edge + (toward > 0 ? 1 : 0)) * line.pitch_m());
@@ -124,12 +129,14 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
 template <Limits limits>
 bool GroundEnds<limits>::out_of_reach(const Line& line, const LabelledCell& edge, int first_of_veil, int ground) const {
   if (std::abs(ground - edge.along) <= stages_.settings.link_reach) return false;
-  const auto seen_over_edge = [&](int along) {
-    const LabelledCell far{edge.label, static_cast<std::int16_t>(along)};
-    const bool forward = along > edge.along;
-    return Gap(stages_, line, forward ? edge : far, forward ? far : edge).hidden();
-  };
-  return seen_over_edge(first_of_veil) && !seen_over_edge(ground);
+  return gap_behind(line, edge, first_of_veil).hidden() && !gap_behind(line, edge, ground).hidden();
+}
+
+template <Limits limits>
+auto GroundEnds<limits>::gap_behind(const Line& line, const LabelledCell& edge, int along) const -> Gap {
+  const LabelledCell far{edge.label, static_cast<std::int16_t>(along)};
+  const bool forward = along > edge.along;
+  return Gap(stages_, line, forward ? edge : far, forward ? far : edge);
 }
 
 /// A border behind the last cell of a plane, with no_label for `other`, on the unseen side.

@@ -1,6 +1,7 @@
 // A gap between two planes on a row or column of the window: from a cell of one plane to the next cell of the other.
-// Whether a step down hides the rest of a wide gap, where in it the edge is, to a part of a cell, whether a slope takes
-// its place, and the probability of one. Cost: a look at each cell of the gap, and along the ray to it if one is empty.
+// Whether a step down hides the rest of a wide gap, or its far side is seen over other ground than its near plane,
+// where in it the edge is, to a part of a cell, whether a slope takes its place, and the probability of one. Cost: a
+// look at each cell of the gap, and along the ray to it if one is empty.
 #pragma once
 
 #include <algorithm>
@@ -75,6 +76,11 @@ class PlaneGap {
 
   /// Does a step down hide the rest of a wide gap?
   [[gnu::cold]] bool hidden() const;  // for size: few gaps are wide enough to ask
+  /// Is the cell at its far end, the second or the first, seen over other ground than that of the near end's plane?
+  [[gnu::cold]] bool seen_over_other(bool second_is_far) const {
+    const Passed before = passed(second_is_far ? Sides{first_, second_} : Sides{second_, first_});
+    return before.other && !before.near;
+  }
   /// Probability that the cells on both sides belong to one plane.
   float same_plane() const;
   struct Middle {
@@ -103,10 +109,10 @@ class PlaneGap {
     int first, last;
     bool parted = false;  ///< of two cells side by side, each holds one height
   };
-  /// Whether the ray to the far cell, from where that was seen, has met ground of the near plane, at its height or up
-  /// to a blur before, and where nearest to the far cell.
+  /// Ground that the ray to the far cell, from where that was seen, has met at the height of the near plane, or up to a
+  /// blur before: that plane's, nearest to the far cell at (x_m, y_m), or another's.
   struct Passed {
-    bool near = false;
+    bool near = false, other = false;
     float x_m = 0.0f, y_m = 0.0f;
   };
   Passed passed(const Sides& sides) const;
@@ -149,13 +155,16 @@ auto PlaneGap<limits>::passed(const Sides& sides) const -> Passed {
   const float dx_m = dem.centroid_x_m(i, cell) - from.x_m, dy_m = dem.centroid_y_m(j, cell) - from.y_m;
   const float share = above_m / (above_m + below_m);  // of the ray, down to the plane
   const float cells = square_root(square(dx_m / dem.cell_x_m()) + square(dy_m / dem.cell_y_m()));
+  Passed out;
   for (int back = 0; back <= widest_blur; ++back) {
     const float at = share - static_cast<float>(back) / cells;
     const float x_m = from.x_m + at * dx_m, y_m = from.y_m + at * dy_m;
     const int s = dem.slot_within(x_m, y_m);
-    if (s >= 0 && stages_.bears_ground(s) && stages_.field.label(s) == near.label) return {true, x_m, y_m};
+    if (s < 0 || !stages_.bears_ground(s)) continue;
+    if (stages_.field.label(s) == near.label) return {true, out.other, x_m, y_m};
+    out.other = true;
   }
-  return {};
+  return out;
 }
 
 template <Limits limits>
