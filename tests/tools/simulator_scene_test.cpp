@@ -258,6 +258,20 @@ TEST_CASE("truth: what a later region covers has no curb, nor has a join of equa
   CHECK(joined.regions.size() == 3);
 }
 
+//      ____
+//              a board above a corner of the bump, on it, or on the ground beside it
+//   _____
+//  |     |____
+TEST_CASE("truth: what stands on the ground hides it, what hangs above does not") {
+  const auto table = [](const char* height) {
+    return make_truth(scene_of(bump + "[[box]]\nat = [4, 1]\nsize = [1, 1]\nheight = 0.05\n" + height), 0);
+  };
+  CHECK(table("").obstacle_at(4, 1));
+  CHECK(table("z = 0.0\n").obstacle_at(4, 1));
+  CHECK(table("z = 0.12\n").obstacle_at(4, 1));  // half of it over the lower ground
+  CHECK_FALSE(table("z = 0.7\n").obstacle_at(4, 1));
+}
+
 TEST_CASE("truth: a step that changes its sign is cut where it is nil") {
   const Truth truth = make_truth(scene_of("[[region]]\nrectangle = [0, 0, 4, 1]\nz = 0\n"
                                           "[[region]]\nrectangle = [0, 1, 4, 2]\nz = -0.1\nslope = [0.1, 0]\n"),

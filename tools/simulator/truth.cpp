@@ -2,6 +2,7 @@
 
 #include "simulator/boundary.hpp"
 #include "simulator/face.hpp"
+#include "simulator/ground_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,16 @@ void append_curbs(const Boundary& piece, const SurfacePlane& left, const Surface
   const Point2 level = piece.from + t * (piece.to - piece.from);
   out.push_back(curb_between(piece.from, level, left, right));
   out.push_back(curb_between(level, piece.to, left, right));
+}
+
+/// Does an obstacle reach down to the ground somewhere? Below one that hangs, such as the top of a table, the laser
+/// sees ground.
+bool stands(const Obstacle& obstacle, const GroundPlan& plan) {
+  return !obstacle.base_m || std::any_of(obstacle.outline.begin(), obstacle.outline.end(), [&](Point2 p) {
+    const int region = plan.region_at(p);
+    return region >= 0 &&
+           *obstacle.base_m < plan.regions()[static_cast<std::size_t>(region)].plane.height_m(p) + touch_m;
+  });
 }
 
 /// A rectangle around everything that has an outline.
@@ -119,8 +130,9 @@ Truth make_truth(const Scene& scene, double start_time_s) {
       append_curbs(piece, left, right, truth.curbs);
     }
   }
+  const GroundPlan plan(scene.regions);
   for (const Obstacle& obstacle : scene.obstacles) {
-    if (!obstacle.moves()) {
+    if (!obstacle.moves() && stands(obstacle, plan)) {
       truth.obstacles.push_back({obstacle.name, obstacle.outline});
     }
   }

@@ -33,7 +33,7 @@ struct TruthCurb {
   std::string kind;                       ///< step: 1 cm or more at one end at least; crease: less
 };
 
-/// An obstacle that does not move, so that the ground below is never visible.
+/// An obstacle that stands on the ground and does not move, so that what is below is never visible.
 struct TruthObstacle {
   std::string name;
   Polygon outline;
