@@ -349,6 +349,18 @@ TEST_CASE("tilt latency: a line whose growths cancel each other tells nothing") 
   CHECK(latency.sd_s() == Approx(0.01f));
 }
 
+TEST_CASE("tilt latency: after a line whose growths cancel each other the next ones tell as before") {
+  const bool drives = GENERATE(false, true);
+  Sweeps undisturbed(drives), robot(drives);
+  for (Sweeps* run : {&undisturbed, &robot}) run->sweep(0.006f);
+  for (const float growth : {1.0f, -1.0f})
+    robot.latency.compare({0.0f, 1e-4f, 1e-4f, {growth}});  // the slope is unsure
+  robot.latency.end_line(rate_rad_s);
+  for (Sweeps* run : {&undisturbed, &robot}) run->sweep(0.006f);
+  CHECK(robot.latency.offset_s() == undisturbed.latency.offset_s());
+  CHECK(robot.latency.sd_s() == undisturbed.latency.sd_s());
+}
+
 TEST_CASE("tilt latency: a growth that no servo makes does not move it") {
   TiltLatency latency = started();
   test::Noise noise(8);

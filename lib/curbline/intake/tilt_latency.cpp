@@ -18,6 +18,10 @@ constexpr int lines_of_a_step = 10;
 /// means that it is not estimated.
 constexpr float least_share = 1e-7f;
 
+/// A line whose observation has a larger variance tells nothing, and would soon not fit a float: its growths cancel, or
+/// the servo hardly moves.
+constexpr float most_variance_s2 = 1e12f;
+
 }  // namespace
 
 void TiltLatency::init(const TiltSettings& tilt, const PoseSettings& pose) {
@@ -138,25 +142,28 @@ void TiltLatency::compare(const Sighting& seen) {
 
 TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
   Correction correction;
-  const bool moves = square(tilt_rate_rad_s) > 0.0f;
-  const bool agrees = moves && seen_.precision > 0.0f && update(observation(seen_, tilt_rate_rad_s), correction);
+  const auto seen = observation(seen_, tilt_rate_rad_s);
+  const bool agrees = seen && update(*seen, correction);
   if (agrees && seen_.points >= stepped_.points) {
     lines_suspected_ = 0;
   } else {
     seen_.add(stepped_);
-    if (moves && seen_.precision > 0.0f) suspect(observation(seen_, tilt_rate_rad_s));
+    if (const auto all = observation(seen_, tilt_rate_rad_s)) suspect(*all);
   }
   seen_ = stepped_ = Sums{};
   return correction;
 }
 
 /// The observation of a whole line, with the variance that all its points share: time and angle of the readings next to
-/// it, pose, slope of the ground.
-TiltLatency::Observation TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
+/// it, pose, slope of the ground. Nothing if it tells nothing.
+std::optional<TiltLatency::Observation> TiltLatency::observation(const Sums& sums, float tilt_rate_rad_s) const {
+  if (!(sums.precision > 0.0f)) return std::nullopt;
   const float growth = sums.growth / sums.points, height_m2 = height_variance_m2_ + sums.common_m2 / sums.points;
   const float common_s2 = time_variance_s2_ + angle_variance_ / square(tilt_rate_rad_s) + height_m2 / (growth * growth);
-  return {sums.weighted / sums.precision, 1.0f / sums.precision + common_s2, sums.last / sums.precision,
-          sums.before / sums.precision, sums.farther / sums.precision};
+  const float variance_s2 = 1.0f / sums.precision + common_s2;
+  if (!(variance_s2 < most_variance_s2)) return std::nullopt;  // NaN too
+  return Observation{sums.weighted / sums.precision, variance_s2, sums.last / sums.precision,
+                     sums.before / sums.precision, sums.farther / sums.precision};
 }
 
 /// Kalman update; false if the observation disagrees with the estimate.

@@ -20,6 +20,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "curbline/intake/laser_lean.hpp"
 #include "curbline/intake/sweep_turns.hpp"
@@ -118,7 +119,7 @@ class TiltLatency {
   void turn_driving();
   void follow_rate(Turn turn, float rate_rad_s);
   void take_up_other_direction();
-  Observation observation(const Sums& sums, float tilt_rate_rad_s) const;
+  std::optional<Observation> observation(const Sums& sums, float tilt_rate_rad_s) const;
   bool update(const Observation& seen, Correction& correction);
   void take_off_lean(Correction& correction);
   void suspect(const Observation& seen);
