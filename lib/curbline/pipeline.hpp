@@ -145,6 +145,7 @@ class Pipeline {
   /// Is there an answer about this cell? Slots wrap: outside the window they are those of the opposite side.
   bool knows(int i, int j) const { return ready_ && dem_.contains(i, j); }
   void follow_robot(const Transform& T_map_base);
+  void look_from(const Transform& T_map_base);
   void take_point(const Point& point);
   void follow_regions();
   int follow_labels(FieldScope scope);
@@ -192,6 +193,7 @@ Status Pipeline<limits>::init(const Settings& settings) {
   line_intake_.init(settings);
   p_map_tilt_ = line_intake_.T_base_tilt().translation;
   dem_.init(settings.window, prior);
+  if (settings.pose.still) look_from(Transform{});
   segmentation_.init(settings.segmentation, prior);
   plane_mixture_.init(settings_.planes);
   common_noise_.init();
@@ -267,8 +269,6 @@ void Pipeline<limits>::take_point(const Point& point) {
 /// Moves the window with the robot; what leaves it leaves every stage.
 template <Limits limits>
 void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
-  const Transform& T_base_tilt = line_intake_.T_base_tilt();
-  p_map_tilt_ = T_map_base * T_base_tilt.translation;
   const float before_x = dem_.origin_x_m(), before_y = dem_.origin_y_m();
   dem_.follow(T_map_base, [this](int slot) {
     segmentation_.forget(slot);
@@ -276,6 +276,13 @@ void Pipeline<limits>::follow_robot(const Transform& T_map_base) {
     label_field_.forget(slot);
   });
   plane_mixture_.shift(dem_.origin_x_m() - before_x, dem_.origin_y_m() - before_y);
+  look_from(T_map_base);
+}
+
+template <Limits limits>
+void Pipeline<limits>::look_from(const Transform& T_map_base) {
+  const Transform& T_base_tilt = line_intake_.T_base_tilt();
+  p_map_tilt_ = T_map_base * T_base_tilt.translation;
   // Along y of the tilt frame: a greater tilt lowers what lies to the right of it, looking along it from above.
   const Eigen::Vector3f axis = rotated(T_map_base.rotation, T_base_tilt.rotation.col(1));
   dem_.look_from(p_map_tilt_.x(), p_map_tilt_.y(), {-axis.x(), axis.y()});

@@ -674,6 +674,38 @@ TEST_CASE("pipeline: a damaged tilt reading leaves no wrong latency where readin
   CHECK(std::abs(pipeline->tilt_latency().offset_s()) < 0.002f);
 }
 
+TEST_CASE("pipeline: a robot that stands knows how its scan lines err, whichever way its laser looks") {
+  const auto mounted = [](float yaw_rad, float window_x_m, float window_y_m) {
+    Settings settings = NoddingLaser::settings();
+    settings.tilt.T_base_tilt.yaw_rad = yaw_rad;
+    settings.window.origin_x_m = window_x_m;
+    settings.window.origin_y_m = window_y_m;
+    auto pipeline = started(settings);
+    NoddingLaser laser;
+    test::Noise noise(3);
+    for (int line = 0; line < 400; ++line) {
+      const double off_rad = 0.003 * noise.normal();  // of all readings near the line
+      test::add_angles(*pipeline, line, [&](double t) { return NoddingLaser::tilt_rad(t) + off_rad; });
+      const auto ranges = laser.ranges({1e4, 0.0}, line, [](double) { return 0.0; });
+      pipeline->take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges});
+    }
+    return pipeline;
+  };
+  const auto ahead = mounted(0.0f, 0.0f, -2.0f), left = mounted(0.5f * pi, -2.0f, 0.0f),
+             behind = mounted(pi, -4.0f, -2.0f);
+  REQUIRE(ahead->dem().line_m2() > 0.003f * 0.003f);
+  CHECK(left->dem().line_m2() == Approx(ahead->dem().line_m2()).epsilon(0.5));
+  CHECK(behind->dem().line_m2() == Approx(ahead->dem().line_m2()).epsilon(0.5));
+}
+
+TEST_CASE("pipeline: how far ahead a place lies counts from the tilt axis, also of a robot that stands") {
+  Settings settings = NoddingLaser::settings();
+  settings.tilt.T_base_tilt.y_m = 0.3f;
+  settings.tilt.T_base_tilt.yaw_rad = 0.5f * pi;
+  const auto pipeline = started(settings);
+  CHECK(pipeline->dem().ahead_m(0.7f, 2.0f) == Approx(1.7));
+}
+
 TEST_CASE("pipeline: on ground that turns out to be even a step of 15 mm is found") {
   const auto pipeline = started();
   CHECK(pipeline->dem().prior().common_share == PlanePrior{}.common_share);
