@@ -129,8 +129,9 @@ struct PlaneSettings {
 struct LabelSettings {
   float coupling = 1.5f;  ///< J of the Potts factor exp(J) between like labels, [0.01, 7.9]
   int link_reach = 10;    ///< as in SegmentationSettings; the coupling falls as 1 / distance
-  /// Per call, >= 4. Cells left over wait for the next call; with at least 4 * cols none waits for ever. Not set: five
-  /// for every eight cells of the window, 1000 in the usual one, as many as the budgets of board/ allow.
+  /// Per call, >= 4. Cells left over wait for the next call; with at least 4 * cols none waits for ever. Not set: that
+  /// many or, where it is more, five for every eight cells, 1000 in the usual window: as many as the budgets of board/
+  /// allow.
   std::optional<int> max_messages{};
 };
 

@@ -337,8 +337,8 @@ TEST_CASE("label field: a budget that is not given grows with the window, five m
 
 int cells_without_label(const Stages<>& stages) {
   int without = 0;
-  for (int i = 0; i < 24; ++i) {
-    for (int j = 0; j < 24; ++j) without += stages.label_at(i, j) == no_label;
+  for (int i = 0; i < stages.dem.rows(); ++i) {
+    for (int j = 0; j < stages.dem.cols(); ++j) without += stages.label_at(i, j) == no_label;
   }
   return without;
 }
@@ -360,6 +360,17 @@ TEST_CASE("label field: a row that every line changes does not starve the others
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) {
     for (int j = 0; j < 24; ++j) stages->dem.add({0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
+    stages->infer();
+  }
+  CHECK(cells_without_label(*stages) == 0);
+}
+
+TEST_CASE("label field: a budget that is not given starves no cell, of the smallest window either") {
+  Settings settings = small_settings(4, GENERATE(4, 24));
+  settings.labels.max_messages.reset();
+  const auto stages = std::make_unique<Stages<>>(settings);
+  for (int call = 0; call < 20; ++call) {  // each line changes all cells
+    fill(stages->dem, [](double, double) { return 0.0; });
     stages->infer();
   }
   CHECK(cells_without_label(*stages) == 0);

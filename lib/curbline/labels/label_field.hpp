@@ -6,6 +6,7 @@
 // for each cell that sends.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -148,7 +149,8 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   const int rows = dem.rows();
   const int first = first_row_ < rows ? first_row_ : 0;
   first_row_ = first + 1;
-  const int messages = settings_.max_messages.value_or(5 * rows * dem.cols() / 8);
+  const int of_a_row = directions * dem.cols();
+  const int messages = settings_.max_messages.value_or(std::max(5 * rows * dem.cols() / 8, of_a_row));
   int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
   for (int a = 0; a < rows; ++a) {
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
