@@ -131,9 +131,12 @@ class Pipeline {
     return plane_mixture_.plane(label);
   }
   /// The name of the surface that a plane is part of: planes along one bent surface, such as a cambered road, share the
-  /// lowest of their labels, and no crease is reported between them. For any other plane its own label. See
-  /// surfaces.hpp.
-  Label surface(Label label) const { return ready_ ? curb_tracer_.surfaces().name(label) : label; }
+  /// lowest of their labels, and no crease is reported between them. For any other plane its own label, and no_label
+  /// for no_label; a label from limits.planes on is a bug, as in plane(). See surfaces.hpp.
+  Label surface(Label label) const {
+    expects(label == no_label || label < limits.planes, "surface(): label < limits.planes, or no_label");
+    return ready_ ? curb_tracer_.surfaces().name(label) : label;
+  }
   const Dem<limits>& dem() const { return dem_; }
   const Counters& counters() const { return counters_; }
   /// What is added to the poses, against steps of the localisation, about the robot's place: see pose_offset.hpp.

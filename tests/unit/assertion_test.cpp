@@ -29,5 +29,19 @@ TEST_CASE("assertion: asking for the plane of no label, or of one beyond the lim
   }
 }
 
+TEST_CASE("assertion: asking for the surface of a plane beyond the limits is a bug, before init() too") {
+  constexpr Limits small{.rows = 8, .cols = 8, .planes = 4, .beams = 8};
+  const auto pipeline = std::make_unique<Pipeline<small>>();
+  const auto ask = [&] {
+    for (const Label label : {Label{0}, Label{3}, no_label}) CHECK(pipeline->surface(label) == label);
+    CHECK_THROWS_WITH(pipeline->surface(4), "surface(): label < limits.planes, or no_label");
+  };
+  ask();
+  Settings settings;
+  settings.window.rows = settings.window.cols = settings.laser.beams = 8;
+  REQUIRE(pipeline->init(settings) == Status::ok);
+  ask();
+}
+
 }  // namespace
 }  // namespace curbline
