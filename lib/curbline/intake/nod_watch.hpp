@@ -22,14 +22,13 @@ class NodWatch {
   void init(float longest_rest_s, bool fixed) {
     *this = NodWatch{};
     moves_.init(longest_rest_s, fixed);
-    longest_rest_ns_ = static_cast<std::int64_t>(longest_rest_s * 1e9f);
   }
 
   /// Call with each reading that the pipeline takes. Says once that the tilt has come to rest (lost) and once that it
   /// moves again (recovered). Between two readings that are further apart than longest_rest_s, as of a clock that is
   /// set, it may have moved.
   SourceEvent update(const TiltReading& reading) {
-    const bool unseen = watch().state() == SourceState::ok && reading.time_ns - newest_ns_ > longest_rest_ns_;
+    const bool unseen = watch().state() == SourceState::ok && reading.time_ns - newest_ns_ > watch().stale_after_ns();
     const bool moved = unseen || moves_.begins(reading.time_ns) ||
                        magnitude(reading.angle_rad - at_rad_) >= SweepTurns::least_sweep_rad;
     if (moved) at_rad_ = reading.angle_rad;
@@ -42,7 +41,7 @@ class NodWatch {
 
  private:
   SignWatch moves_{};
-  std::int64_t longest_rest_ns_ = 0, newest_ns_ = 0;
+  std::int64_t newest_ns_ = 0;
   float at_rad_ = 0.0f;  ///< where it has moved to last
 };
 

@@ -44,6 +44,8 @@ class SourceWatch {
   /// Call as often as the answer matters, say with every scan line. newest_ns: time of the newest reading.
   SourceEvent update(std::int64_t newest_ns, std::int64_t now_ns);
 
+  /// The bound, as init() was told it.
+  std::int64_t stale_after_ns() const { return stale_after_ns_; }
   SourceState state() const { return state_; }
   std::uint32_t times_lost() const { return times_lost_; }
   /// Age of the newest reading when it was greatest, as far as update() saw; 0 before the first.
