@@ -77,7 +77,7 @@ class LineClock {
   int waited_ = 0;                ///< arrivals for which one that came whole turns late is still among those kept
   int late_ = 0, turn_late_ = 0;  ///< consecutive arrivals later than usual, and by a turn and more
   RisingTimes stamps_{};
-  std::int64_t time_ns_ = INT64_MIN;  ///< the newest that was given
+  std::int64_t time_ns_ = RisingTimes::none;  ///< the newest that was given
   std::uint32_t set_back_ = 0, left_out_ = 0;
 };
 

@@ -15,7 +15,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -40,7 +39,7 @@ struct LineQueueCounters {
 /// Stamps of the newest tilt reading and the newest pose that the pipeline took; `none` before the first, and where
 /// none ever comes, with a fixed tilt or a robot that stands.
 struct NewestTimes {
-  static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+  static constexpr std::int64_t none = RisingTimes::none;
   std::int64_t tilt_ns = none, pose_ns = none;
 };
 
@@ -49,9 +48,9 @@ class LineQueue {
   static_assert(capacity >= 2, "one line waits, one comes");
 
  public:
-  /// Empties the queue. A line waits at most max_wait_s. A good choice is TiltSettings::max_gap_s, as beams in a longer
-  /// gap have no angle, or PoseSettings::max_extrapolation_s of a robot that drives, if longer. The pipeline must keep
-  /// readings and poses for as long: Limits::tilt_samples, Limits::poses.
+  /// Empties the queue. A line waits at most max_wait_s, 0 to 1e9. A good choice is TiltSettings::max_gap_s, as beams
+  /// in a longer gap have no angle, or PoseSettings::max_extrapolation_s of a robot that drives, if longer. The
+  /// pipeline must keep readings and poses for as long: Limits::tilt_samples, Limits::poses.
   void init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose, float max_wait_s);
 
   /// Copies a line that has arrived at now_ns (any clock, the same as for pop()). False if it is refused, for its

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace curbline {
 
@@ -13,6 +14,8 @@ class RisingTimes {
   /// 126 years either way: the difference of two such times, and a little more, does not overflow. A time beyond is
   /// damaged.
   static constexpr std::int64_t furthest_ns = 4'000'000'000'000'000'000;
+  /// What stands for a time as long as there is none: earlier than all.
+  static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
 
   static constexpr bool is_time(std::int64_t time_ns) { return time_ns <= furthest_ns && time_ns >= -furthest_ns; }
 
@@ -31,7 +34,7 @@ class RisingTimes {
   }
 
  private:
-  std::int64_t newest_ns_ = INT64_MIN, last_refused_ns_ = 0;
+  std::int64_t newest_ns_ = none, last_refused_ns_ = 0;
   int refused_ = 0;  ///< in a row that rise
 };
 

@@ -19,8 +19,9 @@ namespace curbline {
 
 class SightWatch {
  public:
-  /// Starts afresh. longest_away_s: for how long the laser may look beside the window, a sweep there and back at most;
-  /// of a laser at a fixed tilt as long as a bump of the way may turn it away.
+  /// Starts afresh, as must be done when the pipeline does, whose counters then begin at 0. longest_away_s: for how
+  /// long the laser may look beside the window, a sweep there and back at most; of a laser at a fixed tilt as long as a
+  /// bump of the way may turn it away.
   void init(float longest_away_s) {
     *this = SightWatch{};
     sees_.init(longest_away_s, false);

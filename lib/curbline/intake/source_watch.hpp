@@ -7,7 +7,8 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+
+#include "curbline/intake/rising_times.hpp"
 
 namespace curbline {
 
@@ -29,11 +30,11 @@ enum class SourceEvent : std::uint8_t {
 class SourceWatch {
  public:
   /// What newest_ns is as long as there is no reading.
-  static constexpr std::int64_t no_reading = std::numeric_limits<std::int64_t>::min();
+  static constexpr std::int64_t no_reading = RisingTimes::none;
 
-  /// Starts afresh. stale_after_s: a source that is silent for longer is stale. For a servo TiltSettings::max_gap_s
-  /// is a good choice: beams in a longer gap have no angle. `fixed`, as in TiltSettings: nothing is watched, all is
-  /// well.
+  /// Starts afresh. stale_after_s, 0 to 1e9: a source that is silent for longer is stale. For a servo
+  /// TiltSettings::max_gap_s is a good choice: beams in a longer gap have no angle. `fixed`, as in TiltSettings:
+  /// nothing is watched, all is well.
   void init(float stale_after_s, bool fixed) {
     *this = SourceWatch{};
     stale_after_ns_ = static_cast<std::int64_t>(stale_after_s * 1e9f);
