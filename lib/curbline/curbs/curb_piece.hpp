@@ -47,6 +47,15 @@ struct CurbPiece {
     const Label beyond = border.other == no_label ? border.one : border.other;
     return {in.mixture.plane(border.one), in.mixture.plane(beyond)};
   }
+  struct Side {
+    const Plane& plane;
+    Label label;
+    const Beside& beside;
+  };
+  /// That of plane `other`, or of plane `one`.
+  Side side(bool of_other) const {
+    return of_other ? Side{planes.other, first.other, beside_other} : Side{planes.one, first.one, beside_one};
+  }
   /// Is no ground in view on the other side of `one`?
   bool one_sided() const { return first.other == no_label; }
   float middle_x_m() const { return 0.5f * (line.x0_m + line.x1_m); }

@@ -49,11 +49,13 @@ class StepHeight {
 
  private:
   bool other_is_upper() const { return height_m_ > 0.0f; }
+  typename Piece::Side lower() const { return piece_.side(!other_is_upper()); }
+  typename Piece::Side upper() const { return piece_.side(other_is_upper()); }
   Viewpoint lower_seen_from(const ChainPart& part) const;
   void leave_shadow(const Viewpoint& view);
   int cell_beside(const Border& border, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
-  GroundAlong ground_along(const ChainPart& part, Label label) const;
+  GroundAlong ground_along(const ChainPart& part, bool of_other) const;
   void follow_ground(const ChainPart& part);
   struct Deviations {
     Deviation one, other;
@@ -119,7 +121,7 @@ float StepHeight<limits>::lower_m2(typename Piece::End end) const {
   const float middle_x_m = piece_.middle_x_m(), middle_y_m = piece_.middle_y_m();
   float most_m2 = 0.0f;
   for (const bool other : {false, true}) {
-    const Plane& own = other ? piece_.planes.other : piece_.planes.one;
+    const Plane& own = piece_.side(other).plane;
     for (const float cells : {0.5f, 1.5f}) {
       const float aside = other ? 1.0f : -1.0f;
       const Label label = piece_.ground_at(from.x_m + cells * from.step_x + aside * from.other_x,
@@ -141,8 +143,7 @@ float StepHeight<limits>::lower_m2(typename Piece::End end) const {
 /// and as much again as is seen may be hidden, uniformly: the variance of that.
 template <Limits limits>
 float StepHeight<limits>::hidden_m2(bool of_other) const {
-  const Beside& beside = of_other ? piece_.beside_other : piece_.beside_one;
-  const Plane& plane = of_other ? piece_.planes.other : piece_.planes.one;
+  const auto [plane, label, beside] = piece_.side(of_other);
   const float spread_m2 = plane.variance_m2 - plane.rough_m2 - stages_.dem.prior().noise_m2;
   const float step_m2 = square(height_m_);
   if (2.0f * beside.borders >= piece_.borders || !spreads_over(step_m2, spread_m2)) return 0.0f;
@@ -162,10 +163,9 @@ template <Limits limits>
 Viewpoint StepHeight<limits>::lower_seen_from(const ChainPart& part) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
-  const Label lower = other_is_upper() ? piece_.first.one : piece_.first.other;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
-    const int slot = cell_beside(border, lower);
+    const int slot = cell_beside(border, lower().label);
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
     sum_x += view.x_m;
@@ -200,8 +200,7 @@ int StepHeight<limits>::cell_beside(const Border& border, Label own) const {
 /// share that this is of the step.
 template <Limits limits>
 float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
-  const Plane& lower = other_is_upper() ? piece_.planes.one : piece_.planes.other;
-  const float above_m = view.z_m - lower.height_m(piece_.x_m, piece_.y_m);
+  const float above_m = view.z_m - lower().plane.height_m(piece_.x_m, piece_.y_m);
   if (!(above_m > 0.0f)) return 0.0f;
   const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
   const float face_cells = 1.0f + view.spot_m(range_m2, above_m) / piece_.cell_m;
@@ -214,8 +213,7 @@ template <Limits limits>
 void StepHeight<limits>::leave_shadow(const Viewpoint& view) {
   const bool upper_is_right = other_is_upper() != piece_.one_is_right;
   if (piece_.has_right(view) != upper_is_right) return;
-  const auto [one, other] = piece_.planes;
-  const Plane &above = other_is_upper() ? other : one, &below = other_is_upper() ? one : other;
+  const Plane &above = upper().plane, &below = lower().plane;
   const float above_m = view.z_m - above.height_m(piece_.x_m, piece_.y_m);
   const float x_m = piece_.line.x0_m, y_m = piece_.line.y0_m;
   shadow_m_ = move_before_shadow(piece_.line, view, {magnitude(height_m_), above_m, piece_.gap_m + piece_.cell_m});
@@ -236,9 +234,9 @@ float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) 
 /// By the cells of a side a little farther from the borders, along rows or along columns, whichever are more across the
 /// piece, so that each cell counts once.
 template <Limits limits>
-GroundAlong StepHeight<limits>::ground_along(const ChainPart& part, Label label) const {
+GroundAlong StepHeight<limits>::ground_along(const ChainPart& part, bool of_other) const {
   const Dem<limits>& dem = stages_.dem;
-  const Plane& plane = stages_.mixture.plane(label);
+  const auto [plane, label, beside] = piece_.side(of_other);
   const float slope_m2 = dem.slope_m2(plane);
   const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
   float cells = 0.0f, borders = 0.0f, above_m = 0.0f;
@@ -271,8 +269,7 @@ void StepHeight<limits>::follow_ground(const ChainPart& part) {
   float planes_share = 1.0f;  // of both planes' errors
   for (const bool other : {false, true}) {
     const Deviation& next = other ? beside.other : beside.one;
-    const GroundAlong along =
-        piece_.one_sided() ? GroundAlong{} : ground_along(part, other ? piece_.first.other : piece_.first.one);
+    const GroundAlong along = piece_.one_sided() ? GroundAlong{} : ground_along(part, other);
     const float share = next.share(), rest = 1.0f - share;
     height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
     const float plane_m2 = other ? planes.other_m2 : planes.one_m2;
