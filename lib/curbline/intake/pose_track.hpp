@@ -131,7 +131,7 @@ class PoseTrack {
   /// Poses err independently (PoseSettings): of more poses more jump by chance, and a few span too short a way to show
   /// where they lead. More than 83 a second are thinned out.
   static constexpr std::int64_t least_spacing_ns = 12'000'000;
-  /// Poses that show where the robot is led: less than a tenth of a second at 50 Hz.
+  /// Steps from pose to pose that show where the robot is led: less than a tenth of a second at 50 Hz.
   static constexpr int poses_of_a_way = 4;
 
   PoseSettings settings_{};
