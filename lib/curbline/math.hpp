@@ -48,6 +48,11 @@ constexpr bool is_finite(float x) {
 /// the additions of soft-float: 500 bytes of flash.
 float to_float(std::int64_t x);
 
+/// Whole nanoseconds, toward 0. |seconds| <= 9e9.
+constexpr std::int64_t to_ns(float seconds) {
+  return static_cast<std::int64_t>(seconds * 1e9f);
+}
+
 /// Correctly rounded, from the hardware or the compiler's soft-float.
 float square_root(float x);
 

@@ -100,6 +100,15 @@ TEST_CASE("math: 64 bits become the float that a conversion makes of them") {
   }
 }
 
+TEST_CASE("math: seconds become whole nanoseconds, toward 0") {
+  CHECK(to_ns(0.0f) == 0);
+  CHECK(to_ns(0.05f) == 50'000'000);
+  CHECK(to_ns(-10.0f) == -10'000'000'000);
+  CHECK(to_ns(1.9e-9f) == 1);
+  CHECK(to_ns(-1.9e-9f) == -1);
+  CHECK(to_ns(9e9f) == Approx(9e18));
+}
+
 TEST_CASE("math: NaN and infinities are not finite, everything else is") {
   using Float = std::numeric_limits<float>;
   for (const float x : {0.0f, -0.0f, Float::denorm_min(), Float::max(), Float::lowest()}) CHECK(is_finite(x));

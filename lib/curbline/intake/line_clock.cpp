@@ -58,7 +58,7 @@ float slope_below(std::span<const Place> arrivals) {
 void LineClock::init(const LaserSettings& laser) {
   *this = LineClock{};
   const float turn_s = laser.beam_interval_s * (2.0f * pi / magnitude(laser.bearing_step_rad));
-  if (turn_s <= longest_turn_s) turn_ns_ = static_cast<std::int64_t>(turn_s * 1e9f);
+  if (turn_s <= longest_turn_s) turn_ns_ = to_ns(turn_s);
   enough_ = enough_at_first;
 }
 

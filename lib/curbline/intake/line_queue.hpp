@@ -20,6 +20,7 @@
 
 #include "curbline/intake/rising_times.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/math.hpp"
 #include "curbline/scan_line.hpp"
 #include "curbline/settings.hpp"
 
@@ -90,7 +91,7 @@ void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSet
                                        float max_wait_s) {
   beam_interval_ns_ = laser.beam_interval_ns();
   latency_s_ = tilt.latency_s;
-  max_wait_ns_ = static_cast<std::int64_t>(max_wait_s * 1e9f);
+  max_wait_ns_ = to_ns(max_wait_s);
   fixed_ = tilt.fixed;
   still_ = pose.still;
   oldest_ = size_ = 0;
@@ -125,7 +126,7 @@ std::optional<ScanLine> LineQueue<limits, capacity>::pop(const NewestTimes& newe
                                                          float offset_s) {
   if (size_ == 0) return std::nullopt;
   const Entry& entry = entries_[static_cast<std::size_t>(oldest_)];
-  const auto late_ns = static_cast<std::int64_t>((latency_s_ + offset_s) * 1e9f);
+  const std::int64_t late_ns = to_ns(latency_s_ + offset_s);
   const bool tilt_is_there = fixed_ || newest.tilt_ns >= entry.last_beam_ns + late_ns;
   const bool pose_is_there = still_ || newest.pose_ns >= entry.last_beam_ns;
   if (tilt_is_there && pose_is_there) {

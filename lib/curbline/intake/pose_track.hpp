@@ -12,6 +12,7 @@
 #include "curbline/intake/extrapolation.hpp"
 #include "curbline/intake/rising_times.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/math.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/settings.hpp"
 
@@ -163,7 +164,7 @@ bool PoseTrack<limits>::push(const Pose& pose) {
 template <Limits limits>
 bool PoseTrack<limits>::at(std::int64_t time_ns, Pose& out) const {
   if (size_ == 0) return false;
-  const auto bound = static_cast<std::int64_t>(settings_.max_extrapolation_s * 1e9f);
+  const std::int64_t bound = to_ns(settings_.max_extrapolation_s);
   int age = 0;
   while (age < size_ && back(age).time_ns > time_ns) ++age;
   if (age == 0) return beyond(time_ns, 0, 1, bound, out);

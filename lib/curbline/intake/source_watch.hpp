@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "curbline/intake/rising_times.hpp"
+#include "curbline/math.hpp"
 
 namespace curbline {
 
@@ -37,7 +38,7 @@ class SourceWatch {
   /// nothing is watched, all is well.
   void init(float stale_after_s, bool fixed) {
     *this = SourceWatch{};
-    stale_after_ns_ = static_cast<std::int64_t>(stale_after_s * 1e9f);
+    stale_after_ns_ = to_ns(stale_after_s);
     fixed_ = fixed;
     if (fixed) state_ = SourceState::ok;
   }

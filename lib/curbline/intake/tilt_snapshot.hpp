@@ -107,8 +107,8 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
   written_ = written;
   cursor_ = 0;
   segment_from_ns_ = segment_to_ns_ = 0;
-  max_gap_ns_ = static_cast<std::int64_t>(settings.max_gap_s * 1e9f);
-  max_extrapolation_ns_ = static_cast<std::int64_t>(settings.max_extrapolation_s * 1e9f);
+  max_gap_ns_ = to_ns(settings.max_gap_s);
+  max_extrapolation_ns_ = to_ns(settings.max_extrapolation_s);
   angle_variance_ = square(settings.angle_sd_rad);
   time_variance_s2_ = square(settings.time_sd_s);
   history_ = history;

@@ -11,6 +11,7 @@
 #include "curbline/intake/rising_times.hpp"
 #include "curbline/intake/tilt_snapshot.hpp"
 #include "curbline/limits.hpp"
+#include "curbline/math.hpp"
 #include "curbline/settings.hpp"
 #include "curbline/tilt_reading.hpp"
 
@@ -85,7 +86,7 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std:
   const std::uint32_t capacity = limits.tilt_samples;
   const std::uint32_t before = written_.load(std::memory_order_acquire);
   const std::uint32_t count = before < capacity ? before : capacity;
-  const auto latency_ns = static_cast<std::int64_t>((settings_.latency_s + offset_s) * 1e9f);
+  const std::int64_t latency_ns = to_ns(settings_.latency_s + offset_s);
   for (std::uint32_t k = 0; k < count; ++k) {
     const Entry& entry = entries_[(before - count + k) % capacity];
     const std::uint64_t low = entry.time_low.load(std::memory_order_relaxed);
