@@ -96,7 +96,8 @@ struct TiltSettings {
 struct PoseSettings {
   bool still = true;             ///< true: no poses will come, base and map frame are one
   float height_sd_m = 0.0f;      ///< of each pose's z, independent of the next one's: jitter, not drift. [0, 10];
-                                 ///< standing, how much the robot sways
+                                 ///< standing, how much the robot sways: for the variance of heights; the tilt's
+                                 ///< latency is estimated as if it did not
   float attitude_sd_rad = 0.0f;  ///< of roll and pitch, [0, 1]; standing, the same
   float lean_sd_rad = 0.005f;    ///< of the laser's pitch against the poses, [0, 0.05]: mount, zero of the attitude,
                                  ///< z that drifts with the way. 0: it is not estimated, as is
