@@ -41,7 +41,6 @@ void put_tilt(JsonLine& json, const Report& s) {
   put(json, "malformed", s.tilt_frames->malformed);
   put(json, "without_sync", s.tilt_frames->without_sync);
   put(json, "dropped", s.pipeline.tilt_dropped);
-  put(json, "corrected", s.pipeline.tilt_corrected);
   put(json, "beyond_a_turn", s.angles_beyond);
   const TiltLatency::Usual late = s.tilt_latency->usual();
   json.key("latency_offset_s").real(late.offset_s).key("latency_sd_s").real(late.sd_s);

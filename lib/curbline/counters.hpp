@@ -1,7 +1,7 @@
 // What the pipeline dropped, refused or ran into, and how much work it did. Counters only grow, and wrap at 2^32,
 // points of 1081 beams after a day: take the difference of two snapshots. On a healthy robot only the first group,
-// `no_returns`, `echoes_alone`, `cells_deferred`, `tilt_corrected` by chance, `lines_off_map` while it climbs a curb
-// and, without a LineQueue, `beams_extrapolated` move.
+// `no_returns`, `echoes_alone`, `cells_deferred`, `lines_off_map` while it climbs a curb and, without a LineQueue,
+// `beams_extrapolated` move.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,6 @@ struct Counters {
   std::uint32_t beams_extrapolated = 0;  ///< before the first tilt reading or after the last, within the bound
   std::uint32_t tilt_dropped = 0;        ///< readings not finite, not later than the one before, beyond 1e6 rad; as of
                                          ///< the last line
-  std::uint32_t tilt_corrected = 0;      ///< readings off the line between their neighbours, put on it; as of that line
   std::uint32_t lines_off_map = 0;       ///< measured while poses jumped or the robot climbed, and off the map: taken
                                          ///< without points or, where there is no map, without the doubtful ones
   std::uint32_t poses_dropped = 0;       ///< not finite, not later, beyond 1000 km, no unit quaternion, the robot on

@@ -239,7 +239,6 @@ Status Pipeline<limits>::project(const ScanLine& line, Take&& take) {
   auto& work = workspace_.line();
   const Status status = ready_ ? line_intake_.place(line, dem_, work) : Status::not_initialised;
   counters_.tilt_dropped = line_intake_.tilt_dropped();
-  counters_.tilt_corrected = line_intake_.tilt_corrected();
   if (status != Status::ok) {
     ++counters_.lines_dropped;
     return status;

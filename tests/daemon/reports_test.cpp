@@ -97,7 +97,6 @@ TEST_CASE("reports: a status has each counter under its name") {
   s.lines = {.pushed = 1, .covered = 2, .overdue = 3, .crowded = 4, .dropped = 5, .too_long = 6, .bad_time = 7};
   s.pipeline.lines = 11, s.pipeline.lines_dropped = 12, s.pipeline.points = 61, s.pipeline.no_returns = 62;
   s.pipeline.beams_without_tilt = 13, s.pipeline.beams_extrapolated = 14, s.pipeline.tilt_dropped = 15;
-  s.pipeline.tilt_corrected = 48;
   s.curbs = 16, s.curbs_left_out = 17, s.lines_without_tilt = 18, s.lines_without_pose = 19;
   s.clients = 21, s.server.accepted = 22, s.server.too_slow = 23, s.server.refused = 24;
   s.heap_calls_before = 31, s.heap_calls_since = 32;
@@ -152,7 +151,6 @@ TEST_CASE("reports: a status has each counter under its name") {
                  {"malformed", 45},
                  {"without_sync", 46},
                  {"dropped", 15},
-                 {"corrected", 48},
                  {"beyond_a_turn", 47},
                  {"times_lost", 0},
                  {"times_rested", 0}});

@@ -87,7 +87,6 @@ nlohmann::json summary_of(const Replay& replay) {
           {"can_without_sync", can.without_sync},
           {"tilt_readings", replay.tilt_readings()},
           {"tilt_dropped", c.tilt_dropped},
-          {"tilt_corrected", c.tilt_corrected},
           {"tilt_latency_offset_s", late.offset_s},
           {"lean_rad", latency.lean_rad()},
           {"tilt_latency_sd_s", late.sd_s},

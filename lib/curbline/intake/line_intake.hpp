@@ -46,7 +46,6 @@ class LineIntake {
   bool add_pose(const Pose& pose) { return pose_track_.push(pose); }
   /// Readings that add_tilt() has dropped.
   std::uint32_t tilt_dropped() const { return tilt_track_.dropped(); }
-  std::uint32_t tilt_corrected() const { return tilt_track_.corrected(); }
 
   /// Refuses a bad line before it changes anything; else finds its tilt and motion.
   Status place(const ScanLine& line, Dem<limits>& dem, Work& work);

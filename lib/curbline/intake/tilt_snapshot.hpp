@@ -1,8 +1,7 @@
 // The angle of the tilt servo at each beam of a line, interpolated between the readings that a TiltTrack held when the
 // line came, and extrapolated a little. A driver that has no new angle may send its last one again, under a new stamp:
-// between readings that show how the servo moved, such a repeat is replaced by the angle on the line through them; so
-// is a single reading whose angle or stamp is wrong. Working memory of one line. Cost: a step a beam, a search for the
-// rate a reading, 40 operations for every second one.
+// between readings that show how the servo moved, such a repeat is replaced by the angle on the line through them.
+// Working memory of one line. Cost: a step a beam, a search for the rate a reading, a comparison for every second one.
 #pragma once
 
 #include <algorithm>
@@ -26,27 +25,20 @@ struct TiltAngle {
   float rate_rad_s = 0.0f;  ///< over at least 15 ms around the time, if there are readings
 };
 
-/// What the snapshots of a track have seen so far.
-struct TiltHistory {
-  int most_repeats = 0;         ///< of an angle, in a row
-  std::uint32_t judged = 0;     ///< number of the newest reading that was judged, counted since init()
-  std::uint32_t corrected = 0;  ///< wrong readings, each once
-};
-
 /// Readings ascending in time; times are those at which the angles were true.
 template <Limits limits>
 class TiltSnapshot {
  public:
   /// For TiltTrack: put() stores `count` readings, number 0 the oldest, and begin() uses the newest `whole` of them, as
   /// far as their times rise. `written` counts the readings up to the newest since init(). Angles between readings do
-  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `history`: that
-  /// of earlier snapshots.
+  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `repeats`: the
+  /// largest number in a row that earlier snapshots have seen.
   void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
   void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
-             std::int64_t until_ns, const TiltHistory& history);
+             std::int64_t until_ns, int repeats);
 
-  /// The same with what this one sees.
-  const TiltHistory& history() const { return history_; }
+  /// The same with those that this one sees.
+  int most_repeats() const { return most_repeats_; }
 
   /// The angle at a time; Source::none where no readings are near. Times must not fall, except after rewind(). O(1) on
   /// average.
@@ -75,13 +67,11 @@ class TiltSnapshot {
   bool tells(int before, int at, int next) const;
   bool goes_on(int before, int at, int next) const;
   void fill(int at, int next, float rate_rad_s);
-  void mend();
-  bool wrong(int at) const;
   const TiltReading& reading(int k) const { return readings_[static_cast<std::size_t>(k)]; }
 
   std::array<TiltReading, limits.tilt_samples> readings_{};
   int size_ = 0;
-  TiltHistory history_{};
+  int most_repeats_ = 0;       ///< in a row
   int awaited_ = 0;            ///< readings up to the first one later than the line's last beam
   std::uint32_t written_ = 0;  ///< readings up to the newest, since init()
   int cursor_ = 0;             ///< the first reading later than the last time asked for, or size_
@@ -98,7 +88,7 @@ class TiltSnapshot {
 
 template <Limits limits>
 void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written,
-                                 const TiltSettings& settings, std::int64_t until_ns, const TiltHistory& history) {
+                                 const TiltSettings& settings, std::int64_t until_ns, int repeats) {
   std::uint32_t kept = whole > 0 ? 1 : 0;  // readings before times went back are of another time base
   while (kept < whole && readings_[count - kept - 1].time_ns < readings_[count - kept].time_ns) ++kept;
   for (std::uint32_t k = 0; k < kept; ++k) readings_[k] = readings_[count - kept + k];
@@ -111,9 +101,8 @@ void TiltSnapshot<limits>::begin(std::uint32_t count, std::uint32_t whole, std::
   max_extrapolation_ns_ = to_ns(settings.max_extrapolation_s);
   angle_variance_ = square(settings.angle_sd_rad);
   time_variance_s2_ = square(settings.time_sd_s);
-  history_ = history;
+  most_repeats_ = repeats;
   fill_repeats();
-  mend();
 }
 
 /// Looks at half of what a track holds, up to the reading that the line has awaited, so that none depends on how many
@@ -127,11 +116,11 @@ void TiltSnapshot<limits>::fill_repeats() {
     const int next = other_angle(at), repeats = next - at - 1;
     if (repeats > 0 && moves(before, at)) {
       if (next == awaited_) {
-        if (repeats <= history_.most_repeats && before > first && tells(before, at, next))
+        if (repeats <= most_repeats_ && before > first && tells(before, at, next))
           fill(at, next, slope_rad_s(reading(before), reading(at)));
       } else if (moves(at, next) && goes_on(before, at, next)) {
         fill(at, next, slope_rad_s(reading(at), reading(next)));
-        history_.most_repeats = std::max(history_.most_repeats, repeats);
+        most_repeats_ = std::max(most_repeats_, repeats);
       }
     }
     before = at;
@@ -181,38 +170,6 @@ void TiltSnapshot<limits>::fill(int at, int next, float rate_rad_s) {
     TiltReading& repeat = readings_[static_cast<std::size_t>(k)];
     repeat.angle_rad += seconds(repeat.time_ns - reading(at).time_ns) * rate_rad_s;
   }
-}
-
-/// Puts single wrong readings on the line between their neighbours; among those that fill_repeats() looks at.
-template <Limits limits>
-void TiltSnapshot<limits>::mend() {
-  for (int k = std::max(2, awaited_ - limits.tilt_samples / 2); k + 1 < awaited_; ++k) {
-    const std::uint32_t number = written_ - static_cast<std::uint32_t>(size_ - 1 - k);
-    const bool first_time = static_cast<std::int32_t>(number - history_.judged) > 0;  // as numbers wrap
-    if (first_time) history_.judged = number;
-    const TiltReading &before = reading(k - 1), &next = reading(k + 1);
-    TiltReading& at = readings_[static_cast<std::size_t>(k)];
-    if (next.time_ns - before.time_ns > max_gap_ns_ || !wrong(k)) continue;
-    history_.corrected += first_time;
-    at.angle_rad = before.angle_rad + seconds(at.time_ns - before.time_ns) * slope_rad_s(before, next);
-  }
-}
-
-/// Is a reading off the line between its neighbours by more than three standard deviations, and off that through the
-/// two before it by more than the next one? A servo that turns round, stops or accelerates leaves the latter farther
-/// and farther. Of two readings a moment apart (extrapolation.hpp) either may be wrong: the second is not judged.
-template <Limits limits>
-bool TiltSnapshot<limits>::wrong(int at) const {
-  const TiltReading &here = reading(at), &before = reading(at - 1), &next = reading(at + 1);
-  const auto off_rad = [&](const TiltReading& reading, float rate_rad_s) {
-    return reading.angle_rad - before.angle_rad - seconds(reading.time_ns - before.time_ns) * rate_rad_s;
-  };
-  const float rate_rad_s = slope_rad_s(before, next), earlier_rad_s = slope_rad_s(reading(at - 2), before);
-  const float share = to_float(here.time_ns - before.time_ns) / to_float(next.time_ns - before.time_ns);
-  const float variance = angle_variance_ + square(rate_rad_s) * time_variance_s2_;
-  return share >= 0.25f &&
-         square(off_rad(here, rate_rad_s)) > gate * variance * (1.0f + square(share) + square(1.0f - share)) &&
-         square(off_rad(next, earlier_rad_s)) < square(off_rad(here, earlier_rad_s));
 }
 
 template <Limits limits>

@@ -32,7 +32,7 @@ class TiltTrack {
     written_.store(0, std::memory_order_relaxed);
     dropped_.store(0, std::memory_order_relaxed);
     times_ = RisingTimes{};
-    history_ = TiltHistory{};
+    most_repeats_ = 0;
   }
 
   /// Takes a reading; false (and counted) if it is not within TiltReading::furthest_rad or not later than the one
@@ -45,8 +45,6 @@ class TiltTrack {
   void snapshot(TiltSnapshot<limits>& out, float offset_s, std::int64_t until_ns);
 
   std::uint32_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
-  /// Wrong readings that snapshots have put on the line between their neighbours. The reader's.
-  std::uint32_t corrected() const { return history_.corrected; }
 
  private:
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
@@ -57,8 +55,8 @@ class TiltTrack {
   std::array<Entry, limits.tilt_samples> entries_{};
   std::atomic<std::uint32_t> written_{0};  ///< readings taken since init, modulo 2^32 but never 0 again
   std::atomic<std::uint32_t> dropped_{0};
-  RisingTimes times_{};    ///< the writer's
-  TiltHistory history_{};  ///< the reader's
+  RisingTimes times_{};   ///< the writer's
+  int most_repeats_ = 0;  ///< the reader's: TiltSnapshot::most_repeats() so far
 };
 
 template <Limits limits>
@@ -100,8 +98,8 @@ void TiltTrack<limits>::snapshot(TiltSnapshot<limits>& out, float offset_s, std:
   const std::uint32_t room = capacity - count;
   const std::uint32_t lost = added > room ? added - room : 0;
   const std::uint32_t whole = lost < count ? count - lost : 0;
-  out.begin(count, whole, before, settings_, until_ns, history_);
-  history_ = out.history();
+  out.begin(count, whole, before, settings_, until_ns, most_repeats_);
+  most_repeats_ = out.most_repeats();
 }
 
 }  // namespace curbline
