@@ -678,14 +678,13 @@ TEST_CASE("pipeline: a robot that stands knows how its scan lines err, whichever
   const auto mounted = [](float yaw_rad, float window_x_m, float window_y_m) {
     Settings settings = NoddingLaser::settings();
     settings.tilt.T_base_tilt.yaw_rad = yaw_rad;
-    settings.tilt.angle_sd_rad = 0.003f;
     settings.window.origin_x_m = window_x_m;
     settings.window.origin_y_m = window_y_m;
     auto pipeline = started(settings);
     NoddingLaser laser;
     test::Noise noise(3);
     for (int line = 0; line < 400; ++line) {
-      const double off_rad = double{settings.tilt.angle_sd_rad} * noise.normal();  // of all readings near the line
+      const double off_rad = 0.003 * noise.normal();  // of all readings near the line
       test::add_angles(*pipeline, line, [&](double t) { return NoddingLaser::tilt_rad(t) + off_rad; });
       const auto ranges = laser.ranges({1e4, 0.0}, line, [](double) { return 0.0; });
       pipeline->take({NoddingLaser::ns(NoddingLaser::line_time_s(line)), ranges});
