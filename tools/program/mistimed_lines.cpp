@@ -17,6 +17,7 @@ constexpr int beside = 3;                    ///< lines before a line, and after
 constexpr std::size_t run = 2 * beside + 1;  ///< with the line itself, which is number `beside`
 constexpr int sectors = 180;                 ///< of a turn: two beams or more of any laser of 1 degree
 constexpr std::size_t least_sectors = 10;    ///< in which a line has to be seen among its neighbours
+constexpr double reach_m = 1000;             ///< of any laser
 constexpr double chance_sd = 4;              ///< one line in 16,000 by chance; clouds have some hundreds
 
 /// The upper of the two middle values; there is one at least.
@@ -78,7 +79,7 @@ struct Sight {
   double bearing_rad = 0, distance_m = 0, height_m = 0;
 };
 
-/// By sector of the turn, each in the order of lines, without those that are turned.
+/// By sector of the turn, each in the order of lines, without those that are turned, nor points out of a laser's reach.
 std::array<std::vector<Sight>, sectors> sights_of(std::span<const Point3> cloud, std::span<const Place> places,
                                                   const Turns& turned) {
   struct Values {
@@ -87,11 +88,13 @@ std::array<std::vector<Sight>, sectors> sights_of(std::span<const Point3> cloud,
   };
   std::map<int, Values> by_place;
   for (std::size_t k = 0; k < cloud.size(); ++k) {
-    if (turned.contains(places[k].line())) continue;
+    const Point3& p = cloud[k];
+    const double distance_m = std::hypot(p.x, p.y);
+    if (turned.contains(places[k].line()) || std::max(distance_m, std::abs(p.z)) > reach_m) continue;
     Values& values = by_place[places[k].sector];
-    values.bearing_rad = std::atan2(cloud[k].y, cloud[k].x);
-    values.distances_m.push_back(std::hypot(cloud[k].x, cloud[k].y));
-    values.heights_m.push_back(cloud[k].z);
+    values.bearing_rad = std::atan2(p.y, p.x);
+    values.distances_m.push_back(distance_m);
+    values.heights_m.push_back(p.z);
   }
   std::array<std::vector<Sight>, sectors> sights;
   for (auto& [sector, values] : by_place) {
