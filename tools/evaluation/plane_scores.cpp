@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "evaluation/labels.hpp"
 #include "evaluation/scores.hpp"
 #include "formats/bad_input.hpp"
+#include "map/median.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -46,10 +46,9 @@ Axis axis_of(const std::vector<LabelledCell>& cells, double LabelledCell::*axis)
 long line_far_off(const std::vector<LabelledCell>& cells, double LabelledCell::*axis) {
   std::vector<double> at;
   for (const LabelledCell& cell : cells) at.push_back(cell.*axis);
-  const auto middle = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
-  std::nth_element(at.begin(), middle, at.end());
+  const double middle = median(std::move(at));
   const auto nearer = [&](const LabelledCell& a, const LabelledCell& b) {
-    return std::abs(a.*axis - *middle) < std::abs(b.*axis - *middle);
+    return std::abs(a.*axis - middle) < std::abs(b.*axis - middle);
   };
   return std::max_element(cells.begin(), cells.end(), nearer) - cells.begin() + 2;
 }

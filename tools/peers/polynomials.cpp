@@ -7,6 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "map/median.hpp"
+
 namespace curbline::tools::peers {
 namespace {
 
@@ -114,10 +116,9 @@ void give_out(const Points& run, std::vector<MapCurb>& out) {
       if (curve.u(p) >= u0 - piece_m / 2 && curve.u(p) <= u1 + piece_m / 2) heights.push_back(p.height_m);
     }
     if (heights.empty()) continue;
-    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-    std::nth_element(heights.begin(), middle, heights.end());
+    const double height_m = median(std::move(heights));
     const EdgePoint a = curve.point(u0), b = curve.point(u1);
-    out.push_back({a.x_m, a.y_m, b.x_m, b.y_m, *middle, 0, 1, *middle > 0 ? "step_up" : "step_down"});
+    out.push_back({a.x_m, a.y_m, b.x_m, b.y_m, height_m, 0, 1, height_m > 0 ? "step_up" : "step_down"});
   }
 }
 

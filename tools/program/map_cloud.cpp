@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "map/median.hpp"
 #include "peers/peers.hpp"
 #include "program/map_window.hpp"
 #include "program/mistimed_lines.hpp"
@@ -25,19 +26,12 @@ void widen(WindowSettings& window) {
   window.cols += 2 * margin_cells;
 }
 
-/// The upper of the two middle values; reorders the values, of which there must be at least one.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Whole kilometres to the window and to the median height of the cloud: relative to these, float resolves the points.
 Point3 whole_kilometres(std::span<const Point3> cloud, const MapOptions& options) {
   const auto whole = [](double metres) { return 1000 * std::round(metres / 1000); };
   std::vector<double> heights;
   for (const Point3& p : cloud) heights.push_back(p.z);
-  const double z = heights.empty() ? 0 : whole(median(heights));
+  const double z = heights.empty() ? 0 : whole(median(std::move(heights)));
   return options.fixed() ? Point3{whole(options.origin[0]), whole(options.origin[1]), z} : Point3{0, 0, z};
 }
 
@@ -58,7 +52,7 @@ std::optional<double> ground_about_origin_m(std::span<const Point3> cloud) {
   }
   std::vector<double> heights;
   for (const auto& [square, height] : lowest) heights.push_back(height);
-  return median(heights);
+  return median(std::move(heights));
 }
 
 /// Height of the laser above the origin. In the frame of a laser it is 0. In that of a robot's base, recognised by

@@ -9,6 +9,9 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <utility>
+
+#include "map/median.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -19,13 +22,6 @@ constexpr int sectors = 180;                 ///< of a turn: two beams or more o
 constexpr std::size_t least_sectors = 10;    ///< in which a line has to be seen among its neighbours
 constexpr double reach_m = 1000;             ///< of any laser
 constexpr double chance_sd = 4;              ///< one line in 16,000 by chance; clouds have some hundreds
-
-/// The upper of the two middle values; there is one at least.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Standard deviation of a normal distribution about 0 with the median magnitude of these values.
 double deviation(std::vector<double> values) {
