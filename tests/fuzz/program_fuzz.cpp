@@ -190,9 +190,7 @@ void draw(const Map& map) {
   claim(cairo_status(cr.get()) == CAIRO_STATUS_SUCCESS, "every map can be drawn");
 }
 
-void map(Numbers& numbers) {
-  const MapOptions options = some_options(numbers, 1e9);
-  const bool drawn = numbers.seldom();  // which takes many times as long as the map
+std::vector<Point3> some_points(Numbers& numbers, const MapOptions& options) {
   std::vector<Point3> cloud{{options.origin[0], options.origin[1], 0}};
   while (!numbers.used_up()) {
     const auto along = [&](std::size_t axis) {
@@ -202,6 +200,28 @@ void map(Numbers& numbers) {
     const double x = along(0), y = along(1), z = static_cast<double>(numbers.rarely_any(numbers.flag() ? 0.0f : 0.1f));
     if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) cloud.push_back({x, y, z});
   }
+  return cloud;
+}
+
+/// In the order in which a scanner measures them, each line farther away.
+std::vector<Point3> some_scan(Numbers& numbers) {
+  constexpr std::size_t beams_of_line = 20;
+  std::vector<Point3> cloud;
+  while (!numbers.used_up()) {
+    const std::size_t line = cloud.size() / beams_of_line, beam = cloud.size() % beams_of_line;
+    const double bearing_rad = 0.02 * static_cast<double>(beam), step_m = numbers.byte() / 1000.0;
+    const double range_m = 1 + 0.1 * static_cast<double>(line) + step_m,
+                 z = static_cast<double>(numbers.rarely_any(0.0f));
+    if (!std::isfinite(z)) continue;
+    cloud.push_back({range_m * std::cos(bearing_rad), range_m * std::sin(bearing_rad), z - step_m});
+  }
+  return cloud;
+}
+
+void map(Numbers& numbers) {
+  const MapOptions options = some_options(numbers, 1e9);
+  const bool drawn = numbers.seldom();  // which takes many times as long as the map
+  const std::vector<Point3> cloud = numbers.flag() ? some_scan(numbers) : some_points(numbers, options);
   try {
     const Map map = map_cloud(cloud, options);
     check_map(map);
