@@ -1,8 +1,6 @@
 // What the program does with files that can be read: logs of any times and contents are replayed to their end, or
 // refused with one line, on a bus too, and any points are mapped in any window, by every method, and drawn.
 #include <cairo.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <CLI/Error.hpp>
 #include <algorithm>
@@ -12,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/bad_input.hpp"
 #include "formats/can_log.hpp"
 #include "formats/carmen.hpp"
 #include "formats/trajectory.hpp"
 #include "fuzz/claim.hpp"
+#include "fuzz/files.hpp"
 #include "fuzz/run.hpp"
 #include "picture/page.hpp"
 #include "program/map_cloud.hpp"
@@ -30,29 +28,6 @@ namespace {
 using namespace tools;
 
 constexpr int beams = 12;
-
-/// A file in memory.
-class Log {
- public:
-  explicit Log(const std::string& text) : descriptor_(::memfd_create("fuzz", 0)) {
-    claim(descriptor_ >= 0 && ::write(descriptor_, text.data(), text.size()) == static_cast<ssize_t>(text.size()),
-          "there is a file");
-  }
-  ~Log() { ::close(descriptor_); }
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
-
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
-
-void check_line(const BadInput& bad) {
-  const std::string line = bad.what();
-  claim(line.find('\n') == std::string::npos, "an error is one line");
-  claim(line.find("expected") != std::string::npos, "with what was expected");
-}
 
 void check_map(const Map& map) {
   claim(map.cells.size() == map.grid.cells(), "each cell is in the map");
@@ -140,7 +115,7 @@ void replay(Numbers& numbers) {
   Robot robot = some_robot(numbers);
   MapOptions options;
   if (numbers.flag()) options = some_options(numbers, static_cast<double>(WindowSettings::furthest_m));
-  const Log scans(some_scans(numbers, robot.laser)), poses(robot.pose.still ? "" : some_poses(numbers)),
+  const File scans(some_scans(numbers, robot.laser)), poses(robot.pose.still ? "" : some_poses(numbers)),
       can(robot.tilt.fixed ? "" : some_frames(numbers, robot.tilt_signal));
   try {
     apply_window(options, robot.window);
@@ -161,7 +136,7 @@ void replay(Numbers& numbers) {
 /// Frames of a bus on which a log is played, some of them others, at any times of the host.
 void follow_bus(Numbers& numbers) {
   const can::Signal signal = can::cia402_position(1);
-  const Log log(some_frames(numbers, signal));
+  const File log(some_frames(numbers, signal));
   CanLogReader played(log.path());
   LogClock clock(RecordedTimes(log.path(), signal, std::nullopt));
   std::int64_t host_ns = 0;
