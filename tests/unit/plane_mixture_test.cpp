@@ -169,6 +169,55 @@ TEST_CASE("plane mixture: cells that bear another plane do not tilt their region
   CHECK(tilt_where_the_last_row_lies(0.011) > 0.003f);  // nearer to the plane of its region: the label will follow
 }
 
+/// Of the ground from row 12 to 15, once labels have settled: is it ground, in a finished map in which its first row
+/// has the label of the plane before it? REQUIREs that it has a plane, and is ground when that row has its own label.
+template <typename Height>
+bool is_ground_without_first_row(Stages<>& stages, Height&& height_m) {
+  stages.view = {0.0f, 1.2f, 1.0f};
+  fill(stages.dem, height_m);
+  stages.settle();
+  const auto region_in = [&](int i) { return stages.mixture.region_label(stages.dem.slot(i, 12)); };
+  const Label before = region_in(4), strip = region_in(14), beyond = region_in(20);
+  REQUIRE(before != strip);
+  REQUIRE(region_in(12) == strip);
+  const auto refine = [&](int first_row) {
+    stages.mixture.refine(stages.dem, stages.view, {}, [&](int slot) {
+      const int row = slot / small_settings().window.cols;
+      return row < first_row ? before : row < 16 ? strip : beyond;
+    });
+  };
+  refine(12);
+  REQUIRE(stages.mixture.ground(strip));
+  refine(13);
+  return stages.mixture.ground(strip);
+}
+
+//            |                               ______
+//            |
+//         __/        bank before a wall      .:.:        rough verge between road and pavement
+//  ______/                             _____
+TEST_CASE("plane mixture: in a finished map what labels leave of a bank before a wall may be a fringe of it") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  const auto bank = [](double x, double y) {
+    if (x >= 1.6) return static_cast<int>(y * 100) % 10 < 5 ? 0.2 : 1.2;
+    return x < 1.2 ? 0.0 : 0.2 * (x - 1.2);
+  };
+  CHECK_FALSE(is_ground_without_first_row(*stages, bank));
+  const auto slot = [&](int i) { return stages->dem.slot(i, 12); };
+  CHECK(stages->mixture.covered(slot(14)));
+  CHECK_FALSE(stages->mixture.covered(slot(12)));
+  CHECK(stages->mixture.region_label(slot(12)) == stages->mixture.region_label(slot(4)));
+}
+
+TEST_CASE("plane mixture: in a finished map three rows that labels leave of a rough verge are no face of a curb") {
+  const auto stages = std::make_unique<Stages<>>(small_settings());
+  const auto verge = [](double x, double y) {
+    if (x < 1.2 || x >= 1.6) return x < 1.2 ? 0.0 : 0.12;
+    return (x < 1.3 ? 0.02 : 0.06) + (static_cast<int>(y * 100) % 10 < 5 ? -0.026 : 0.026);
+  };
+  CHECK(is_ground_without_first_row(*stages, verge));
+}
+
 TEST_CASE("plane mixture: a face whose cells all spread is fitted all the same") {
   const auto stages = std::make_unique<Stages<>>(small_settings());
   Noise noise;

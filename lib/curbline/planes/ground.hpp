@@ -51,6 +51,12 @@ class Ground {
   void update(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
               const CellLabels<limits>& region_label, Changed&& changed);
 
+  /// Classifies planes of ground once more, by the cells that bear their labels: `labels`, for each valid cell. What is
+  /// not ground by these is none. Calls changed(label) for it.
+  template <typename Changed>
+  void recheck(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+               const CellLabels<limits>& labels, Changed&& changed);
+
   bool is(int label) const { return is_ground(kind(label)); }
   /// May a plane of ground be a veil?
   bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
@@ -124,6 +130,23 @@ void Ground<limits>::update(const Dem<limits>& dem, std::span<const Plane> plane
   const Kinds before = std::exchange(kind_, kinds(dem, planes, view, region_label, obstacles));
   for (std::size_t l = 0; l < kind_.size(); ++l) {
     if (kind_[l] != before[l] && !(is_ground(kind_[l]) && is_ground(before[l]))) changed(static_cast<Label>(l));
+  }
+}
+
+/// A face is narrower than a cell and a half, and so are the strips of cells that bear its label. A flank of a dropped
+/// curb, whose first cells mix both sides of the curb, has wider ones.
+template <Limits limits>
+template <typename Changed>
+void Ground<limits>::recheck(const Dem<limits>& dem, std::span<const Plane> planes, const Viewpoint& view,
+                             const CellLabels<limits>& labels, Changed&& changed) {
+  const Obstacles<limits> obstacles(dem, planes, view, labels);
+  const StripTallies<limits> tallies(dem, planes, view, labels, obstacles);
+  for (std::size_t l = 0; l < kind_.size(); ++l) {
+    if (!is_ground(kind_[l]) || (tallies[l].face() && !tallies[l].narrow())) continue;
+    const Kind now = kind_of(l, planes[l], tallies[l], obstacles, view);
+    if (is_ground(now)) continue;
+    kind_[l] = now;
+    changed(static_cast<Label>(l));
   }
 }
 

@@ -41,7 +41,8 @@ class PlaneMixture {
   void update(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work, const Viewpoint& view,
               const CellSet<limits>& crossed, LabelOf&& label_of, Counters& counters);
 
-  /// Fits planes again (PlaneUpdate::regions), by what labels and steps have told since update(): for a finished map.
+  /// Judges planes of ground again and fits planes (PlaneUpdate::regions), by what labels and steps have told since
+  /// update(): for a finished map.
   template <typename LabelOf>
   void refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed, LabelOf&& label_of);
 
@@ -101,6 +102,8 @@ class PlaneMixture {
   template <typename LabelOf>
   [[gnu::noinline]] Fitted match_regions(const Dem<limits>& dem, const typename Segmentation<limits>::Work& work,
                                          LabelOf&& label_of, Counters& counters);
+  template <typename LabelOf>
+  void recheck_ground(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of);
   void take_labels(const RegionRanking<limits>& ranking);
   Fitted fit(const Dem<limits>& dem, const RegionRanking<limits>& ranking);
 
@@ -152,6 +155,7 @@ template <Limits limits>
 template <typename LabelOf>
 void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view, const CellSet<limits>& crossed,
                                   LabelOf&& label_of) {
+  recheck_ground(dem, view, label_of);
   std::array<PlaneMoments, limits.planes> regions{};
   dem.for_each_valid([&](int i, int j, int s) {
     if (region_label_[s] != no_label) regions[region_label_[s]].add(dem.moments(i, j, dem.cell(s)));
@@ -163,6 +167,24 @@ void PlaneMixture<limits>::refine(const Dem<limits>& dem, const Viewpoint& view,
     fitted[l] = true;
   }
   CleanFits<limits>(dem, ground_, region_label_, view, crossed).fit(planes_, fitted, label_of, settings_.min_cells);
+}
+
+/// A region may hold, beside a face or a fringe, cells of the plane next to it, and be too wide for one. What is left
+/// when labels have given these back is judged anew. If it is no ground they are of that plane's region from now on.
+template <Limits limits>
+template <typename LabelOf>
+void PlaneMixture<limits>::recheck_ground(const Dem<limits>& dem, const Viewpoint& view, LabelOf&& label_of) {
+  CellLabels<limits> labels = region_label_;
+  dem.for_each_valid([&](int, int, int s) {
+    const Label own = label_of(s);
+    if (on_ground(s) && own != no_label) labels[s] = own;
+  });
+  ground_.recheck(dem, planes_, view, labels, [this](Label label) { fresh_.insert(label); });
+  dem.for_each_valid([&](int, int, int s) {
+    if (on_ground(s) || labels[s] == region_label_[s]) return;
+    region_label_[s] = labels[s];
+    relabelled_.insert(s);
+  });
 }
 
 /// Planes whose label no region has taken die.

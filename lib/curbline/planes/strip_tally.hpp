@@ -84,6 +84,8 @@ struct StripTally {
     const float mean_step_m = step_m / strips, step_m2 = mean_step_m * mean_step_m * strip_weight;
     return spreads_over(step_m2, strip_spread_m2) || stands_between_cells(step_m2);
   }
+  /// Are those strips, on average, narrower than such as have cells of their own?
+  bool narrow() const { return strip_cells < narrow_cells * strips; }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
   bool wake() const { return most(wake_cells[0]) || most(wake_cells[1]); }
