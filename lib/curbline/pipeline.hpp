@@ -92,9 +92,9 @@ class Pipeline {
   void infer();
 
   /// infer() for a finished map: repeats the pass over the labels, with no bound on messages, until no label changes or
-  /// `passes` (at least 1) are made, then fits the planes by these labels and the curbs, as further lines would, and
-  /// repeats the passes, at most as many again. The noise that cells share keeps its value: one sweep does not show it.
-  /// Returns the passes made, of the last repetition.
+  /// `passes` (at least 1) are made, then judges and fits the planes by these labels and the curbs, as further lines
+  /// would, and repeats the passes, at most as many again. The noise that cells share keeps its value: one sweep does
+  /// not show it. Returns the passes made, of the last repetition.
   int settle(int passes = 10);
 
   /// Curbs in the window, in the map frame. take() traces them every second line: they may be a line old, and lie in
