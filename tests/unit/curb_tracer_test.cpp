@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -477,6 +478,41 @@ TEST_CASE("curb tracer: the edge of a pit is told, though the ground goes on beh
   const auto curbs = stages->tracer.curbs();
   CHECK(std::count_if(curbs.begin(), curbs.end(),
                       [](const Curb& c) { return c.height_m < -0.3f && c.x0_m < 1.0f && c.x1_m < 1.0f; }) == 1);
+}
+
+//  y      / nothing       where ground ends along y, askew to the grid: a laser on its upper side looks over the edge.
+//   o    /                 One to the left would see the face below it: what falls there mixes the two
+//       / ground  o
+TEST_CASE("curb tracer: a drop of which nothing is seen is hidden from a laser on its upper side only") {
+  Stages<> stages(small_settings());
+  fill(stages.dem, [](double, double) { return 0.0; });
+  stages.settle();
+  const CurbSettings settings{};
+  std::vector<Border> borders;
+  for (const float x_m : {0.85f, 0.95f, 1.05f, 1.15f}) {
+    Border brink{};
+    brink.x_m = x_m;
+    brink.y_m = 1.2f + 3.0f * (x_m - 1.0f);
+    brink.probability = 1.0f;
+    brink.half_gap_m = 0.05f;
+    brink.drop_m = 0.1f;
+    brink.one = stages.label_at(0, 0);
+    brink.other = no_label;
+    brink.axis = 1;
+    brink.sign = 1;
+    borders.push_back(brink);
+  }
+  const std::vector<Border::Index> chain{0, 1, 2, 3};
+  const auto seen_from = [&](float x_m) {
+    const Viewpoint view{x_m, 0.5f, 1.2f};
+    const CurbStages<test::small_limits> seen{stages.dem, stages.mixture, stages.field, view, settings};
+    return CurbMaker<test::small_limits>(seen).make(ChainPart(borders.data(), chain, {true, true}));
+  };
+  const std::optional<Curb> drop = seen_from(2.0f);
+  REQUIRE(drop);
+  CHECK(drop->kind == CurbKind::step_down);
+  CHECK(drop->height_m == Approx(-0.1f).margin(0.01));
+  CHECK_FALSE(seen_from(0.0f));
 }
 
 TEST_CASE("curb tracer: a drop behind steps up is told, one behind a wall is not") {

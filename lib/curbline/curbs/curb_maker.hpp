@@ -30,7 +30,8 @@ class CurbMaker {
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
-  /// The curb; none for the side of an obstacle, or a step seen on a single row or column without ground behind.
+  /// The curb; none for the side of an obstacle, or a step without ground in view behind that is seen on a single row
+  /// or column, or from the side where that ground would be: from there its face is in view.
   std::optional<Curb> make(const ChainPart& part);
 
   /// Is it the drop behind an obstacle, where no robot gets to: does a step up that is higher than any curb lead onto
@@ -62,7 +63,10 @@ std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   Curb curb = without_height(piece);
   curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
-  if (one_sided && is_step(curb) && part.size() == 1) return std::nullopt;  // a single row or column makes no line
+  if (one_sided && is_step(curb)) {
+    const bool from_behind = piece.one_is_right != piece.has_right(stages_.view);
+    if (part.size() == 1 || from_behind) return std::nullopt;  // a single row or column makes no line
+  }
   step.refine(part, is_step(curb));
   if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
