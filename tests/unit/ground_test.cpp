@@ -187,14 +187,28 @@ TEST_CASE(
 
 //        ___
 //   ____|   |_____     the same from above: 60 cm long and wide
-TEST_CASE("ground: the top of a box is an obstacle, but one lower than a stair or at the window's end may be a way") {
-  const auto block = [](double height_m, double from_x_m) {
-    return
-        [=](double x, double y) { return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 1.5 ? height_m : 0.0; };
+TEST_CASE("ground: the top of a box is an obstacle, but one lower than a stair, or a metre wide at the window's end") {
+  const auto block = [](double height_m, double from_x_m, double width_m = 0.6) {
+    return [=](double x, double y) {
+      return x > from_x_m && x < from_x_m + 0.6 && y > 0.9 && y < 0.9 + width_m ? height_m : 0.0;
+    };
   };
   CHECK(label_count(block(0.28, 0.9)) == 1);
   CHECK(label_count(block(0.16, 0.9)) == 2);
-  CHECK(label_count(block(0.28, 1.8)) == 2);
+  CHECK(label_count(block(0.28, 1.8)) == 1);
+  CHECK(label_count(block(0.28, 1.8, 1.2)) == 2);  // may be a way
+}
+
+//        ___
+//   ____.   .____     its sides: readings of the top, of the ground, and of what is between
+TEST_CASE("ground: the cells around a box are an obstacle, as wide a patch of such cells is rough ground") {
+  const auto one_of = [](double y) { return static_cast<int>(y * 100) % 10 < 5 ? 0.04 : 0.18; };
+  const auto box = [=](double x, double y) {
+    const double away_m = std::max(std::abs(x - 1.25), std::abs(y - 1.25));
+    return away_m < 0.35 ? 0.22 : away_m < 0.45 ? one_of(y) : 0.0;
+  };
+  CHECK(label_count(box) == 1);
+  CHECK(label_count([=](double x, double y) { return box(x, y) > 0.0 ? one_of(y) : 0.0; }) == 2);
 }
 
 //     ||  wall, from end to end of the window     ___|  platform beyond it     ___   platform under the robot, which
@@ -767,7 +781,10 @@ TEST_CASE("ground: a block is no obstacle if a robot has room on it, if it leans
   CHECK(label_count(block(0.28, 0.6, 0.9)) == 1);
   CHECK(label_count(block(0.28, 0.6, 1.1)) == 2);  // more than a square metre
   CHECK(label_count(block(0.28, 0.6, 0.8, 0.2)) == 2);
-  for (const int quarters : {0, 1, 2, 3}) CHECK(label_count(turned_ground(block(0.28, 1.8, 0.6), quarters), 3.0f) == 2);
+  for (const int quarters : {0, 1, 2, 3}) {
+    CHECK(label_count(turned_ground(block(0.28, 1.8, 1.1), quarters), 3.0f) == 2);
+    CHECK(label_count(turned_ground(block(0.28, 1.8, 0.9), quarters), 3.0f) == 1);
+  }
 }
 
 //              _____

@@ -1,16 +1,20 @@
 // Which planes belong to obstacles. An obstacle is a region within whose cells heights spread as on more than 45
 // degrees, unless they spread over less than a step and the region is wider than a wall: that is rough ground, grass or
-// rubble, as anything as steep and as wide would rise higher. So is the top of one: level, higher above the ground than
-// a curb or a stair, smaller than a square metre or narrower than shoulders, and not part of a way. A way has beside
-// it, as high above the ground, a plane that is no top, or one higher or lower by as much as the next step of a stair.
-// A region that reaches the window's end may be larger than it looks; so may one that begins where nothing is seen
-// before it and, on a robot that drives, one that ends where nothing is seen beyond: the laser may not have looked
-// there yet. Cost: a pass over the window, and two more where there may be tops; of hides(), a look at each cell on the
-// way to the laser, at most.
+// rubble, as anything as steep and as wide would rise higher. The cells around a box, which hold its sides, are a ring
+// as wide as the box, but narrow along x or along y. So is the top of one: level, higher above the ground than a curb
+// or a stair, smaller than a square metre or narrower than shoulders, and not part of a way. A way has beside it, as
+// high above the ground, a plane that is no top, or one higher or lower by as much as the next step of a stair. A
+// region that reaches the window's end may be larger than it looks, unless it is shorter than a metre along x and along
+// y; so may one that begins where nothing is seen before it and, on a robot that drives, one that ends where nothing is
+// seen beyond: the laser may not have looked there yet. Cost: a pass over the window, one more where there is rough
+// ground or a ring, and two more where there may be tops; of hides(), a look at each cell on the way to the laser, at
+// most.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 
 #include "curbline/grid.hpp"
@@ -55,10 +59,14 @@ class Obstacles {
 
   /// Extent of a plane's region.
   struct Extent {
-    bool reaches_end = false;           ///< of the window
-    std::array<float, 2> thin_cells{};  ///< cells in runs shorter than shoulders, along x and along y
+    bool reaches_end = false;  ///< of the window
+    float thin_cells = 0.0f;   ///< cells in runs shorter than shoulders, along x or along y
+    std::array<int, 2> first{limits.rows, limits.cols}, last{};  ///< cells, along x and along y
 
-    bool narrow(float cells) const { return 2.0f * thin_cells[0] >= cells || 2.0f * thin_cells[1] >= cells; }
+    bool narrow(float cells) const { return 2.0f * thin_cells >= cells; }
+    float length_m(std::size_t axis, float cell_m) const {
+      return static_cast<float>(last[axis] - first[axis] + 1) * cell_m;
+    }
   };
   using Extents = std::array<Extent, limits.planes>;
 
@@ -66,6 +74,12 @@ class Obstacles {
   static bool higher_than_step(float variance_m2) {
     return variance_m2 > highest_step_m * highest_step_m * (1.0f / 12);
   }
+  bool smaller_than_way(const Extent& extent, float cells) const {
+    const float cell_x_m = dem_.cell_x_m(), cell_y_m = dem_.cell_y_m();
+    if (!extent.reaches_end && cells * cell_x_m * cell_y_m < way_m * way_m) return true;
+    return extent.length_m(0, cell_x_m) < way_m && extent.length_m(1, cell_y_m) < way_m;
+  }
+  void add_rings(const PlaneFlags& wide);
   void add_tops();
   void take_ways_from(PlaneFlags& top, const Neighbours& beside);
   Extents extents_of(const PlaneFlags& asked) const;
@@ -93,32 +107,41 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
     spread[label] += dem_.spread_m2(dem_.cell(s));
     weight[label] += dem_.cell(s).weight;
   });
+  PlaneFlags wide{};
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     const bool steep = dem_.steep(spread[l], weight[l]);
     high_[l] = steep && higher_than_step(planes_[l].variance_m2);
     is_[l] = steep && (high_[l] || planes_[l].narrower_than(shoulders_m));
+    wide[l] = steep && !is_[l];
+  }
+  add_rings(wide);
+  for (std::size_t l = 0; l < planes_.size(); ++l) {
     if (!planes_[l].alive() || is_[l]) continue;
     if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
   }
   if (ground_ != nullptr) add_tops();
 }
 
+/// Of steep regions that are wide, those that are narrow wherever they are crossed.
+template <Limits limits>
+void Obstacles<limits>::add_rings(const PlaneFlags& wide) {
+  if (std::ranges::none_of(wide, std::identity{})) return;
+  const Extents extents = extents_of(wide);
+  for (std::size_t l = 0; l < wide.size(); ++l) is_[l] = is_[l] || (wide[l] && extents[l].narrow(cells_[l]));
+}
+
 template <Limits limits>
 void Obstacles<limits>::add_tops() {
   PlaneFlags level{};  // and raised
-  const float cell_m2 = dem_.cell_x_m() * dem_.cell_y_m();
-  bool any = false;
   for (std::size_t l = 0; l < planes_.size(); ++l) {
     level[l] =
         planes_[l].alive() && !is_[l] && !planes_[l].steeper_than_ramp() && planes_[l].above_m(*ground_) > usual_step_m;
-    any = any || level[l];
   }
-  if (!any) return;
+  if (std::ranges::none_of(level, std::identity{})) return;
   const Extents extents = extents_of(level);
   PlaneFlags top{};
   for (std::size_t l = 0; l < top.size(); ++l) {
-    const bool small = cells_[l] * cell_m2 < way_m * way_m && !extents[l].reaches_end;
-    top[l] = level[l] && (small || extents[l].narrow(cells_[l]));
+    top[l] = level[l] && (smaller_than_way(extents[l], cells_[l]) || extents[l].narrow(cells_[l]));
   }
   take_ways_from(top, neighbours(level));
   for (std::size_t l = 0; l < top.size(); ++l) {
@@ -175,8 +198,9 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
     if (label == no_label || !asked[label]) return;
     Extent& extent = found[label];
     if (i == 0 || j == 0 || i == dem_.rows() - 1 || j == dem_.cols() - 1) extent.reaches_end = true;
-    extent.thin_cells[0] += thin({dem_, 0, j}, i, label) ? 1.0f : 0.0f;
-    extent.thin_cells[1] += thin({dem_, 1, i}, j, label) ? 1.0f : 0.0f;
+    extent.first = {std::min(extent.first[0], i), std::min(extent.first[1], j)};
+    extent.last = {std::max(extent.last[0], i), std::max(extent.last[1], j)};
+    if (thin({dem_, 0, j}, i, label) || thin({dem_, 1, i}, j, label)) extent.thin_cells += 1.0f;
   });
   return found;
 }
