@@ -269,10 +269,21 @@ TEST_CASE("scores: the upper band has no end, and a quay of 1.5 m belongs to it"
   CHECK(quay.band[1].precision == Approx(1));
 }
 
-TEST_CASE("scores: up told as down is an error of twice the height, for a robot that stands") {
-  const std::vector<MapCurb> down{piece(2, -2, 2, -0.1, "step_down")};
-  CHECK(scores_of(down).height_m.median == Approx(0.2));
-  CHECK(score_curbs({{}, down, {}}, truth, everything).height_m.median == Approx(0).margin(1e-9));
+TEST_CASE("scores: up told as down is an error of twice the height, and told apart from steps that are missed") {
+  const CurbScores down = scores_of({piece(2, -2, 2, -0.1, "step_down")});
+  CHECK(down.height_m.median == Approx(0.2));
+  CHECK(down.wrong_way == 1);
+  CHECK(down.band[1].recall == Approx(1));
+  CHECK(scores_of({piece(2, -2, 1, 0.1), piece(2, 1, 2, -0.1)}).wrong_way == Approx(0.25));
+  CHECK(std::isnan(scores_of({piece(3, -2, 2, -0.1)}).wrong_way));  // where no step is, there is no way
+}
+
+TEST_CASE("scores: of a robot that drives, the near side of a curb lies to the right of its line") {
+  const auto driving = [](MapCurb curb) { return score_curbs({{}, {curb}, {}}, truth, everything); };
+  CHECK(driving(piece(2, 2, -2, 0.1)).wrong_way == 0);
+  CHECK(driving(piece(2, -2, 2, -0.1, "step_down")).wrong_way == 0);
+  CHECK(driving(piece(2, 2, -2, -0.1, "step_down")).wrong_way == 1);
+  CHECK(driving(piece(2, 2, -2, -0.1, "step_down")).height_m.median == Approx(0.2));
 }
 
 //   2 |  /      the true step goes on past the robot on its right, the piece found on its left

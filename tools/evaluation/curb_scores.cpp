@@ -25,9 +25,9 @@ struct FoundSample {
 };
 
 /// Across a curb's line, away from the robot.
-Point2 to_far_side(const MapCurb& c, Point2 robot) {
+Point2 to_far_side(const MapCurb& c, const std::optional<Point2>& robot) {
   const Point2 left{c.y0_m - c.y1_m, c.x1_m - c.x0_m};
-  const bool left_is_near = dot(robot - Point2{c.x0_m, c.y0_m}, left) > 0;
+  const bool left_is_near = robot && dot(*robot - Point2{c.x0_m, c.y0_m}, left) > 0;
   return left_is_near ? Point2{-left.x, -left.y} : left;
 }
 
@@ -40,7 +40,7 @@ class Nearest {
   /// Of a place on a curb. Its far side is that of its own line: at a bend the true step's may be another.
   FoundSample of(Point2 p, const MapCurb& curb) const {
     FoundSample out{curb.height_m};
-    const std::optional<Point2> far = robot_ ? std::optional(to_far_side(curb, *robot_)) : std::nullopt;
+    const Point2 far = to_far_side(curb, robot_);
     for (const TruthSample& s : samples_) {
       const double dx = p.x - s.at.x, dy = p.y - s.at.y;
       if (std::abs(dx) > reach_m || std::abs(dy) > reach_m) continue;
@@ -51,8 +51,7 @@ class Nearest {
       out.distance_m = distance;
       TruthSample there = s;
       there.step_m += s.rise * on_sample;
-      out.height_error_m =
-          far ? curb.height_m - signed_step_m(there, *far) : std::abs(curb.height_m) - there.height_m();
+      out.height_error_m = curb.height_m - signed_step_m(there, far);
     }
     return out;
   }
@@ -106,6 +105,17 @@ double share_within(const std::vector<Sample>& samples, double tolerance_m, Coun
     near += s.distance_m <= tolerance_m;
   }
   return all > 0 ? static_cast<double>(near) / all : nan;
+}
+
+/// Of samples at true steps, up for down or down for up.
+double share_wrong_way(const std::vector<FoundSample>& samples) {
+  int near = 0, wrong = 0;
+  for (const FoundSample& s : samples) {
+    if (s.distance_m > band_tolerance_m) continue;
+    ++near;
+    wrong += s.height_m * (s.height_m - s.height_error_m) < 0;
+  }
+  return near > 0 ? static_cast<double>(wrong) / near : nan;
 }
 
 /// Weighted errors in units of their standard deviations.
@@ -202,6 +212,7 @@ CurbScores score_curbs(const Found& found, const Truth& truth, const Seen& seen)
     band.precision = share_within(of_found, band_tolerance_m, within, band.found);
     band.recall = share_within(of_truth, band_tolerance_m, within, band.truth);
   }
+  out.wrong_way = share_wrong_way(of_found);
   std::vector<double> position, height;
   for (const FoundSample& s : of_found) {
     if (s.distance_m > match_tolerance_m) continue;
@@ -228,6 +239,7 @@ nlohmann::json to_json(const CurbScores& scores) {
                                  {"found_samples", b.found},
                                  {"true_samples", b.truth}});
   }
+  out["wrong_way"] = scores.wrong_way;
   out["position_error_median_m"] = scores.position_m.median;
   out["position_error_95_m"] = scores.position_m.most;
   out["height_error_median_m"] = scores.height_m.median;

@@ -18,8 +18,10 @@ namespace curbline::tools {
 struct Found {
   /// One window for a robot that stands, several along the path of one that drives.
   std::vector<std::vector<LabelledCell>> windows;
-  std::vector<MapCurb> curbs;              ///< of the whole path
-  std::optional<Point2> seen_from;         ///< near and far sides are as seen from here; if empty, steps have no sign
+  std::vector<MapCurb> curbs;  ///< of the whole path
+  /// Near and far sides are as seen from here. If empty, a curb's near side lies to the right of its line, from its
+  /// first end to its second, as the library's do.
+  std::optional<Point2> seen_from;
   std::string labels_file = "labels.csv";  ///< that a window was read from, for errors
 };
 
@@ -64,8 +66,10 @@ struct Calibration {
 };
 
 struct CurbScores {
-  std::array<StepRates, 4> at;                    ///< 0.05, 0.1, 0.15 and 0.3 m
-  std::array<BandRates, 2> band;                  ///< 2 to 4 cm and above, at 0.1 m
+  std::array<StepRates, 4> at;    ///< 0.05, 0.1, 0.15 and 0.3 m
+  std::array<BandRates, 2> band;  ///< 2 to 4 cm and above, at 0.1 m
+  double wrong_way = 0;  ///< share of samples of found steps within 0.1 m of a true one that are up for down, or down
+                         ///< for up; NaN if there are none
   Errors position_m, height_m;                    ///< of samples of found steps within 0.15 m of a true one
   Calibration calibration, position_calibration;  ///< of heights; of the midpoints' distances from the true step
 };

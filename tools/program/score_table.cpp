@@ -43,6 +43,7 @@ constexpr std::array of_curbs{
     Row{"recall of 2 to 4 cm at 0.1 m", [](const Scored& s) { return s.curbs.band[0].recall; }, 1, 3},
     Row{"recall of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].recall; }, 1, 3},
     Row{"precision of 4 cm and more", [](const Scored& s) { return s.curbs.band[1].precision; }, 1, 3},
+    Row{"steps told up for down, or reverse", [](const Scored& s) { return s.curbs.wrong_way; }, 1, 3},
     Row{"position error, median, cm", [](const Scored& s) { return s.curbs.position_m.median; }, 100, 1},
     Row{"                95 %, cm", [](const Scored& s) { return s.curbs.position_m.most; }, 100, 1},
     Row{"height error, median, mm", [](const Scored& s) { return s.curbs.height_m.median; }, 1e3, 1},
