@@ -483,8 +483,10 @@ TEST_CASE("curb tracer: the edge of a pit is told, though the ground goes on beh
 //  y      / nothing       where ground ends along y, askew to the grid: a laser on its upper side looks over the edge.
 //   o    /                 One to the left would see the face below it: what falls there mixes the two
 //       / ground  o
-TEST_CASE("curb tracer: a drop of which nothing is seen is hidden from a laser on its upper side only") {
+TEST_CASE(
+    "curb tracer: a drop of which nothing is seen is hidden from a laser on its upper side only, when it was seen") {
   Stages<> stages(small_settings());
+  stages.dem.look_from(2.0f, 0.5f);
   fill(stages.dem, [](double, double) { return 0.0; });
   stages.settle();
   const CurbSettings settings{};
@@ -513,6 +515,8 @@ TEST_CASE("curb tracer: a drop of which nothing is seen is hidden from a laser o
   CHECK(drop->kind == CurbKind::step_down);
   CHECK(drop->height_m == Approx(-0.1f).margin(0.01));
   CHECK_FALSE(seen_from(0.0f));
+  stages.dem.look_from(0.0f, 0.5f);
+  CHECK(seen_from(0.0f));  // a robot that has driven over the edge since it saw it
 }
 
 TEST_CASE("curb tracer: a drop behind steps up is told, one behind a wall is not") {

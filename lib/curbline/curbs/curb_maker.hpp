@@ -64,8 +64,9 @@ std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb)) {
-    const bool from_behind = piece.one_is_right != piece.has_right(stages_.view);
-    if (part.size() == 1 || from_behind) return std::nullopt;  // a single row or column makes no line
+    if (part.size() == 1) return std::nullopt;  // a single row or column makes no line
+    const bool from_behind = piece.seen_from_other(stages_.view);
+    if (from_behind && piece.seen_from_other(step.seen_from(part, piece.first.one))) return std::nullopt;
   }
   step.refine(part, is_step(curb));
   if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();

@@ -97,6 +97,15 @@ struct CurbPiece {
   bool has_right(const Viewpoint& view) const {
     return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
   }
+  /// Is it on the side of `other` for certain, with the line anywhere within half a gap of its own at both ends?
+  bool seen_from_other(const Viewpoint& view) const {
+    const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
+    const float to_x_m = view.x_m - middle_x_m(), to_y_m = view.y_m - middle_y_m();
+    const float to_left = dx_m * to_y_m - dy_m * to_x_m, along = magnitude(dx_m * to_x_m + dy_m * to_y_m);
+    const float length_m2 = square(dx_m) + square(dy_m);
+    const float beyond = one_is_right ? to_left : -to_left;
+    return beyond > 0.0f && square(beyond) * length_m2 > square(half_gap_m * (length_m2 + 2.0f * along));
+  }
 
  private:
   void take_means(const ChainPart& part);

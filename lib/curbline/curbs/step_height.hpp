@@ -41,6 +41,9 @@ class StepHeight {
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
+  /// From where the ground on one of its sides was last seen: mean over its cells next to the borders.
+  Viewpoint seen_from(const ChainPart& part, Label side) const;
+
   /// Of PlanePair::other above PlanePair::one.
   float height_m() const { return height_m_; }
   float variance_m2() const { return variance_m2_; }
@@ -51,7 +54,6 @@ class StepHeight {
   bool other_is_upper() const { return height_m_ > 0.0f; }
   typename Piece::Side lower() const { return piece_.side(!other_is_upper()); }
   typename Piece::Side upper() const { return piece_.side(other_is_upper()); }
-  Viewpoint lower_seen_from(const ChainPart& part) const;
   void leave_shadow(const Viewpoint& view);
   int cell_beside(const Border& border, Label own) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
@@ -90,7 +92,7 @@ void StepHeight<limits>::refine(const ChainPart& part, bool is_step) {
   if (!is_step) height_m_ = 0.0f;
   float ground_share = 0.0f;  // of the step
   if (is_step && !one_sided) {
-    const Viewpoint view = lower_seen_from(part);
+    const Viewpoint view = seen_from(part, lower().label);
     ground_share = ground_share_of_slope(view);
     leave_shadow(view);
   }
@@ -158,14 +160,13 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
   if (stages_.view.localisation_steps) variance_m2_ += square(piece_.change_m()) * (1.0f / 12);
 }
 
-/// From where the lower side was last seen: mean over its cells next to the borders.
 template <Limits limits>
-Viewpoint StepHeight<limits>::lower_seen_from(const ChainPart& part) const {
+Viewpoint StepHeight<limits>::seen_from(const ChainPart& part, Label side) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
-    const int slot = cell_beside(border, lower().label);
+    const int slot = cell_beside(border, side);
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
     sum_x += view.x_m;
