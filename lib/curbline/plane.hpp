@@ -110,6 +110,10 @@ struct Plane {
   /// Steeper than ground by three standard deviations of its slopes: a face.
   bool steeper_than_ground() const { return square(slope_x) + square(slope_y) > gate * square(steepest_ramp); }
 
+  /// Does it pass through a place, within five standard deviations?
+  bool passes_through(float px_m, float py_m, float pz_m) const {
+    return square(pz_m - height_m(px_m, py_m)) <= 25.0f * (variance_m2 + height_variance_m2(px_m, py_m));
+  }
   /// Variance of height_m() at a place. Each supporting cell counts as one observation, since the points of a cell
   /// share their errors of tilt and mount.
   float height_variance_m2(float px_m, float py_m) const {

@@ -451,6 +451,28 @@ TEST_CASE("ground: a row of cells at the window's end, of which the slope is not
   CHECK(label_count([](double x, double) { return x < 2.3 ? 0.0 : 0.1; }) == 2);
 }
 
+//  o
+//    `- . _ _         the first scan lines on a cambered road, each in a plane through the laser
+//  -  -  -  - -
+TEST_CASE("ground: a single scan line on bent ground is no plane of it, more of them are") {
+  const auto labelled = [](int lines) {
+    Stages<Limits{}> stages(Settings{});
+    stages.view.z_m = 1.15f;
+    for (int line = 0; line < lines; ++line) {
+      for (double y = -1.99; y < 2.0; y += 0.0125) {
+        const double z = -0.01 * y * y, x = (3.3 + 0.13 * line) * (1.0 - z / 1.15);  // from the laser above x = 0
+        stages.dem.add({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1e-4f});
+      }
+    }
+    stages.settle();
+    int cells = 0;
+    stages.dem.for_each_valid([&](int i, int j, int) { cells += stages.label_at(i, j) != no_label; });
+    return cells;
+  };
+  CHECK(labelled(1) == 0);
+  CHECK(labelled(2) > 60);
+}
+
 //           o______     the origin of a cloud, on the pavement's plane; no laser has seen it from there
 //  ________|
 TEST_CASE("ground: a plane through the laser is ground if it is no higher above the ground than a curb") {

@@ -194,6 +194,26 @@ TEST_CASE(
   CHECK(rough.height_sd_m == Approx(0.03 / std::sqrt(3.0)).epsilon(0.2));
 }
 
+TEST_CASE("step height: where the cells of a side two rows wide are level with the other its plane makes no step") {
+  // Settled as a step up of 18 mm. As the laser looks again, the two rows lie at a share of that; their plane has not
+  // followed yet.
+  const auto steps = [](double share) {
+    const auto stages = std::make_unique<Stages<>>(small_settings());
+    fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : x < 1.4 ? 0.018 : std::nan(""); });
+    stages->settle();
+    for (int j = 0; j < 24; ++j) {
+      const float y = 0.1f * static_cast<float>(j) + 0.05f, z = static_cast<float>(share * 0.018);
+      for (int k = 0; k < 400; ++k) stages->dem.add({k % 2 == 0 ? 1.25f : 1.35f, y, z, 1e-4f});
+    }
+    stages->trace();
+    return std::ranges::count_if(stages->tracer.curbs(), is_step);
+  };
+  CHECK(steps(0.0) == 0);
+  CHECK(steps(0.2) == 0);
+  CHECK(steps(0.5) == 1);  // a cell that mixes both sides is as far off its plane
+  CHECK(steps(1.0) == 1);
+}
+
 //  o
 //  ________
 //          |  .        the ground behind the shadow is cambered, and is known less well at the edge than in its middle

@@ -61,7 +61,7 @@ std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   if (part.ends.second) piece.go_on(Piece::End::second);
   StepHeight<limits> step(piece);
   Curb curb = without_height(piece);
-  curb.kind = piece.planes.kind(piece.line, step.measured());
+  curb.kind = piece.planes.kind(piece.line, step.measured(part));
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb)) {
     if (part.size() == 1) return std::nullopt;  // a single row or column makes no line

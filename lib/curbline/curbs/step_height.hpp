@@ -1,6 +1,7 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
-// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border, and on a
-// robot that drives those up to the first one of the lower side.
+// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border; the way to
+// the first cell of a side that is too narrow to show the ground beside it, and on a robot that drives to that of the
+// lower side.
 #pragma once
 
 #include <algorithm>
@@ -33,10 +34,10 @@ class StepHeight {
     height_m_ = piece.planes.step_m(piece.middle_x_m(), piece.middle_y_m()) - piece.drop_m;
   }
 
-  /// For PlanePair::kind(), to decide whether it is a step.
-  MeasuredStep measured() const;
-  /// Refines the height by everything else, given the part that the piece was made of. Moves the piece's line to the
-  /// edge of a step that casts a shadow. Without a step the height is 0, with a variance.
+  /// For PlanePair::kind(), to decide whether it is a step, given the part that the piece was made of.
+  MeasuredStep measured(const ChainPart& part) const;
+  /// Refines the height by everything else. Moves the piece's line to the edge of a step that casts a shadow. Without a
+  /// step the height is 0, with a variance.
   void refine(const ChainPart& part, bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
@@ -55,7 +56,11 @@ class StepHeight {
   typename Piece::Side lower() const { return piece_.side(!other_is_upper()); }
   typename Piece::Side upper() const { return piece_.side(other_is_upper()); }
   void leave_shadow(const Viewpoint& view);
-  int cell_beside(const Border& border, Label own) const;
+  struct CellBeside {
+    int i, j, slot;
+  };
+  CellBeside cell_beside(const Border& border, Label own) const;
+  float narrow_too_far_m2(const ChainPart& part, bool of_other) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
   GroundAlong ground_along(const ChainPart& part, bool of_other) const;
   void follow_ground(const ChainPart& part);
@@ -78,12 +83,35 @@ class StepHeight {
 };
 
 template <Limits limits>
-MeasuredStep StepHeight<limits>::measured() const {
+MeasuredStep StepHeight<limits>::measured(const ChainPart& part) const {
   const Deviations sides = deviations();
-  const float too_far_m2 = sides.one.too_far_m2(piece_.borders) + sides.other.too_far_m2(piece_.borders);
+  const float too_far_m2 = sides.one.too_far_m2(piece_.borders) + sides.other.too_far_m2(piece_.borders) +
+                           narrow_too_far_m2(part, false) + narrow_too_far_m2(part, true);
   const auto [one, other] = piece_.planes;
   const float sd_m = square_root(piece_.variance_m2(one) + piece_.variance_m2(other) + too_far_m2);
   return {height_m_, sd_m, piece_.half_gap_m, piece_.place_variance_m2, stages_.dem.prior().texture_m2};
+}
+
+/// Deviation::too_far_m2() of the borders beside which a side is too narrow for that, as a scan line that is the first
+/// one there, or cells that a plane lost to its neighbour: by the cell next to each. If that mixes both sides, it is up
+/// to half of the step off its plane; what it is off beyond that, twice, is missing from the step.
+template <Limits limits>
+float StepHeight<limits>::narrow_too_far_m2(const ChainPart& part, bool of_other) const {
+  const auto [plane, label, beside] = piece_.side(of_other);
+  if (piece_.one_sided() || beside.borders == piece_.borders) return 0.0f;
+  const float step_m = magnitude(height_m_), toward = of_other == other_is_upper() ? -1.0f : 1.0f;
+  float sum_m = 0.0f, cells = 0.0f;
+  for (const Border& border : part) {
+    if ((of_other ? border.beside_other : border.beside_one).borders > 0.0f) continue;
+    const auto [i, j, slot] = cell_beside(border, label);
+    if (slot < 0) continue;
+    const float off_m = toward * stages_.dem.above_m(i, j, stages_.dem.cell(slot), plane);
+    sum_m += std::clamp(2.0f * off_m - step_m, 0.0f, step_m);
+    cells += 1.0f;
+  }
+  if (!(cells > 0.0f)) return 0.0f;
+  const float chance_m2 = 4.0f * plane.fit_variance_m2 / cells;
+  return cells / piece_.borders * std::max(0.0f, square(sum_m / cells) - chance_m2);
 }
 
 template <Limits limits>
@@ -166,7 +194,7 @@ Viewpoint StepHeight<limits>::seen_from(const ChainPart& part, Label side) const
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : part) {
-    const int slot = cell_beside(border, side);
+    const int slot = cell_beside(border, side).slot;
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
     sum_x += view.x_m;
@@ -180,20 +208,21 @@ Viewpoint StepHeight<limits>::seen_from(const ChainPart& part, Label side) const
   return mean;
 }
 
-/// The cell of the plane `own` nearest to a border, on its side; -1 if there is none.
+/// The cell that shows the ground of the plane `own`, nearest to a border, on its side; slot -1 if there is none.
 template <Limits limits>
-int StepHeight<limits>::cell_beside(const Border& border, Label own) const {
+auto StepHeight<limits>::cell_beside(const Border& border, Label own) const -> CellBeside {
   const Dem<limits>& dem = stages_.dem;
   const std::size_t d = border.toward(own);
   const int reach = stages_.settings.link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
   int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
   for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
     const int slot = dem.slot(i, j);
-    if (dem.cell(slot).valid() && stages_.field.label(slot) == own) return slot;
+    const bool of_own = dem.cell(slot).valid() && stages_.field.label(slot) == own;
+    if (of_own && stages_.shows_ground(i, j, slot)) return {i, j, slot};
     i += step_i[d];
     j += step_j[d];
   }
-  return -1;
+  return {i, j, -1};
 }
 
 /// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on

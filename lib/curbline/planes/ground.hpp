@@ -3,11 +3,12 @@
 //     of the step, beyond the noise of the planes beside it, or as on both sides of a border between two rows: it is
 //     narrower than a cell and a half, and its plane is a mixture of both sides.
 //   - an obstacle, or the top of one: obstacles.hpp.
-//   - a veil: readings that mix an edge with what lies behind it, on the rays between. Its plane contains the laser
-//     itself, as no visible surface does; or it is no wider than the shadow of a step down between two planes that are
-//     no obstacles, and falls there at least half as far as the rays, or is so narrow that its slope is unknown. What
-//     is visible beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair, with half
-//     of the next one in the cells at both ends, falls by half a step where the rays fall by two.
+//   - a veil: readings that mix an edge with what lies behind it, on the rays between, or a single scan line on bent
+//     ground. Its plane contains the laser itself, as no visible surface does; or it is no wider than the shadow of a
+//     step down between two planes that are no obstacles, and falls there at least half as far as the rays, or is so
+//     narrow that its slope is unknown. What is visible beyond an edge is flatter than the ray that grazes it, and so
+//     wider. The tread of a stair, with half of the next one in the cells at both ends, falls by half a step where the
+//     rays fall by two.
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
@@ -74,11 +75,6 @@ class Ground {
     const float lean_x = plane.slope_x - ground.slope_x, lean_y = plane.slope_y - ground.slope_y;
     return above_m > 0.0f && (above_m > highest_step_m || lean_x * lean_x + lean_y * lean_y > least_ramp * least_ramp);
   }
-  /// Does a plane contain the laser, which is above_m above it? Within five standard deviations, as an edge need not be
-  /// straight.
-  static bool holds_laser(const Plane& plane, const Viewpoint& view, float above_m) {
-    return above_m * above_m <= 25.0f * (plane.variance_m2 + plane.height_variance_m2(view.x_m, view.y_m));
-  }
   using Kinds = std::array<Kind, limits.planes>;
   static Kind kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                       const Obstacles<limits>& obstacles, const Viewpoint& view);
@@ -90,14 +86,16 @@ class Ground {
 };
 
 /// Veils and wakes are only considered for a laser well above the ground: else the points were not seen from the
-/// viewpoint, as in a cloud whose origin is on the ground, and a plane that contains it may be a pavement.
+/// viewpoint, as in a cloud whose origin is on the ground, and a plane that contains it may be a pavement. Where there
+/// is no ground yet, all that has been seen may be single scan lines.
 template <Limits limits>
 auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripTally& tally,
                              const Obstacles<limits>& obstacles, const Viewpoint& view) -> Kind {
   if (tally.face()) return Kind::mixed;
   if (obstacles.is(label)) return Kind::cover;
   const Plane* ground = obstacles.ground();
-  if (ground == nullptr || !plane.alive()) return Kind::ground;
+  if (!plane.alive()) return Kind::ground;
+  if (ground == nullptr) return Obstacles<limits>::seen_edge_on(plane, view) ? Kind::mixed : Kind::ground;
   const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
@@ -107,7 +105,7 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);
   const bool as_rays = above_m < 0.5f * laser_m;
   if (fringe) return as_rays && steep ? Kind::mixed : Kind::cover;
-  if (tally.veil() || (as_rays && holds_laser(plane, view, above_m))) return Kind::mixed;
+  if (tally.veil() || (as_rays && plane.passes_through(view.x_m, view.y_m, view.z_m))) return Kind::mixed;
   return tally.blurred_edge() || (as_rays && steep) ? Kind::doubtful : Kind::ground;
 }
 

@@ -47,7 +47,12 @@ class Obstacles {
   bool hides(int i, int j, Label label) const;
   /// Number of cells of a plane's region.
   float cells(std::size_t label) const { return cells_[label]; }
-  /// The largest plane that is no obstacle, the reference for the others; null if there is none.
+  /// A plane through the laser, other than level ground that the origin of a cloud lies on: no visible surface, but
+  /// readings on the rays between an edge and the ground behind, or a single scan line on bent ground.
+  static bool seen_edge_on(const Plane& plane, const Viewpoint& view) {
+    return plane.steeper_than_ramp() && plane.passes_through(view.x_m, view.y_m, view.z_m);
+  }
+  /// The largest plane that is no obstacle, nor seen edge on, the reference for the others; null if there is none.
   const Plane* ground() const { return ground_; }
 
  private:
@@ -116,7 +121,7 @@ Obstacles<limits>::Obstacles(const Dem<limits>& dem, std::span<const Plane> plan
   }
   add_rings(wide);
   for (std::size_t l = 0; l < planes_.size(); ++l) {
-    if (!planes_[l].alive() || is_[l]) continue;
+    if (!planes_[l].alive() || is_[l] || seen_edge_on(planes_[l], view)) continue;
     if (ground_ == nullptr || planes_[l].cells > ground_->cells) ground_ = &planes_[l];
   }
   if (ground_ != nullptr) add_tops();
