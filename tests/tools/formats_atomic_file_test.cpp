@@ -1,5 +1,7 @@
 #include "formats/atomic_file.hpp"
 
+#include <cstdio>
+
 #include "formats_support.hpp"
 
 using namespace curbline::tools;
@@ -67,6 +69,39 @@ TEST_CASE("atomic file: a symbolic link stays one") {
   file.commit();
   CHECK(fs::is_symlink(dir.path("link")));
   CHECK(read_file(dir.path("real")) == "new");
+}
+
+TEST_CASE("atomic file: a symbolic link to what is not there yet stays one") {
+  const TemporaryDirectory dir;
+  fs::create_symlink("real", dir.path("link"));
+  AtomicFile file(dir.path("link"));
+  file.stream() << "new";
+  file.commit();
+  CHECK(fs::is_symlink(dir.path("link")));
+  CHECK(read_file(dir.path("real")) == "new");
+}
+
+TEST_CASE("atomic file: a descriptor that leads to a file goes on where it is, and what it holds stays") {
+  const TemporaryDirectory dir;
+  std::FILE* const shared = std::fopen(dir.path("out").c_str(), "w");
+  REQUIRE(shared != nullptr);
+  const std::string number = std::to_string(::fileno(shared));
+  const auto say = [&](const char* text) {
+    std::fputs(text, shared);
+    std::fflush(shared);
+  };
+  say("before\n");
+  for (const std::string folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    AtomicFile file(folder + number);
+    file.stream() << "by " + folder + "\n";
+    file.commit();
+  }
+  say("after\n");
+  std::fclose(shared);
+  CHECK(read_file(dir.path("out")) == "before\nby /dev/fd/\nby /proc/self/fd/\nafter\n");
+  CHECK(files_in(dir) == 1);
+  CHECK(error_of([&] { AtomicFile("/dev/fd/" + number); }) ==
+        number + ": cannot be written: Bad file descriptor; expected a file name in a folder to write to");
 }
 
 TEST_CASE("atomic file: a device is written to and not replaced") {

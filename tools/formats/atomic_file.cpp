@@ -8,6 +8,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+
+#include "formats/parse_number.hpp"
 
 namespace curbline::tools {
 namespace fs = std::filesystem;
@@ -17,6 +20,24 @@ namespace {
 std::string temporary_beside(const std::string& target) {
   static std::atomic<unsigned> count{0};
   return target + "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".part";
+}
+
+/// Where a name leads, along symbolic links: also to a file that is not there yet, or to a descriptor of this process.
+struct Target {
+  fs::path path;
+  std::optional<int> descriptor{};
+};
+
+Target target_of(fs::path path) {
+  constexpr int most_links = 40;  // as the kernel's
+  std::error_code none;
+  for (int links = 0; links < most_links; ++links) {
+    if (fs::equivalent(path.parent_path(), "/proc/self/fd", none))
+      return {path, parse_number<int>(path.filename().native())};
+    if (!fs::is_symlink(path, none)) break;
+    path = path.parent_path() / fs::read_symlink(path, none);
+  }
+  return {path};
 }
 
 /// Names of uncommitted files, for the signal handler; null for a free place.
@@ -49,25 +70,39 @@ std::string reason(int error) {
 
 }  // namespace
 
+bool FileBuffer::open_copy(int descriptor) {
+  const int copy = ::dup(descriptor);
+  if (copy < 0) return false;
+  static_cast<stdio_filebuf&>(*this) = stdio_filebuf(copy, std::ios::out | std::ios::binary);
+  if (!is_open()) ::close(copy);
+  return is_open();
+}
+
 FileBuffer::int_type FileBuffer::overflow(int_type c) {
   errno = 0;
-  const int_type done = std::filebuf::overflow(c);
+  const int_type done = stdio_filebuf::overflow(c);
   if (done == traits_type::eof() && error_ == 0) error_ = errno;
   return done;
 }
 
 std::streamsize FileBuffer::xsputn(const char* text, std::streamsize size) {
   errno = 0;
-  const std::streamsize done = std::filebuf::xsputn(text, size);
+  const std::streamsize done = stdio_filebuf::xsputn(text, size);
   if (done != size && error_ == 0) error_ = errno;
   return done;
 }
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+  const auto [target, descriptor] = target_of(path);
+  target_ = target;
+  errno = 0;
+  if (descriptor) {
+    if (!buffer_.open_copy(*descriptor)) throw BadInput(path_ + reason(errno));
+    return;
+  }
   std::error_code none;
-  const fs::file_status status = fs::status(path, none);
+  const fs::file_status status = fs::status(target, none);
   if (fs::is_directory(status)) throw BadInput(path_ + ": cannot be written: it is a directory; expected a file name");
-  if (fs::is_symlink(path, none) && fs::is_regular_file(status)) target_ = fs::canonical(path, none).string();
   if (!fs::exists(status) || fs::is_regular_file(status)) temporary_ = temporary_beside(target_);
   if (!temporary_.empty()) replace(nullptr, temporary_.c_str());
   errno = 0;

@@ -2,7 +2,8 @@
 // replaces at commit(). Without a commit it is removed, and the previous file stays.
 #pragma once
 
-#include <fstream>
+#include <ext/stdio_filebuf.h>
+
 #include <ostream>
 #include <string>
 
@@ -11,8 +12,10 @@
 namespace curbline::tools {
 
 /// Keeps the reason why a file could not be written: a stream only reports that it could not.
-class FileBuffer : public std::filebuf {
+class FileBuffer : public __gnu_cxx::stdio_filebuf<char> {
  public:
+  /// What a descriptor leads to, from where that is. The descriptor stays open. False, with errno, if it cannot be.
+  bool open_copy(int descriptor);
   int error() const { return error_; }  ///< the first errno; 0: none
 
  protected:
@@ -25,8 +28,8 @@ class FileBuffer : public std::filebuf {
 
 class AtomicFile {
  public:
-  /// Throws BadInput if the file cannot be written. A target that is not a file but a device or pipe (/dev/stdout) is
-  /// written to directly.
+  /// Throws BadInput if the file cannot be written. A target that is not a file but a device or pipe is written to
+  /// directly, and so is one of the program's own descriptors (/dev/stdout), whatever that leads to.
   explicit AtomicFile(const std::string& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -45,7 +48,7 @@ class AtomicFile {
  private:
   std::string path_;
   std::string target_;     ///< with symbolic links resolved
-  std::string temporary_;  ///< empty: writes to the target
+  std::string temporary_;  ///< empty: writes to the target, or to a descriptor
   FileBuffer buffer_;
   std::ostream stream_{&buffer_};
 };
