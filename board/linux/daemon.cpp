@@ -56,7 +56,6 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
     : laser_(robot.laser),
       tilt_settings_(robot.tilt),
       scan_line_s_(1.0 / robot.scan_rate_hz),
-      signals_(signal_descriptor()),
       pipeline_(tools::make_live_pipeline(robot)) {
   inbox_.init(robot, longest_wait_s);
   open_scans(robot, options);
@@ -67,6 +66,7 @@ Daemon::Daemon(const tools::Robot& robot, const Options& options)
   radians_watch_.init(longest_sweep_s(robot));
   sight_.init(robot.tilt.fixed ? least_stale_s : longest_sweep_s(robot));
   poses_.open(robot, options.poses, log_.has_value(), std::max(robot.pose.max_extrapolation_s, least_stale_s));
+  signals_ = signal_descriptor();  // until here, a signal ends the process: reading a log may take for ever
   server_.open(options.curbs);
 }
 

@@ -1,4 +1,6 @@
 // What curblined refuses: bad input with one line and exit status 1, wrong usage with status 2.
+#include <cstdlib>
+
 #include "formats/decimals.hpp"
 #include "program.hpp"
 
@@ -49,6 +51,19 @@ TEST_CASE("curblined: what it cannot run with is refused with one line") {
                   "port is \"" + port + "\"; expected a number from 0 to 65535");
   check_refused(curbline({"--robot", fixed, "--scans", "lms200:", "--curbs", curbs}),
                 "lms200:: ", "no device; expected lms200:DEVICE");
+}
+
+TEST_CASE("curblined: a signal ends it while it waits for its logs, too") {
+  const TemporaryDirectory directory;
+  const std::string fixed = directory.write("fixed.toml", "[tilt]\nfixed = true\n"), fifo = directory.path("scans");
+  REQUIRE(std::system(("mkfifo " + fifo).c_str()) == 0);
+  const std::string waits = line_of({"--robot", fixed, "--scans", fifo, "--curbs", "unix:" + directory.path("curbs")});
+  const auto ended_by = [&](const std::string& signal) {
+    return WEXITSTATUS(std::system(("timeout --preserve-status -k 5 -s " + signal + " 0.3 " + waits).c_str()));
+  };
+  CHECK(ended_by("TERM") == 128 + 15);
+  CHECK(ended_by("INT") == 128 + 2);
+  CHECK(names_in(directory.path("")) == Words{"fixed.toml", "scans"});
 }
 
 TEST_CASE("curblined: wrong usage is told") {

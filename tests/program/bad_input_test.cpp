@@ -308,6 +308,14 @@ TEST_CASE("program: a pipe to write is opened when there is something to write")
   CHECK(std::system((replay + " & " + feed + " && timeout 10 grep -q x_m " + out).c_str()) == 0);
 }
 
+TEST_CASE("program: a robot's description that simulate reads from a pipe is kept beside the logs") {
+  const TemporaryDirectory dir;
+  const std::string simulate = line_of(
+      {"simulate", "--scene", "street", "--robot", "/dev/stdin", "--out", dir.path("run"), "--duration", "0.1"});
+  REQUIRE(std::system(("cat " + shipped_robot("lms151") + " | timeout 20 " + simulate + " > /dev/null").c_str()) == 0);
+  CHECK(read_file(dir.path("run/robot.toml")) == read_file(shipped_robot("lms151")));
+}
+
 TEST_CASE("program: nothing is left of what a signal ends, and it ends by that signal") {
   const TemporaryDirectory dir;
   const Recording logs("street", "utm30lx", {"--duration", "2"});

@@ -78,6 +78,24 @@ TEST_CASE("drive log: tilt frames of a second interface, or none at all, are ref
   refused(cut, ": ", "none holds an angle; expected 6 bytes or more and at most 1e+06 rad\n");
 }
 
+TEST_CASE("drive log: frames behind one with a damaged stamp reach the board in time") {
+  const Recording logs("street", "utm30lx", {"--duration", "2"});
+  const std::string can = read_file(logs.path("can.log")), frame = lines_of(can)[50];
+  const std::string damaged = with_line(can, 51, "(1700009999" + frame.substr(frame.find('.')));
+  const auto written = [&](const std::string& log) {
+    Words words = logs.replay("can", logs.directory().write("changed.log", log));
+    words.front() = "write";
+    REQUIRE(drive_log(words + Words{"--out", logs.path("drive")}).status == 0);
+    return read_file(logs.path("drive"));
+  };
+  const std::string sound = written(can), with_damage = written(damaged);
+  std::size_t changed = 0;
+  REQUIRE(sound.size() == with_damage.size());
+  for (std::size_t k = 0; k < sound.size(); ++k) changed += sound[k] != with_damage[k];
+  CHECK(changed > 0);
+  CHECK(changed <= sizeof(std::int64_t));
+}
+
 TEST_CASE("drive log: an empty file name is wrong usage") {
   check_wrong_usage(drive_log({"write", "--robot", "r", "--scans", "s", "--out", "o", "--can", ""}),
                     "--can: empty; expected a file name\n");

@@ -1,4 +1,5 @@
 // replay from simulated scanners on this machine, compared with replay of the log that they play.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -137,6 +138,21 @@ TEST_CASE("program: curbline-scanner says what is wrong with its arguments and i
   CHECK(status_of("scip2 --scene street") == 2);
   CHECK(status_of("scip2 --scans /no/such/log") == 1);
   CHECK(status_of("lms200 --scans " + scans) == 1);  // 1081 beams
+}
+
+TEST_CASE("program: live lines join a CAN log, or poses, that come through a pipe") {
+  const auto check_piped = [](const Recording& logs, const std::string& log, const std::string& file) {
+    const nlohmann::json from_log = replay(logs.replay() + Words{"--json"});
+    const Playing scanner(Protocol::scip2, logs.path("scans.carmen"));
+    Words words = logs.replay("scans", scanner.address()) + Words{"--json"};
+    std::replace(words.begin(), words.end(), logs.path(file), std::string("/dev/stdin"));
+    const std::string out = logs.path("out"), piped = "cat " + logs.path(file) + " | timeout 20 " + line_of(words);
+    INFO(log);
+    CHECK(std::system((piped + " > " + out + " 2> /dev/null").c_str()) == 0);
+    CHECK(nlohmann::json::parse(read_file(out)) == from_log);
+  };
+  check_piped(Recording("street", "utm30lx", {"--duration", "0.5"}), "CAN log", "can.log");
+  check_piped(Recording("city", "fixed_tilt", {"--duration", "0.5"}), "poses", "poses.tum");
 }
 
 TEST_CASE("program: live lines join poses too") {

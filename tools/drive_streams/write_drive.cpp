@@ -3,7 +3,6 @@
 #include <optional>
 #include <span>
 
-#include "curbline/can/tilt_decoder.hpp"
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"
@@ -12,6 +11,7 @@
 #include "formats/laser_log.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
+#include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -42,11 +42,10 @@ void clear_room(std::optional<T>& value) {
 class DriveWriter {
  public:
   explicit DriveWriter(const DriveFiles& files)
-      : robot_(read_robot(files.robot)), scans_(files.scans, robot_.laser), out_(files.out) {
+      : robot_(read_robot(files.robot)), scans_(files.scans, robot_.laser), out_(files.out), tilt_(robot_) {
     if (!files.poses.empty()) robot_.pose.still = false;
     check_logs(robot_, files.can, files.poses);
     if (!robot_.tilt.fixed) can_.emplace(files.can);
-    tilt_decoder_.init(robot_.tilt_signal, robot_.tilt_sync_id);
     if (!robot_.pose.still) poses_.emplace(files.poses);
   }
 
@@ -65,8 +64,8 @@ class DriveWriter {
       }
       put_line(*line);
     }
-    if (can_ && tilt_decoder_.counters().readings == 0)
-      throw BadInput(can_->path() + ": " + without_readings(robot_, tilt_decoder_.counters()));
+    if (can_ && tilt_.counters().readings == 0)
+      throw BadInput(can_->path() + ": " + without_readings(robot_, tilt_.counters()));
     out_.commit();
   }
   std::string remarks() const { return scans_.remarks(); }
@@ -87,13 +86,14 @@ class DriveWriter {
   }
 
   void put_frames(std::int64_t until_ns) {
-    while (can_ && tilt_until_ns_ < until_ns) {
+    if (!can_) return;
+    const auto next = [&] {
       const auto frame = can_->next();
       if (frame) interface_.check(*can_, robot_.tilt_signal, *frame);
-      if (frame) put(RecordKind::can_frame, *frame);
-      if (!frame) tilt_until_ns_ = log_ended;
-      if (const auto reading = frame ? tilt_decoder_.take(*frame) : std::nullopt) tilt_until_ns_ = reading->time_ns;
-    }
+      return frame;
+    };
+    const auto take = [&](const can::Frame& frame, const auto&) { put(RecordKind::can_frame, frame); };
+    if (!tilt_.feed(until_ns, next, take)) tilt_.end();
   }
 
   void put_poses(std::int64_t until_ns) {
@@ -119,8 +119,8 @@ class DriveWriter {
   OneInterface interface_;
   std::optional<TrajectoryReader> poses_;
   AtomicFile out_;
-  can::TiltDecoder tilt_decoder_{};
-  std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest written
+  TiltFeed tilt_;
+  std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest written
 };
 
 }  // namespace

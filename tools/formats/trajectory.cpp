@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "formats/decimals.hpp"
 #include "formats/fields.hpp"
@@ -58,6 +59,15 @@ Pose to_pose(const TrajectoryPose& pose) {
 }
 
 std::optional<TrajectoryPose> TrajectoryReader::next() {
+  return first_ ? std::exchange(first_, std::nullopt) : read();
+}
+
+std::optional<std::int64_t> TrajectoryReader::first_time_ns() {
+  first_ = read();
+  return first_ ? std::optional(first_->time_ns) : std::nullopt;
+}
+
+std::optional<TrajectoryPose> TrajectoryReader::read() {
   while (const auto text = source_.next()) {
     Fields fields(source_, *text);
     if (fields.at_end() || text->starts_with('#')) continue;

@@ -31,12 +31,17 @@ class TrajectoryReader {
   /// normalised) or that tilts the robot by more than 90 degrees, for a time before the last one, and for a file
   /// without a pose.
   std::optional<TrajectoryPose> next();
+  /// Time of the first pose, before any is taken. Throws as next() does.
+  std::optional<std::int64_t> first_time_ns();
 
   const std::string& path() const { return source_.path(); }
 
  private:
+  std::optional<TrajectoryPose> read();
+
   LineReader source_;
   std::optional<std::int64_t> last_time_ns_;
+  std::optional<TrajectoryPose> first_;  ///< read and not taken yet
 };
 
 /// Parses a pose from a line of text, for live input: nothing if it is malformed, without a reason and without heap.

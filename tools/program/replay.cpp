@@ -16,18 +16,6 @@ namespace {
 
 constexpr std::int64_t log_ended = std::numeric_limits<std::int64_t>::max();
 
-/// A time in the logs that belong to live scan lines; nothing if there are none, or CAN is live too.
-std::optional<std::int64_t> log_time(const Robot& robot, const ReplayLogs& logs) {
-  if (live_interface(logs.can)) return std::nullopt;
-  if (!robot.tilt.fixed) {
-    const auto frame = CanLogReader(logs.can).next();
-    return frame ? std::optional(frame->time_ns) : std::nullopt;
-  }
-  if (robot.pose.still) return std::nullopt;
-  const auto pose = TrajectoryReader(logs.poses).next();
-  return pose ? std::optional(pose->time_ns) : std::nullopt;
-}
-
 bool is_empty(const Map& map) {
   return std::all_of(map.cells.begin(), map.cells.end(), [](const MapCell& cell) { return cell.points == 0; });
 }
@@ -37,7 +25,7 @@ bool is_empty(const Map& map) {
 Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
 
 Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
-    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), left_behind_(pipeline_->grid()) {
+    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), tilt_(robot), left_behind_(pipeline_->grid()) {
   check_logs(robot, logs.can, logs.poses);
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
@@ -46,8 +34,15 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostP
                : log_frames(logs.can, robot.tilt_signal);
   }
   if (!robot.pose.still) poses_.emplace(logs.poses);
-  scans_ = open_scan_source(logs.scans, robot.laser, is_scanner(logs.scans) ? log_time(robot, logs) : std::nullopt);
-  tilt_decoder_.init(robot.tilt_signal, robot.tilt_sync_id);
+  std::optional<std::int64_t> log_time_ns;
+  if (is_scanner(logs.scans)) {
+    if (can_) {
+      log_time_ns = can_->first_time_ns();
+    } else if (poses_) {
+      log_time_ns = poses_->first_time_ns();
+    }
+  }
+  scans_ = open_scan_source(logs.scans, robot.laser, log_time_ns);
 }
 
 bool Replay::step(std::vector<Point>* points) {
@@ -76,59 +71,30 @@ bool Replay::step(std::vector<Point>* points) {
   return true;
 }
 
-/// Feeds frames up to the first reading at or after a time.
 void Replay::feed_tilt(std::int64_t until_ns) {
-  while (can_ && tilt_until_ns_ < until_ns) {
-    const auto reading = next_tilt();
-    if (!reading) {
-      if (can_->ended()) {
-        tilt_until_ns_ = log_ended;
-      } else if (beyond_extrapolation(line_.time_ns)) {
-        can_->fail_silent();
-      }
-      return;
-    }
-    pipeline_->add_tilt(*reading);
-    if (!is_damaged(reading->time_ns, until_ns)) tilt_until_ns_ = reading->time_ns;
+  if (!can_) return;
+  const auto next = [&] { return can_->next(line_.time_ns); };
+  const auto take = [&](const can::Frame&, const std::optional<TiltReading>& reading) {
+    if (reading) take_tilt(*reading);
+  };
+  if (tilt_.feed(until_ns, next, take)) return;
+  if (can_->ended()) {
+    tilt_.end();
+  } else if (beyond_extrapolation(line_.time_ns)) {
+    can_->fail_silent();
   }
 }
 
-/// From the log or bus; nothing at the end, or while the bus is silent.
-std::optional<TiltReading> Replay::read_tilt() {
-  while (const auto frame = can_->next(line_.time_ns)) {
-    if (const auto reading = tilt_decoder_.take(*frame)) {
-      if (++tilt_readings_ == 1) first_tilt_ = *reading;
-      turns_away_ += magnitude(reading->angle_rad - first_tilt_.angle_rad) > 2.0f * std::numbers::pi_v<float>;
-      return reading;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<TiltReading> Replay::next_tilt() {
-  if (tilt_ahead_.empty()) return read_tilt();
-  const TiltReading reading = tilt_ahead_.front();
-  tilt_ahead_.pop_front();
-  return reading;
-}
-
-/// Whether a time is too far ahead of the one waited for to be of use, and an earlier one follows: it would hold back
-/// all others. After a real gap, no earlier one follows.
-bool Replay::is_damaged(std::int64_t time_ns, std::int64_t until_ns) {
-  if (time_ns <= until_ns + static_cast<std::int64_t>(robot_.tilt.max_gap_s * 1e9f)) return false;
-  while (tilt_ahead_.size() <= RisingTimes::most_refused) {
-    const auto reading = read_tilt();
-    if (!reading) break;
-    tilt_ahead_.push_back(*reading);
-  }
-  return std::any_of(tilt_ahead_.begin(), tilt_ahead_.end(),
-                     [&](const TiltReading& reading) { return reading.time_ns < time_ns; });
+void Replay::take_tilt(const TiltReading& reading) {
+  if (++tilt_readings_ == 1) first_tilt_ = reading;
+  turns_away_ += magnitude(reading.angle_rad - first_tilt_.angle_rad) > 2.0f * std::numbers::pi_v<float>;
+  pipeline_->add_tilt(reading);
 }
 
 /// Whether the newest reading is too old for an extrapolation to that time.
 bool Replay::beyond_extrapolation(std::int64_t time_ns) const {
   const float allowed_s = robot_.tilt.max_extrapolation_s + robot_.tilt.latency_s;
-  return tilt_readings_ == 0 || time_ns > tilt_until_ns_ + static_cast<std::int64_t>(allowed_s * 1e9f);
+  return tilt_readings_ == 0 || time_ns > tilt_.fed_until_ns() + static_cast<std::int64_t>(allowed_s * 1e9f);
 }
 
 void Replay::feed_poses(std::int64_t until_ns) {
@@ -190,7 +156,7 @@ std::string Replay::remarks() const {
 
 void Replay::check_complete() const {
   if (can_ && tilt_readings_ == 0)
-    throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_decoder_.counters()));
+    throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_.counters()));
   if (lines_taken_ > 0) return;
   if (const long back = pipeline_->counters().tilt_dropped; 2 * back > tilt_readings_) {
     throw BadInput(logs_.can + ": the times do not rise: " + std::to_string(back) + " of " +

@@ -3,19 +3,18 @@
 // ended.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "curbline/can/tilt_decoder.hpp"
 #include "formats/trajectory.hpp"
 #include "map/left_behind.hpp"
 #include "program/scan_source.hpp"
 #include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
 #include "streams/host_pipeline.hpp"
+#include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
 
@@ -50,16 +49,14 @@ class Replay {
   Status status() const { return status_; }            ///< the pipeline's status for it
   double take_s() const { return take_s_; }            ///< time in the pipeline, by the clock
   long tilt_readings() const { return tilt_readings_; }
-  can::TiltDecoderCounters can_counters() const { return tilt_decoder_.counters(); }
+  can::TiltDecoderCounters can_counters() const { return tilt_.counters(); }
 
   /// Curbs of the whole path: those in the window now, and the latest state of the parts that it has left.
   std::vector<MapCurb> all_curbs() const;
 
  private:
   void feed_tilt(std::int64_t until_ns);
-  std::optional<TiltReading> read_tilt();
-  std::optional<TiltReading> next_tilt();
-  bool is_damaged(std::int64_t time_ns, std::int64_t until_ns);
+  void take_tilt(const TiltReading& reading);
   bool beyond_extrapolation(std::int64_t time_ns) const;
   void feed_poses(std::int64_t until_ns);
   void check_poses();
@@ -69,14 +66,13 @@ class Replay {
   std::unique_ptr<HostPipeline> pipeline_;
   std::unique_ptr<ScanSource> scans_;
   std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt
-  can::TiltDecoder tilt_decoder_;
-  std::deque<TiltReading> tilt_ahead_;  ///< read and not fed yet
+  TiltFeed tilt_;
   std::optional<TrajectoryReader> poses_;
   CarmenLine line_;
   RobotMarker robot_marker_;
   Status status_ = Status::ok, refused_ = Status::ok;  ///< of the newest line; of the last line that was refused
   double take_s_ = 0;
-  std::int64_t tilt_until_ns_ = INT64_MIN, poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
+  std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
   TiltReading first_tilt_{};
   long turns_away_ = 0;  ///< readings more than a turn from the first

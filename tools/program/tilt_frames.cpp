@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <span>
+#include <utility>
 
 #include "formats/bad_input.hpp"
 #include "socketcan/socketcan.hpp"
@@ -17,10 +18,11 @@ class LogFrames final : public TiltFrames {
  public:
   LogFrames(const std::string& path, const can::Signal& signal) : log_(path), signal_(signal) {}
   std::optional<can::Frame> next(std::int64_t) override {
-    auto frame = log_.next();
-    ended_ = !frame;
-    if (frame) interface_.check(log_, signal_, *frame);
-    return frame;
+    return first_ ? std::exchange(first_, std::nullopt) : read();
+  }
+  std::optional<std::int64_t> first_time_ns() override {
+    first_ = read();
+    return first_ ? std::optional(first_->time_ns) : std::nullopt;
   }
   bool ended() const override { return ended_; }
   void fail_silent() const override { throw BadInput(log_.path() + ": no more frames"); }
@@ -30,9 +32,17 @@ class LogFrames final : public TiltFrames {
   }
 
  private:
+  std::optional<can::Frame> read() {
+    auto frame = log_.next();
+    ended_ = !frame;
+    if (frame) interface_.check(log_, signal_, *frame);
+    return frame;
+  }
+
   CanLogReader log_;
   can::Signal signal_;
   OneInterface interface_;
+  std::optional<can::Frame> first_;  ///< read and not taken yet
   bool ended_ = false;
 };
 

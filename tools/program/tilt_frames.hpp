@@ -9,6 +9,7 @@
 // A frame that is not in the log gets the time by rule 2, with the constant of the last frame that is in the log.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,9 @@ class TiltFrames {
   /// The next frame, in log time; nothing at the end, or while a bus is silent. `line_ns` is the time of the scan line
   /// that waits for it.
   virtual std::optional<can::Frame> next(std::int64_t line_ns) = 0;
+
+  /// Time of the first frame of a log, before any is taken; nothing for a live bus.
+  virtual std::optional<std::int64_t> first_time_ns() { return std::nullopt; }
 
   /// Whether there will be no more frames.
   virtual bool ended() const = 0;

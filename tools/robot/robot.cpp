@@ -99,11 +99,11 @@ void read_simulated(TomlTable table, SimulatedErrors& errors) {
 
 }  // namespace
 
-Robot read_robot(const std::string& path) {
-  const toml::table parsed = parse_toml(read_toml_text(path, "a robot file"), path);
-  TomlTable file(parsed, "", path);
+Robot parse_robot(const std::string& text, const std::string& name) {
+  const toml::table parsed = parse_toml(text, name);
+  TomlTable file(parsed, "", name);
   Robot robot;
-  robot.file = path;
+  robot.file = name;
   file.read("name", robot.name);
   read_laser(file.table("laser"), robot);
   read_tilt(file.table("tilt"), robot);
@@ -115,8 +115,16 @@ Robot read_robot(const std::string& path) {
   file.done();
   constexpr int most = std::numeric_limits<int>::max();  // no limits: the host makes its pipeline as large as necessary
   if (const char* bad = bad_setting(pipeline_settings(robot), {.rows = most, .cols = most, .beams = most}))
-    throw BadInput(path + ": " + bad + " is out of range; expected what lib/curbline/settings.hpp says of it");
+    throw BadInput(name + ": " + bad + " is out of range; expected what lib/curbline/settings.hpp says of it");
   return robot;
+}
+
+std::string read_robot_text(const std::string& path) {
+  return read_toml_text(path, "a robot file");
+}
+
+Robot read_robot(const std::string& path) {
+  return parse_robot(read_robot_text(path), path);
 }
 
 void check_logs(const Robot& robot, const std::string& can, const std::string& poses) {

@@ -60,6 +60,9 @@ struct Robot {
 /// Reads a TOML file. Throws BadInput naming file, line and key: unknown key, wrong type, value out of range. Keys have
 /// the names of the fields, units included; all have a default. tools/robots/README.md lists them.
 Robot read_robot(const std::string& path);
+/// Its two halves. `file` is the text's name in messages.
+std::string read_robot_text(const std::string& path);
+Robot parse_robot(const std::string& text, const std::string& file);
 
 /// Throws BadInput if the robot needs a log whose name is empty: `can` of the tilt, or `poses`.
 void check_logs(const Robot& robot, const std::string& can, const std::string& poses);

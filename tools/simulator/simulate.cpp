@@ -5,7 +5,6 @@
 #include "formats/carmen.hpp"
 #include "formats/file_exists.hpp"
 #include "formats/regions.hpp"
-#include "formats/toml_table.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 #include "simulator/simulation.hpp"
@@ -105,10 +104,10 @@ class Recording {
 
 SimulationSummary simulate(const Scene& scene, const std::string& robot_file, const std::string& out_dir,
                            const SimulationOptions& options) {
-  const Robot robot = read_robot(robot_file);
+  const std::string robot_text = read_robot_text(robot_file);  // once: it may be a pipe
+  const Robot robot = parse_robot(robot_text, robot_file);
   Simulation simulation(scene, robot, options.seed, options.duration_s);
   const Truth truth = make_truth(in_map_frame(scene), static_cast<double>(simulated_start_ns) * 1e-9);
-  const std::string robot_text = read_toml_text(robot_file, "a robot file");
 
   Recording recording(out_dir, robot, gives_poses(scene, robot));
   recording.summary.duration_s = simulation.duration_s();
