@@ -133,6 +133,41 @@ class Scripts(unittest.TestCase):
                 error = self.stopped("long-drive", os.path.join(folder, "long-drive"), program=program)
                 self.assertIn("it rains; expected room for it: exit status 1 of curbline replay ", error)
 
+    def test_clouds_that_cannot_be_read_or_tell_nothing(self):
+        if not os.path.isdir(DATA):
+            return print(f"SKIPPED: no scorer beside the data set at {DATA}")
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(DATA, "scan-08.gt")) as file:
+                regions = file.read()
+            for cloud, truth, status, told in [("0 0 0\nzero 0 0\n", regions, 1, "turned: .*a.xyz: .*; expected what the scorer reads\n"),
+                                               ("0 0 0\n", regions, 2, "turned: --data .*: no window .*; expected clouds with some\n")]:
+                for name, text in [("a.xyz", cloud), ("a.gt", truth)]:
+                    with open(os.path.join(folder, name), "w") as file:
+                        file.write(text)
+                words = [sys.executable, os.path.join(TOOLS, "turned"), "0", "--data", folder, "--out", os.path.join(folder, "out")]
+                done = subprocess.run(words, env={**os.environ, "CURBLINE": sys.argv[1]}, capture_output=True, text=True, timeout=60)
+                self.assertEqual(done.returncode, status)
+                self.assertRegex(done.stderr, f"^{told}$")
+
+    def test_a_long_drive_leaves_what_is_not_its_own(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ["first", "last", "logs"]:
+                os.mkdir(os.path.join(folder, name))
+                with open(os.path.join(folder, name, "curbs.csv"), "w") as file:
+                    file.write("mine\n")
+            failing = program_in(folder, "echo it rains >&2; exit 1\n")
+            words = [sys.executable, os.path.join(TOOLS, "long-drive"), "200", "--out", folder]
+            # The shortest drive that has a beginning and an end, with the laser that has the fewest beams.
+            for program, more, status in [(sys.argv[1], ["--laser", "lms200"], 0), (failing, [], 1), (sys.argv[1], ["--keep"], 2)]:
+                done = subprocess.run([*words, *more], env={**os.environ, "CURBLINE": program}, capture_output=True, text=True, timeout=200)
+                self.assertEqual(done.returncode, status, done.stderr)
+                if status == 0:
+                    self.assertRegex(done.stdout, "lines dropped +0 +0 +0\nstorage full +0 +0 +0\n")
+                for name in ["first", "last", "logs"]:
+                    self.assertEqual(os.listdir(os.path.join(folder, name)), ["curbs.csv"])
+                self.assertEqual(glob.glob(os.path.join(folder, "logs-*")), [])
+            self.assertRegex(done.stderr, "^long-drive: .*/logs: there already; expected nothing there, for the logs to be kept\n$")
+
     def test_turned_clouds_are_scored_in_all_their_windows(self):
         if not os.path.isdir(DATA):
             return print(f"SKIPPED: no data set at {DATA}")

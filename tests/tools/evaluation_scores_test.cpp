@@ -1,6 +1,7 @@
 // Scores of labels, planes and curbs against the truth of a scene.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/scores.hpp"
 #include "formats_support.hpp"
@@ -53,6 +54,41 @@ const Seen everything = seen_in(cells_of(truth));
 
 CurbScores scores_of(std::vector<MapCurb> curbs, const Truth& of = truth) {
   return score_curbs({{}, std::move(curbs), Point2{0, 0}}, of, everything);
+}
+
+TEST_CASE("scores: in JSON each has its own name") {
+  CurbScores scores;
+  for (std::size_t k = 0; k < scores.at.size(); ++k) {
+    const double each = static_cast<double>(k);
+    scores.at[k] = {0.05 + each, 0.10 + each, 0.15 + each, 0.20 + each};
+  }
+  scores.band = {BandRates{0.02, 0.04, 0.5, 0.6, 7, 8}, BandRates{0.04, 0.3, 0.7, 0.8, 9, 10}};
+  scores.wrong_way = 0.01;
+  scores.position_m = {0.011, 0.012};
+  scores.height_m = {0.013, 0.014};
+  scores.calibration = {21, 1.1, 0.71, 0.91};
+  scores.position_calibration = {22, 1.2, 0.72, 0.92};
+  const nlohmann::json bands = nlohmann::json::parse(R"([
+    {"from_m": 0.02, "to_m": 0.04, "precision": 0.5, "recall": 0.6, "found_samples": 7, "true_samples": 8},
+    {"from_m": 0.04, "to_m": 0.3, "precision": 0.7, "recall": 0.8, "found_samples": 9, "true_samples": 10}])");
+  const nlohmann::json json = to_json(scores);
+  CHECK(json.at("step_bands") == bands);
+  REQUIRE(json.at("steps").size() == 4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const StepRates& r = scores.at[k];
+    const nlohmann::json rates{
+        {"tolerance_m", r.tolerance_m}, {"precision", r.precision}, {"recall", r.recall}, {"f1", r.f1}};
+    CHECK(json.at("steps")[k] == rates);
+  }
+  CHECK(json.at("wrong_way") == 0.01);
+  CHECK(json.at("position_error_median_m") == 0.011);
+  CHECK(json.at("position_error_95_m") == 0.012);
+  CHECK(json.at("height_error_median_m") == 0.013);
+  CHECK(json.at("height_error_95_m") == 0.014);
+  const nlohmann::json heights{{"pieces", 21}, {"mean_square", 1.1}, {"within_1_sd", 0.71}, {"within_2_sd", 0.91}};
+  CHECK(json.at("calibration") == heights);
+  const nlohmann::json places{{"pieces", 22}, {"mean_square", 1.2}, {"within_1_sd", 0.72}, {"within_2_sd", 0.92}};
+  CHECK(json.at("position_calibration") == places);
 }
 
 }  // namespace

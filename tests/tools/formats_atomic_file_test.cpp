@@ -121,7 +121,7 @@ TEST_CASE("atomic file: what cannot be written is refused by name") {
 
 TEST_CASE("atomic file: a full disk is an error at commit") {
   if (!fs::exists("/dev/full")) {
-    WARN("skipped: no /dev/full here");
+    WARN("SKIPPED: no /dev/full here");
     return;
   }
   AtomicFile file("/dev/full");

@@ -400,7 +400,7 @@ TEST_CASE("robot: damaged descriptions are read or refused, and nothing worse") 
 TEST_CASE("robot: clausius.toml turns the raw stream into the published cloud, point by point") {
   const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/";
   if (!std::filesystem::exists(data + "scan-03.xyz")) {
-    WARN("skipped: no data set at ../shared/data/clausius");
+    WARN("SKIPPED: no data set at ../shared/data/clausius");
     return;
   }
   const Robot robot = read_robot(robots + "clausius.toml");

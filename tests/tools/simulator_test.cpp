@@ -442,6 +442,20 @@ TEST_CASE("simulate: what was found in an earlier recording does not stay beside
   CHECK_FALSE(fs::exists(out.path / "curbs.csv"));
 }
 
+TEST_CASE("simulate: a directory in the place of a file is refused, and nothing of the earlier recording replaced") {
+  const TemporaryPath out("directory");
+  simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {1, 0.1});
+  const std::string scans = bytes_of(out.path / "scans.carmen");
+  fs::create_directories(out.path / "labels.csv" / "mine");
+  try {
+    simulate(find_scene("street"), robots + "utm30lx.toml", out.path.string(), {2, 0.1});
+    FAIL("a directory was taken for a simulation's file");
+  } catch (const BadInput& error) {
+    CHECK(std::string(error.what()).starts_with((out.path / "labels.csv").string() + ": a directory; expected "));
+  }
+  CHECK(bytes_of(out.path / "scans.carmen") == scans);
+}
+
 TEST_CASE("simulate: a file that no simulation left is neither replaced nor removed") {
   for (const char* file :
        {"robot.toml", "scene.toml", "scans.carmen", "can.log", "poses.tum", "regions.gt", "labels.csv", "curbs.csv"}) {

@@ -9,6 +9,7 @@
 #include "evaluation/labels.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/cloud.hpp"
+#include "formats/decimals.hpp"
 #include "formats/file_exists.hpp"
 #include "formats/regions.hpp"
 #include "formats/shipped.hpp"
@@ -69,12 +70,19 @@ struct MeanSd {
 };
 
 MeanSd mean_sd(const std::vector<double>& values) {
-  if (values.empty()) return {};
+  if (values.empty()) return {std::nan(""), std::nan("")};
   MeanSd out;
   for (const double v : values) out.mean += v / static_cast<double>(values.size());
   for (const double v : values) out.sd += (v - out.mean) * (v - out.mean) / static_cast<double>(values.size());
   out.sd = std::sqrt(out.sd);
   return out;
+}
+
+std::string shown(const MeanSd& v) {
+  return std::isnan(v.mean) ? "-" : decimals(v.mean, 3) + " +- " + decimals(v.sd, 3);
+}
+std::string shown(double metres) {
+  return std::isnan(metres) ? "-" : decimals(metres, 4);
 }
 
 /// Over all clouds, or over those from one place.
@@ -182,15 +190,14 @@ nlohmann::json evaluate_paper(const std::string& data, bool print) {
   out["worst_pair_m"] = {{"curbline, streams", rmse.worst_pair}};
   if (print) {
     std::printf("\n%-32s %-16s %-16s %s\n", "", "curbline", "crf-em", "paper");
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f  0.96 +- 0.03 (33 clouds)\n", "V, scan-03 to scan-12", v.mean, v.sd,
-                v_reference.mean, v_reference.sd);
-    std::printf("%-32s %.3f +- %.3f  %.3f +- %.3f\n", "V, all clouds here", v_all.mean, v_all.sd, v_all_reference.mean,
-                v_all_reference.sd);
-    std::printf("%-32s %-16.4f %-16.4f 0.016\n", "RMSE of prediction, clouds, m", rmse.curbline, rmse.reference);
-    if (!std::isnan(rmse.streamed)) {
-      std::printf("%-32s %-16.4f\n", "RMSE of prediction, streams, m", rmse.streamed);
-      std::printf("%-32s %-16.4f\n", "sweep against sweep, worst, m", rmse.worst_pair);
-    }
+    const auto row = [](const char* name, auto curbline, auto reference, const char* paper) {
+      std::printf("%-32s %-16s %-16s %s\n", name, shown(curbline).c_str(), shown(reference).c_str(), paper);
+    };
+    row("V, scan-03 to scan-12", v, v_reference, "0.96 +- 0.03 (33 clouds)");
+    row("V, all clouds here", v_all, v_all_reference, "");
+    row("RMSE of prediction, clouds, m", rmse.curbline, rmse.reference, "0.016");
+    row("RMSE of prediction, streams, m", rmse.streamed, std::nan(""), "");
+    row("sweep against sweep, worst, m", rmse.worst_pair, std::nan(""), "");
   }
   return out;
 }

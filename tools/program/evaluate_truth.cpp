@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "command_line/outputs.hpp"
 #include "evaluation/curbs.hpp"
 #include "formats/bad_input.hpp"
 #include "formats/csv.hpp"
@@ -25,6 +27,7 @@ struct Evaluation {
   Truth truth;
   std::optional<RecordedRun> run;  ///< from the logs, if there are logs
   Found found;
+  bool of_run = true;  ///< `found` is what the pipeline makes of the logs, or what --method does
   Seen seen;
   std::optional<Found> reference;  ///< the results of crf-em on the same sweep
 };
@@ -34,13 +37,26 @@ Found found_in(const Map& map) {
   return {{labelled_cells(map)}, map.curbs, Point2{0, 0}};
 }
 
+/// Whether two lists are the same curbs, to the digits of a CSV.
+bool same_curbs(const std::vector<MapCurb>& a, const std::vector<MapCurb>& b) {
+  constexpr double digits = 1e-6;
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const MapCurb& x, const MapCurb& y) {
+    const auto near = [](double p, double q) { return std::abs(p - q) <= digits; };
+    return near(x.x0_m, y.x0_m) && near(x.y0_m, y.y0_m) && near(x.x1_m, y.x1_m) && near(x.y1_m, y.y1_m) &&
+           near(x.height_m, y.height_m);
+  });
+}
+
 /// Takes the results that replay left in DIR: the labels of the last window and the curbs of the whole path. Its window
-/// may differ from the robot's, so for a robot that stood the labels define what was seen.
+/// may differ from the robot's, so for a robot that stood the labels define what was seen. Results of another method,
+/// window or stretch were not found when the pipeline found its own.
 void take_results(const std::string& dir, Evaluation& e) {
   if (e.found.windows.empty()) e.found.windows.emplace_back();
   e.found.labels_file = dir + "/labels.csv";
   e.found.windows.back() = read_labels(e.found.labels_file);
   e.found.curbs = read_curbs(dir + "/curbs.csv");
+  e.of_run = e.run && same_curbs(e.found.curbs, e.run->found.curbs);
+  if (e.run && !e.of_run) e.run->detections.clear();
   if (!e.run || !e.run->drove) e.seen = Seen{};
   for (const LabelledCell& cell : e.found.windows.back()) e.seen.add(cell.x_m, cell.y_m);
 }
@@ -173,6 +189,11 @@ Rates all_rates(const Evaluation& e) {
 
 void draw(const Evaluation& e, const EvaluateOptions& options) {
   if (!e.run) throw BadInput(options.dir + ": no logs to draw; expected scans.carmen and robot.toml");
+  if (!e.of_run) {
+    throw BadInput(options.dir +
+                   "/curbs.csv: not what replay gives of the logs beside it; expected that, or --method, " +
+                   "for a picture of both");
+  }
   PictureExtras extras{.title = options.dir, .robot = e.run->robot};
   for (const TruthCurb& c : e.truth.curbs) {
     extras.truth.push_back({c.from.x, c.from.y, c.to.x, c.to.y, c.height_m, 0, 1, c.kind});
@@ -186,6 +207,7 @@ void draw(const Evaluation& e, const EvaluateOptions& options) {
 
 nlohmann::json evaluate_truth(const EvaluateOptions& options, bool print) {
   if (!options.picture.empty()) check_picture_name(options.picture);
+  check_writable({{"--picture", options.picture}});
   const Evaluation e = evaluate_recording(options);
   if (e.run && !e.run->remarks.empty()) std::cerr << e.run->remarks << '\n';
   if (!options.picture.empty()) draw(e, options);  // before anything is printed, because it may be refused

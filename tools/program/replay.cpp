@@ -155,8 +155,7 @@ std::string Replay::remarks() const {
 }
 
 void Replay::check_complete() const {
-  if (can_ && tilt_readings_ == 0)
-    throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_.counters()));
+  if (can_ && tilt_readings_ == 0) throw BadInput(logs_.can + ": " + without_readings(robot_, tilt_.counters()));
   if (lines_taken_ > 0) return;
   if (const long back = pipeline_->counters().tilt_dropped; 2 * back > tilt_readings_) {
     throw BadInput(logs_.can + ": the times do not rise: " + std::to_string(back) + " of " +

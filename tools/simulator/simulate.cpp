@@ -69,7 +69,8 @@ class Recording {
   void commit() {
     for (AtomicFile& file : files_) file.flush();
     for (AtomicFile& file : files_) file.commit();
-    for (const char* name : left_out_) std::filesystem::remove(dir_ + "/" + name);
+    std::error_code none;
+    for (const char* name : left_out_) std::filesystem::remove(dir_ + "/" + name, none);
   }
 
   SimulationSummary summary;
@@ -86,6 +87,9 @@ class Recording {
   }
 
   void check_own(const char* name) const {
+    std::error_code none;
+    if (std::filesystem::is_directory(dir_ + "/" + name, none))
+      throw BadInput(dir_ + "/" + name + ": a directory; expected a simulation's file there, or none");
     if (!after_another_ && file_exists(dir_ + "/" + name))
       throw BadInput(dir_ + "/" + name + ": no file of a simulation, for no truth.json is beside it; expected a " +
                      "directory without it");
