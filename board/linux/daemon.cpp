@@ -314,7 +314,7 @@ Report Daemon::make_report() {
   }
   s.poses = poses_.report();
   s.sight = &sight_.watch();
-  if (has_bus_) s.bus = &bus_;
+  if (has_bus_) s.bus = {bus_.link(), bus_.bus(), bus_.counters()};
   if (scanner_) {
     scanner_state_ = scanner_->state();
     s.scanner = &scanner_state_;

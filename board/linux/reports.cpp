@@ -57,9 +57,9 @@ void put_poses(JsonLine& json, const Report& s) {
   json.close('}');
 }
 
-void put_bus(JsonLine& json, const socketcan::SocketCan& bus) {
-  const socketcan::Counters& c = bus.counters();
-  json.key("can").open('{').key("link").text(word_of(bus.link())).key("bus").text(word_of(bus.bus()));
+void put_bus(JsonLine& json, const BusReport& bus) {
+  const socketcan::Counters& c = bus.counters;
+  json.key("can").open('{').key("link").text(word_of(bus.link)).key("bus").text(word_of(bus.state));
   put(json, "frames", c.frames);
   put(json, "frames_lost", c.frames_lost);
   put(json, "error_messages", c.error_messages);
@@ -152,8 +152,8 @@ void put_curb(JsonLine& json, const Curb& c) {
 }  // namespace
 
 std::string_view state_of(const Report& s) {
-  if (s.bus != nullptr && s.bus->link() != socketcan::LinkState::up) return "can_down";
-  if (s.bus != nullptr && s.bus->bus() == socketcan::BusState::off) return "bus_off";
+  if (s.bus && s.bus->link != socketcan::LinkState::up) return "can_down";
+  if (s.bus && s.bus->state == socketcan::BusState::off) return "bus_off";
   if (s.tilt != nullptr && s.tilt->state() != SourceState::ok) {
     return s.tilt->state() == SourceState::stale ? "tilt_stale" : "tilt_missing";
   }
@@ -173,7 +173,7 @@ std::string_view status_line(const Report& s, std::span<char> buffer) {
   json.key("uptime_s").real(s.uptime_s);
   if (s.tilt != nullptr) put_tilt(json, s);
   if (s.poses.watch != nullptr) put_poses(json, s);
-  if (s.bus != nullptr) put_bus(json, *s.bus);
+  if (s.bus) put_bus(json, *s.bus);
   put_lines(json, s);
   if (s.sight != nullptr) put_sight(json, *s.sight);
   put_pipeline(json, s);

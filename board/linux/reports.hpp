@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -25,6 +26,13 @@ struct PoseReport {
   std::uint64_t taken = 0, damaged = 0;
 };
 
+/// For a robot on a CAN bus.
+struct BusReport {
+  socketcan::LinkState link = socketcan::LinkState::closed;
+  socketcan::BusState state = socketcan::BusState::active;
+  socketcan::Counters counters{};
+};
+
 /// The contents of a status line. nullptr: the robot does not have this part.
 struct Report {
   std::int64_t time_ns = 0;
@@ -37,7 +45,7 @@ struct Report {
   bool angles_in_doubt = false;     ///< they are not radians: radians_watch.hpp
   std::uint64_t angles_beyond = 0;  ///< more than a turn from where a sweep began, while that was so
   PoseReport poses{};
-  const socketcan::SocketCan* bus = nullptr;
+  std::optional<BusReport> bus{};
   const ScannerState* scanner = nullptr;
   const SourceWatch* sight = nullptr;  ///< of the window, by the laser
   LineQueueCounters lines{};

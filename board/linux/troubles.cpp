@@ -38,7 +38,7 @@ void tell_event(SourceEvent event, const Told& told, std::string_view wanted) {
 }  // namespace
 
 void Troubles::tell(const Report& status, const SourceEvents& events, std::int64_t now_ns) {
-  if (status.bus != nullptr) tell_link(*status.bus);
+  if (status.bus) tell_link(status.bus->link);
   tell_event(events.tilt, servo, status.wanted_tilt);
   tell_event(events.nod, nod, "");
   tell_event(events.poses, localisation, status.poses.wanted);
@@ -47,9 +47,9 @@ void Troubles::tell(const Report& status, const SourceEvents& events, std::int64
   tell_counters(status, now_ns);
 }
 
-void Troubles::tell_link(const socketcan::SocketCan& bus) {
-  if (bus.link() == link_) return;
-  link_ = bus.link();
+void Troubles::tell_link(socketcan::LinkState link) {
+  if (link == link_) return;
+  link_ = link;
   say(link_ == socketcan::LinkState::up     ? "the CAN interface is up again"
       : link_ == socketcan::LinkState::down ? "the CAN interface is down"
                                             : "the CAN interface is gone");
@@ -69,8 +69,7 @@ void Troubles::tell_scanner(const ScannerState& scanner) {
 }
 
 void Troubles::tell_counters(const Report& s, std::int64_t now_ns) {
-  const socketcan::Counters none{};
-  const socketcan::Counters& can = s.bus == nullptr ? none : s.bus->counters();
+  const socketcan::Counters can = s.bus ? s.bus->counters : socketcan::Counters{};
   const can::TiltDecoderCounters frames = s.tilt_frames == nullptr ? can::TiltDecoderCounters{} : *s.tilt_frames;
   const ScannerState scanner = s.scanner == nullptr ? ScannerState{} : *s.scanner;
   struct Counted {

@@ -20,7 +20,7 @@ class Troubles {
   void tell(const Report& status, const SourceEvents& events, std::int64_t now_ns);
 
  private:
-  void tell_link(const socketcan::SocketCan& bus);
+  void tell_link(socketcan::LinkState link);
   void tell_scanner(const ScannerState& scanner);
   void tell_counters(const Report& status, std::int64_t now_ns);
 

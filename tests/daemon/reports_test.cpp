@@ -75,9 +75,8 @@ TEST_CASE("reports: the fullest status fits") {
   const SourceWatch watch;
   const TiltLatency latency;
   const can::TiltDecoderCounters frames{~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
-  const auto bus = std::make_unique<socketcan::SocketCan>();
   const ScannerState scanner;
-  status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = bus.get(),
+  status.tilt = &watch, status.tilt_frames = &frames, status.tilt_latency = &latency, status.bus = BusReport{},
   status.scanner = &scanner, status.sight = &watch;
   status.latency = status.work = &full;
   std::array<char, 32 << 10> buffer{};
@@ -109,8 +108,12 @@ TEST_CASE("reports: a status has each counter under its name") {
   ScannerState scanner;
   scanner.connections = 51, scanner.damaged = 52, scanner.other_beams = 53, scanner.device_errors = 54;
   s.scanner = &scanner;
-  const auto bus = std::make_unique<socketcan::SocketCan>();
-  s.bus = bus.get();
+  s.poses = {.watch = &watch, .taken = 71, .damaged = 72}, s.pipeline.poses_dropped = 73;
+  s.bus = {.link = socketcan::LinkState::gone, .state = socketcan::BusState::passive};
+  socketcan::Counters& can = s.bus->counters;
+  can.frames = 81, can.frames_lost = 82, can.sent = 83, can.not_sent = 84, can.error_messages = 85, can.bus_errors = 86;
+  can.controller_overruns = 87, can.times_passive = 88, can.times_bus_off = 89, can.restarts = 90;
+  can.times_down = 91, can.times_gone = 92, can.times_back = 93;
   std::array<char, 8192> buffer{};
   const nlohmann::json status = nlohmann::json::parse(status_line(s, buffer)).at("status");
   const auto check = [&](const char* part, const nlohmann::json& wanted) {
@@ -154,10 +157,22 @@ TEST_CASE("reports: a status has each counter under its name") {
                  {"beyond_a_turn", 47},
                  {"times_lost", 0},
                  {"times_rested", 0}});
-  for (const char* counter :
-       {"frames", "frames_lost", "error_messages", "bus_errors", "controller_overruns", "times_passive",
-        "times_bus_off", "restarts", "times_down", "times_gone", "times_back", "sent", "not_sent"})
-    check("can", {{counter, 0}});
+  check("poses", {{"taken", 71}, {"damaged", 72}, {"dropped", 73}});
+  check("can", {{"link", "gone"},
+                {"bus", "passive"},
+                {"frames", 81},
+                {"frames_lost", 82},
+                {"sent", 83},
+                {"not_sent", 84},
+                {"error_messages", 85},
+                {"bus_errors", 86},
+                {"controller_overruns", 87},
+                {"times_passive", 88},
+                {"times_bus_off", 89},
+                {"restarts", 90},
+                {"times_down", 91},
+                {"times_gone", 92},
+                {"times_back", 93}});
   CHECK(status.at("microseconds").at("scan_line") == 25'000);
 }
 
@@ -199,8 +214,9 @@ TEST_CASE("reports: the reported state is the worst of all problems") {
   CHECK(state_of(s) == "tilt_not_radians");  // where a laser is taken to look if its angles are degrees
   scanner.connected = false;
   CHECK(state_of(s) == "scanner_lost");
-  const auto closed = std::make_unique<socketcan::SocketCan>();
-  s.bus = closed.get();
+  s.bus = BusReport{.link = socketcan::LinkState::up, .state = socketcan::BusState::off};
+  CHECK(state_of(s) == "bus_off");
+  s.bus->link = socketcan::LinkState::down;
   CHECK(state_of(s) == "can_down");
 }
 
