@@ -1,7 +1,7 @@
 // What the pipeline dropped, refused or ran into, and how much work it did. Counters only grow, and wrap at 2^32,
 // points of 1081 beams after a day: take the difference of two snapshots. On a healthy robot only the first group,
-// `no_returns`, `echoes_alone`, `cells_deferred`, `lines_off_map` while it climbs a curb and, without a LineQueue,
-// `beams_extrapolated` move.
+// `no_returns`, `echoes_alone`, `cells_deferred`, `lines_off_map` while it climbs a curb, and on a drive a few times a
+// minute by the chance of its poses, and, without a LineQueue, `beams_extrapolated` move.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
 // Sizes fixed at compile time. One Limits value parametrises the pipeline, and sizeof(Pipeline<limits>) is all of its
 // memory: nothing is allocated later. The stack of a call holds a bit for each cell (those that steps cross), a byte
-// for each region (its rank) and 140 bytes for each plane, beyond 64 planes also 2 for each pair: 255 need 130 KiB. On
-// a Cortex-M7, with regions in proportion to the cells:
+// for each region (its rank) and 140 bytes for each plane, beyond 64 planes also 2 for each pair, or 4 from 65,535
+// cells on: 255 need 130 KiB. settle(), for finished maps, holds a byte more for each cell. On a Cortex-M7, with
+// regions in proportion to the cells, without settle():
 //
 //   cells a side        40      80     120     200     400
 //   stack, bytes     2,904   3,464   6,384  15,736  60,080

@@ -12,13 +12,15 @@
 
 namespace curbline::test {
 
-/// Ground of height 0 before x = step_x_m and step_m from there on (negative: down).
+/// Ground of height 0 before x = step_x_m and step_m from there on (negative: down). Aslant, x is turned to the left.
 struct Street {
   double step_x_m = 2.0;
   double step_m = 0.12;
+  double aslant_rad = 0.0;
 };
 
-/// Range along a ray from `origin` with direction (dx, dy, dz) of unit length; infinite if it meets nothing.
+/// Range along a ray from `origin` with direction (dx, dy, dz) of unit length, x across the step; infinite if it meets
+/// nothing.
 inline double range_to(const Street& street, double ox, double oz, double dx, double dz) {
   const double far = std::numeric_limits<double>::infinity();
   const double to_near = dz < 0.0 ? -oz / dz : far, to_far = dz < 0.0 ? (street.step_m - oz) / dz : far;
@@ -67,10 +69,11 @@ class NoddingLaser {
     for (int i = 0; i < beams; ++i) {
       const double time = line_time_s(line) + interval * i,
                    bearing = -1.5707963267948966 + 3.141592653589793 / 360.0 * i;
-      const double tilt = tilt_rad(time), ahead = std::cos(bearing) * std::cos(tilt),
+      const double tilt = tilt_rad(time), ahead = std::cos(bearing) * std::cos(tilt), left = std::sin(bearing),
                    down = std::cos(bearing) * std::sin(tilt);
-      out[static_cast<std::size_t>(i)] =
-          static_cast<float>(range_to(street, x_m(time), height_m, ahead, -down) + noise_sd_m * noise_.normal());
+      const double cosine = std::cos(street.aslant_rad), sine = std::sin(street.aslant_rad);
+      const double range_m = range_to(street, cosine * x_m(time), height_m, cosine * ahead + sine * left, -down);
+      out[static_cast<std::size_t>(i)] = static_cast<float>(range_m + noise_sd_m * noise_.normal());
     }
     return out;
   }

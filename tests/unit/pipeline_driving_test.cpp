@@ -90,6 +90,40 @@ TEST_CASE("pipeline: while the robot drives the window follows and the curb stay
   }
 }
 
+//  \\  \\     along curbs that the way meets at 10 to 45 degrees: few borders lie on one row, or far ahead, and the
+//  line
+//   \\ ^\\    through them may pass the robot on either side
+TEST_CASE("pipeline: a curb that the robot drives along is up where it is up, and down where it is down") {
+  const double step_m = GENERATE(0.03, -0.03, 0.06);
+  const auto x = [](double time_s) { return 0.08 * time_s; };
+  double all_m = 0.0, wrong_m = 0.0;
+  for (const double aslant_rad : {1.0, 1.2, 1.3}) {
+    const Street street{1.2, step_m, aslant_rad};
+    const double cosine = std::cos(aslant_rad), sine = std::sin(aslant_rad);
+    const auto pipeline = started(driving_settings());
+    NoddingLaser laser;
+    for (int line = 0; line < 1000; ++line) {
+      const double t = NoddingLaser::line_time_s(line);
+      add_tilts(*pipeline, line);
+      for (const double at : {t, t + 0.02}) pipeline->add_pose({NoddingLaser::ns(at), static_cast<float>(x(at))});
+      const auto ranges = laser.ranges(street, line, x);
+      pipeline->take({NoddingLaser::ns(t), ranges});
+      const double away_m = 1.2 - cosine * x(t);
+      if (line % 10 != 0 || std::abs(away_m) < 0.2) continue;
+      for (const Curb& curb : pipeline->curbs()) {
+        const double off_m = cosine * static_cast<double>(curb.x0_m + curb.x1_m) / 2 +
+                             sine * static_cast<double>(curb.y0_m + curb.y1_m) / 2 - 1.2;
+        if (!is_step(curb) || std::abs(off_m) > 0.15) continue;
+        all_m += static_cast<double>(length_m(curb));
+        if (static_cast<double>(curb.height_m) * step_m * away_m < 0.0) wrong_m += static_cast<double>(length_m(curb));
+      }
+    }
+  }
+  INFO("step of " << step_m << " m: " << wrong_m << " of " << all_m << " m");
+  CHECK(all_m > 300.0);
+  CHECK(wrong_m < 0.001 * all_m);
+}
+
 TEST_CASE("pipeline: the window lies ahead of the robot, whatever way it heads") {
   const double quarters = GENERATE(1.0, 2.0, 3.0, 0.5, 1.4);
   const Drive d = drive({3.5, 0.12}, 560, driving_settings(), 0, 0, quarters * pi / 2);  // to the step

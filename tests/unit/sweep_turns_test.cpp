@@ -46,6 +46,19 @@ TEST_CASE("sweep turns: a servo that nods by five degrees sweeps, one that holds
   CHECK(sweeps_of_ten_nods(2 * degree) == 0);
 }
 
+TEST_CASE("sweep turns: a servo that stops and goes on has not turned, however exactly its angle is known") {
+  for (const float slow_rad_s : {0.1f, 0.0f}) {
+    Servo servo(slow_rad_s);
+    int sweeps = servo.turn_to(0.6f, 0.5f);
+    for (const float next_rad : {0.8f, 1.0f, 0.7f}) {
+      for (int line = 0; line < 20; ++line)
+        sweeps += servo.turns.follow(servo.angle_rad, 0.0f, ++servo.reading) != Turn::none;
+      sweeps += servo.turn_to(next_rad, 0.5f);
+    }
+    CHECK(sweeps == 1);
+  }
+}
+
 TEST_CASE("sweep turns: of a servo too slow for its rate to tell, a turn is seen three degrees after it") {
   Servo servo(0.1f);
   REQUIRE(servo.turn_to(1.0f, 0.02f) == 0);

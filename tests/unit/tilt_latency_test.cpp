@@ -435,6 +435,22 @@ TEST_CASE("tilt latency: a servo that stands still turns nowhere") {
     CHECK(latency.begin_line(1.0f, rate, next_reading()) == Turn::none);
 }
 
+TEST_CASE("tilt latency: while a laser that stands sees nothing its servo is as uncertain as at first, and no more") {
+  TiltLatency latency = started();
+  test::Noise noise(14);
+  for (int k = 0; k < 4; ++k) sweep(latency, k % 2 == 0, 0.004f, noise);
+  for (int k = 0; k < 1000; ++k) {
+    const bool downward = k % 2 == 0;
+    for (int line = 0; line < 40; ++line) {
+      const float advance = 0.025f * static_cast<float>(line), rate = downward ? rate_rad_s : -rate_rad_s;
+      latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+      latency.end_line(rate);
+    }
+  }
+  CHECK(latency.sd_s() <= Approx(std::sqrt(2.0f) * tilt_settings().latency_sd_s));
+  CHECK(latency.sd_s() >= Approx(tilt_settings().latency_sd_s));
+}
+
 TEST_CASE("tilt latency: a standard deviation of 0 turns it off") {
   TiltSettings tilt = tilt_settings();
   tilt.latency_sd_s = 0.0f;

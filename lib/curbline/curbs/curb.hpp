@@ -18,8 +18,10 @@ enum class CurbKind : std::uint8_t {
 const char* to_string(CurbKind kind);
 
 /// A straight piece of curb line, in the map frame. The near side is the robot's; it lies to the right, looking from
-/// (x0, y0) to (x1, y1). A piece ends half a cell beyond where both sides are seen, or up to half of
-/// CurbSettings::link_reach farther if one is hidden there.
+/// (x0, y0) to (x1, y1). Where the line, continued, may pass the robot on either side, as that of a short piece far
+/// away along the curb, it is that of the ground below the robot, if that is in view and one of the two. A piece ends
+/// half a cell beyond where both sides are seen, or up to half of CurbSettings::link_reach farther if one is hidden
+/// there.
 struct Curb {
   float x0_m = 0.0f, y0_m = 0.0f, x1_m = 0.0f, y1_m = 0.0f;
   float position_sd_m = 0.0f;  ///< across the piece, at its middle; twice that at its ends

@@ -30,8 +30,9 @@ class CurbMaker {
 
   PlanePair planes_of(const Border& border) const { return Piece::planes_of(stages_, border); }
 
-  /// The curb; none for the side of an obstacle, or a step without ground in view behind that is seen on a single row
-  /// or column, or from the side where that ground would be: from there its face is in view.
+  /// The curb; none for the side of an obstacle, where neither borders nor the ground beside them tell which side is
+  /// which, or for a step without ground in view behind that is seen on a single row or column, or from the side where
+  /// that ground would be: from there its face is in view.
   std::optional<Curb> make(const ChainPart& part);
 
   /// Is it the drop behind an obstacle, where no robot gets to: does a step up that is higher than any curb lead onto
@@ -57,6 +58,7 @@ class CurbMaker {
 template <Limits limits>
 std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   Piece piece(stages_, part);
+  if (!piece.sides_known) return std::nullopt;
   if (part.ends.first) piece.go_on(Piece::End::first);
   if (part.ends.second) piece.go_on(Piece::End::second);
   StepHeight<limits> step(piece);

@@ -39,6 +39,7 @@ struct CurbPiece {
   float gap_m = 0.0f, cell_m = 0.0f;    ///< across it: distance of the cells' centres, size of a cell
   bool one_is_near = false;             ///< the robot is on the side of plane `one`
   bool one_is_right = false;            ///< of the line, from its first end to its second
+  bool sides_known = true;              ///< else one_is_right and one_is_near mean nothing
 
   /// Fits the line to the borders and computes the means.
   CurbPiece(const Stages& in, const ChainPart& part);
@@ -94,20 +95,22 @@ struct CurbPiece {
     return square(0.5f * gap_m) * std::min(1.0f, all) + (gap_m + cell_m) * cell_m * std::min(1.0f, own) / observations;
   }
   /// Is the viewpoint to the right of the line?
-  bool has_right(const Viewpoint& view) const {
-    return (line.x1_m - line.x0_m) * (view.y_m - line.y0_m) <= (line.y1_m - line.y0_m) * (view.x_m - line.x0_m);
-  }
-  /// Is it on the side of `other` for certain, with the line anywhere within half a gap of its own at both ends?
+  bool has_right(const Viewpoint& view) const { return !(across(view).to_left > 0.0f); }
+  /// Is it on the side of `other` for certain?
   bool seen_from_other(const Viewpoint& view) const {
-    const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
-    const float to_x_m = view.x_m - middle_x_m(), to_y_m = view.y_m - middle_y_m();
-    const float to_left = dx_m * to_y_m - dy_m * to_x_m, along = magnitude(dx_m * to_x_m + dy_m * to_y_m);
-    const float length_m2 = square(dx_m) + square(dy_m);
-    const float beyond = one_is_right ? to_left : -to_left;
-    return beyond > 0.0f && square(beyond) * length_m2 > square(half_gap_m * (length_m2 + 2.0f * along));
+    const Across from = across(view);
+    return from.certain && (from.to_left > 0.0f) == one_is_right;
   }
 
  private:
+  /// Where a viewpoint lies: how far to the left of the line, times its length; and whether that is certain, with the
+  /// line anywhere within half a gap of its own at both ends.
+  struct Across {
+    float to_left;
+    bool certain;
+  };
+  Across across(const Viewpoint& view) const;
+  void take_sides(float toward_x, float toward_y);
   void take_means(const ChainPart& part);
   void take_variances(const ChainPart& part, const LineFit& fit);
   float lines_seen() const;
@@ -132,11 +135,42 @@ CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& part)
   // For a single border, or two at one place, where surfaces meet at an unseen cell.
   if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
   for (const Border& border : part) line.reach(border.x_m, border.y_m, half_cell_m);  // the last need not be outermost
-  one_is_right = (line.x1_m - line.x0_m) * toward_y - (line.y1_m - line.y0_m) * toward_x >= 0.0f;
-  one_is_near = one_sided() || one_is_right == has_right(stages.view);
   take_means(part);
   take_variances(part, fit);
   take_widths(part);
+  take_sides(toward_x, toward_y);
+}
+
+/// On which side of the line `one` lies, and whether the robot does, too. Given the sum of the ways of one cell from
+/// `one` to `other` at all borders.
+template <Limits limits>
+void CurbPiece<limits>::take_sides(float toward_x, float toward_y) {
+  // Ways that are along the line in the mean, as around a cell with the label of the other side, tell nothing.
+  constexpr float least_across = 0.1f;  // of a border: 6 degrees
+  const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
+  const float length_m = square_root(square(dx_m) + square(dy_m)), to_left_m = dx_m * toward_y - dy_m * toward_x;
+  one_is_right = to_left_m >= 0.0f;
+  if (magnitude(to_left_m) < least_across * borders * length_m) {
+    const float aside = std::max(stages.pitch_m(), half_gap_m) / length_m;
+    const Label left = ground_at(middle_x_m() - aside * dy_m, middle_y_m() + aside * dx_m);
+    const Label right = ground_at(middle_x_m() + aside * dy_m, middle_y_m() - aside * dx_m);
+    one_is_right = right == first.one && left == first.other;
+    sides_known = one_is_right || (left == first.one && right == first.other);
+  }
+  one_is_near = one_sided() || one_is_right == has_right(stages.view);
+  if (one_sided() || across(stages.view).certain) return;
+  // A short line may pass on either side of a robot far away, but the ground below that may be in view.
+  const Label below = ground_at(stages.view.x_m, stages.view.y_m);
+  if (below == first.one || below == first.other) one_is_near = below == first.one;
+}
+
+template <Limits limits>
+auto CurbPiece<limits>::across(const Viewpoint& view) const -> Across {
+  const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
+  const float to_x_m = view.x_m - middle_x_m(), to_y_m = view.y_m - middle_y_m();
+  const float to_left = dx_m * to_y_m - dy_m * to_x_m, along = magnitude(dx_m * to_x_m + dy_m * to_y_m);
+  const float length_m2 = square(dx_m) + square(dy_m);
+  return {to_left, square(to_left) * length_m2 > square(half_gap_m * (length_m2 + 2.0f * along))};
 }
 
 template <Limits limits>

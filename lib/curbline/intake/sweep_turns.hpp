@@ -12,7 +12,7 @@ class SweepTurns {
   /// Smaller than any real sweep: reversals closer together come from damaged readings and from play.
   static constexpr float least_sweep_rad = 0.05f;
 
-  /// A rate below slow_rad_s says nothing about the direction. With 0 the rate always decides.
+  /// A rate of slow_rad_s or less says nothing about the direction. With 0 every rate of a servo that turns does.
   void init(float slow_rad_s) {
     *this = SweepTurns{};
     slow_rad_s_ = slow_rad_s;
@@ -40,7 +40,7 @@ class SweepTurns {
 };
 
 inline bool SweepTurns::downward(float angle_rad, float rate_rad_s) const {
-  if (rate_rad_s >= slow_rad_s_ || rate_rad_s <= -slow_rad_s_) return rate_rad_s > 0.0f;
+  if (rate_rad_s > slow_rad_s_ || rate_rad_s < -slow_rad_s_) return rate_rad_s > 0.0f;
   return angle_rad > furthest_rad_ + (downward_ ? -least_sweep_rad : least_sweep_rad);
 }
 

@@ -75,10 +75,11 @@ void TiltLatency::take_up_other_direction() {
   other_ = of_last;
 }
 
-/// The second sweep is as late as the first; after that the ground is the datum.
+/// The second sweep is as late as the first; after that the ground is the datum. What is known of a direction's sweeps
+/// wears off, but while the laser sees nothing they become no more uncertain than at first.
 void TiltLatency::turn_standing() {
   auto& p = covariance_;
-  p[now][now] = turned_ ? p[now][now] + prior_variance_s2_ : prior_variance_s2_;
+  p[now][now] = turned_ ? std::min(p[now][now], prior_variance_s2_) + prior_variance_s2_ : prior_variance_s2_;
   const float ground_s2 = turned_ ? 0.0f : prior_variance_s2_;
   for (const State state : {last, before}) p[state][now] = p[now][state] = ground_s2;
   for (const State state : {last, before}) p[state][last] = p[state][before] = ground_s2;

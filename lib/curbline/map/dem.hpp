@@ -306,8 +306,9 @@ template <Limits limits>
 bool Dem<limits>::add(const Point& point) {
   const bool near = square(point.z_m) <= square(Pose::furthest_m);  // false for NaN
   if (!near || point.z_m > this->ceiling_m() || !(point.variance_m2 >= 0.0f)) return false;
-  const float weight = prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2);
-  if (!(weight >= least_weight && weight <= most_weight)) return false;  // false for an infinite variance too
+  // Without noise, on ground without texture, infinite.
+  const float weight = std::min(most_weight, prior_.noise_m2 / (point.variance_m2 + prior_.texture_m2));
+  if (!(weight >= least_weight)) return false;  // false for an infinite variance too
   const Place place = place_at(point.place_x_m(), point.place_y_m());
   if (!place.inside()) return false;
   const int i = place.i, j = place.j;
