@@ -8,15 +8,16 @@
 extern "C" {
 extern std::uint32_t stack_end[];
 [[noreturn]] void reset();
-[[noreturn]] void unexpected();
+void unexpected();  // does not return
+[[noreturn]] void stop();
 void dispatch();
-[[gnu::weak]] void on_interrupt(std::uint32_t irq);  // defined by a program that enables interrupts
+[[gnu::weak]] void on_interrupt(std::uint32_t irq);
 }
 
 namespace {
 
 using Handler = void (*)();
-constexpr std::size_t interrupt_count = 150;  // as many as the largest controllers have
+constexpr std::size_t interrupt_count = 240;  // as many as a Cortex-M7 may have, and a Cortex-M4
 
 struct Vectors {
   std::uint32_t* stack;
@@ -45,7 +46,12 @@ void on_interrupt(std::uint32_t) {
   unexpected();
 }
 
-void unexpected() {
+/// Reuses the whole stack, since nothing returns: it may be its overflow that has led here.
+[[gnu::naked]] void unexpected() {
+  asm volatile("ldr r0, =stack_end\n mov sp, r0\n bl stop");
+}
+
+void stop() {
   curbline::board::leave(curbline::board::unexpected_exception);
 }
 

@@ -3,6 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+
+/// A program that enables interrupts of a Cortex-M defines it: called for each, with its number.
+extern "C" void on_interrupt(std::uint32_t irq);
 
 namespace curbline::board {
 

@@ -9,8 +9,6 @@
 #include "semihosting/semihosting.hpp"
 #include "timer.hpp"
 
-extern "C" void on_interrupt(std::uint32_t irq);
-
 namespace semihosting = curbline::semihosting;
 namespace timer = curbline::board::timer;
 namespace can = curbline::can;

@@ -1,5 +1,5 @@
-// Tilt frames of a log or bus, decoded and fed in order up to the time for which a scan line needs them: what would have
-// reached the robot's computer by then.
+// Tilt frames of a log or bus, decoded and fed in order up to the time for which a scan line needs them: what would
+// have reached the robot's computer by then.
 #pragma once
 
 #include <algorithm>
@@ -75,9 +75,8 @@ class TiltFeed {
       if (!decoded) break;
       ahead_.push_back(*decoded);
     }
-    return std::any_of(ahead_.begin(), ahead_.end(), [&](const Decoded& decoded) {
-      return decoded.reading && decoded.reading->time_ns < time_ns;
-    });
+    return std::any_of(ahead_.begin(), ahead_.end(),
+                       [&](const Decoded& decoded) { return decoded.reading && decoded.reading->time_ns < time_ns; });
   }
 
   can::TiltDecoder decoder_;
