@@ -25,16 +25,6 @@ TEST_CASE("map: a map that is moved has its planes where its cells are") {
   CHECK(map.curbs[0].height_m == 0.12);
 }
 
-TEST_CASE("map: a curb that differs in its number, the width of its face or how well its place is known is another") {
-  const MapCurb curb{1, 2, 3, 4, 0.1, 0.01, 0.9, "step_up", 0.02, 0.05, 7, 0.0};
-  MapCurb renumbered = curb, wider = curb, less_sure = curb;
-  renumbered.id = 8;
-  wider.face_width_m = 0.06;
-  less_sure.position_sd_m = 0.03;
-  CHECK(MapCurb(curb) == curb);
-  for (const MapCurb& other : {renumbered, wider, less_sure}) CHECK_FALSE(other == curb);
-}
-
 TEST_CASE("map: a part of a curb is as high as the curb is there, up or down") {
   const MapCurb curb{.x0_m = 1, .y0_m = 2, .x1_m = 5, .y1_m = 2, .height_m = 0.03, .kind = "step_up", .rise_m = 0.08};
   const MapCurb end = part_of(curb, {0.75, 1.0}), middle = part_of(curb, {0.25, 0.75}), start = part_of(curb, {0, 0.2});

@@ -64,7 +64,6 @@ struct MapCurb {
   int id = 0;         ///< 0: none
   double rise_m = 0;  ///< change of height_m, which applies to the middle, from one end to the other
   double rise_sd_m = 0;
-  bool operator==(const MapCurb&) const = default;
 };
 
 /// Whether its kind is a step, up or down, and not a crease or the edge of a ramp.

@@ -4,7 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "command_line/checks.hpp"
 #include "formats/csv.hpp"
@@ -53,22 +56,23 @@ double speed_of(const std::string& text, bool live) {
   throw CLI::ValidationError("--speed", text + "; a live CAN interface has the speed 1");
 }
 
-/// Writes each curb that the last scan line added or changed, one JSON object a line.
+/// Writes each curb that the last scan line added or changed, one JSON object a line, as far as that tells.
 class CurbStream {
  public:
   void give_out(std::span<const Curb> curbs) {
-    std::vector<MapCurb> now;
+    std::vector<std::string> now;
     for (const Curb& curb : curbs) {
-      now.push_back(to_map_curb(curb));
-      if (std::find(before_.begin(), before_.end(), now.back()) == before_.end())
-        write_curb_json(std::cout, now.back());
+      std::ostringstream line;
+      write_curb_json(line, to_map_curb(curb));
+      now.push_back(line.str());
+      if (std::find(before_.begin(), before_.end(), now.back()) == before_.end()) std::cout << now.back();
     }
     std::cout.flush();
     before_ = std::move(now);
   }
 
  private:
-  std::vector<MapCurb> before_;
+  std::vector<std::string> before_;
 };
 
 nlohmann::json summary_of(const Replay& replay) {
