@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-board = Path(sys.argv.pop(1)) / "board" / "cortex-m4f"
+board = Path(sys.argv[1]) / "board" / "cortex-m4f"
 subprocess.run(["cmake", "--build", board, "--target", "stack_overflow.elf"], check=True)
 qemu = ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-semihosting", "-kernel", board / "stack_overflow.elf"]
 done = subprocess.run(qemu, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
