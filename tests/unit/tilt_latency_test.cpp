@@ -435,6 +435,31 @@ TEST_CASE("tilt latency: a servo that stands still turns nowhere") {
     CHECK(latency.begin_line(1.0f, rate, next_reading()) == Turn::none);
 }
 
+TEST_CASE("tilt latency: small errors of the map do not add up while a robot stands for hours") {
+  constexpr float by_sweep_s = 2e-6f;  // measured: 1.8 ms in an hour
+  TiltLatency latency = started();
+  test::Noise noise(15);
+  float lean_s = 0.0f;  // of the ground: it grows by so much with the growth of a downward sweep's points
+  for (int k = 0; k < 3000; ++k) {
+    const bool downward = k % 2 == 1;
+    const float rate = downward ? rate_rad_s : -rate_rad_s, growth = rate * range_m;
+    for (int line = 0; line < 40; ++line) {
+      const float advance = 0.025f * static_cast<float>(line);
+      latency.begin_line(downward ? 0.2f + advance : 1.2f - advance, rate, next_reading());
+      const float above_m = growth * latency.offset_s() - std::abs(growth) * lean_s;
+      for (int point = 0; point < 20 && k > 0; ++point) {
+        const float by_chance_m = point_sd_m * static_cast<float>(noise.normal());
+        latency.compare({above_m + by_chance_m, square(point_sd_m), 0.0f, {growth, 0.5f * growth, -0.5f * growth}});
+      }
+      const BySweep later_s = latency.end_line(rate).later_s;
+      lean_s += (downward ? 0.5f : -0.5f) * (later_s.before - later_s.last);
+    }
+    lean_s += by_sweep_s;
+  }
+  CHECK(std::abs(lean_s) < 0.0005f);
+  CHECK(std::abs(latency.offset_s()) < 0.0005f);
+}
+
 TEST_CASE("tilt latency: while a laser that stands sees nothing its servo is as uncertain as at first, and no more") {
   TiltLatency latency = started();
   test::Noise noise(14);

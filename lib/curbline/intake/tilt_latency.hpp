@@ -5,7 +5,7 @@
 // these corrects the map (Correction).
 //   - For a robot that stands, the first two sweeps, of opposite direction, are taken to be equally late. Their
 //     ground is the datum of all later ones: each has its own offset, starting from that of the last sweep of its
-//     direction.
+//     direction. As later ones replace that ground, both directions are taken to be equally late in the long run, too.
 //   - A robot that drives leaves its datum behind. The ground before is always that of the last two sweeps, and every
 //     offset is a constant plus a small random difference, with a fifth of the prior's standard deviation: else
 //     upward and downward sweeps would come to agree on tilted ground. The laser's lean (laser_lean.hpp) is estimated
@@ -135,6 +135,7 @@ class TiltLatency {
   float largest_offset_s_ = 0.0f;  ///< five standard deviations: beyond, the settings are wrong
 
   float constant_s_ = 0.0f, offset_s_ = 0.0f, mended_s_ = 0.0f;
+  float approach_s_ = 0.0f;  ///< by which both directions came together at this turn: the map has yet to follow
   std::array<States, states> covariance_{};
   LaserLean lean_{};
   States by_lean_s_rad_{};  ///< what each offset lacks for a radian of lean that is left
