@@ -76,6 +76,19 @@ class Stack(Built):
     def test_a_function_of_unknown_code_is_refused(self):
         self.refuses('extern "C" int elsewhere();\nextern "C" int root() { return elsewhere() + 1; }', "not in the program")
 
+    def test_of_a_library_beside_a_program_only_what_the_program_lacks_counts(self):
+        inline = "[[gnu::noinline]] inline int both(volatile char* p) {{ {} }}\n"
+        root = 'extern "C" int {}(char* p) {{ return both(p) + 1; }}\n'
+        library = self.build("int elsewhere();\n" + inline.format("return elsewhere() + p[0];") + root.format("other"))
+        library.rename(self.folder / "library.o")
+        (self.folder / "program.ci").rename(self.folder / "library.ci")
+        program = self.build(inline.format("return p[0];") + root.format("root")).rename(self.folder / "robot.elf")
+        objects = self.folder / "CMakeFiles" / "robot.elf.dir"
+        objects.mkdir(parents=True)
+        (self.folder / "program.ci").rename(objects / "program.cpp.ci")
+        path = stack.CallGraph(self.folder, program, ARM).worst("root")[1]
+        self.assertEqual(len(path), 2)
+
     def test_a_program_that_is_none_is_told_in_one_line(self):
         self.build(self.leaf)
         none = self.folder / "none.elf"

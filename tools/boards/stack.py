@@ -27,22 +27,25 @@ class CallGraph:
         graphs = sorted(Path(build).rglob("*.ci"))
         if not graphs:
             sys.exit(f"{build}: no call graph; expected a build with -fcallgraph-info=su,da, not out of a compiler cache")
-        for path in graphs:
-            target = re.search(r"CMakeFiles/(\S+\.elf)\.dir/", str(path))
-            if not target or target[1] == elf.name:  # part of the libraries or of this program
-                self.read(path.read_text())
+        target_of = {path: re.search(r"CMakeFiles/(\S+\.elf)\.dir/", str(path)) for path in graphs}
+        self.read([path for path, target in target_of.items() if target and target[1] == elf.name])
+        self.read([path for path, target in target_of.items() if not target])  # of libraries, which may not be part of this program
         self.add_library_functions(elf, prefix)
 
-    def read(self, text):
-        for title, label in NODE.findall(text):
-            size = SIZE.search(label)
-            if size:
-                self.bytes[bare(title)] = int(size[1])
-                self.names[bare(title)] = label.split("\\n")[0]
-                if size[2] == "dynamic":
-                    self.unbounded.add(bare(title))
-        for source, target in EDGE.findall(text):
-            self.calls.setdefault(bare(source), set()).add(bare(target))
+    def read(self, graphs):
+        """Adds the functions that are not known yet: the linker takes what is defined in several places from the program's own objects first."""
+        known = set(self.bytes)
+        for text in (path.read_text() for path in graphs):
+            for title, label in NODE.findall(text):
+                size = SIZE.search(label)
+                if size and bare(title) not in known:
+                    self.bytes[bare(title)] = int(size[1])
+                    self.names[bare(title)] = label.split("\\n")[0]
+                    if size[2] == "dynamic":
+                        self.unbounded.add(bare(title))
+            for source, target in EDGE.findall(text):
+                if bare(source) not in known:
+                    self.calls.setdefault(bare(source), set()).add(bare(target))
 
     def add_library_functions(self, elf, prefix):
         """Adds functions without call graphs from the disassembly: registers pushed, stack allocated and calls, instruction by
