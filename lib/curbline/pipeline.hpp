@@ -56,8 +56,8 @@ class Pipeline {
 
   /// Checks the settings and empties everything. A Status other than ok names the part with a bad setting, and
   /// bad_setting(settings, limits) the setting itself; the pipeline then refuses lines, points and poses, and has no
-  /// curbs, labels or passable cells. May be called again to start afresh, as long as nothing calls add_tilt()
-  /// meanwhile: mask its interrupt, or stop its thread.
+  /// curbs, labels or passable cells (planes and cells keep what they were). May be called again to start afresh, as
+  /// long as nothing calls add_tilt() meanwhile: mask its interrupt, or stop its thread.
   // Cold, as are the large functions that it calls: compiled for size, not speed.
   [[gnu::cold]] Status init(const Settings& settings);
 
@@ -105,7 +105,9 @@ class Pipeline {
   /// over one of curbs()? A curb may be a line older than the planes. Outside the window the ground is unknown, and not
   /// passable. See passability.hpp.
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
-    return knows(i, j) && curbline::passable(dem_, plane_mixture_, label_field_, i, j, {max_step_m, max_slope_rad});
+    const Mobility mobility{max_step_m, max_slope_rad};
+    return knows(i, j) && curbline::passable(dem_, plane_mixture_, label_field_, i, j, mobility) &&
+           !in_the_way(dem_, curbs(), i, j, mobility);
   }
   bool passable(const Curb& curb, float max_step_m, float max_slope_rad) const {
     const auto side = [this](int label) { return label == no_label ? Plane{} : plane(label); };

@@ -51,6 +51,18 @@ TEST_CASE("curb: distance to the far side and overlap do not depend on a curb's 
   CHECK(overlap_m(curb, way.piece(1.0, 1.0, 0.0), 0.2f) == 0.0f);  // a point
 }
 
+TEST_CASE("curb: found again is the curb that runs the same way, of several the one that lies nearest") {
+  const Way way{1.0, 3.0, GENERATE(0.0, 0.5236, 1.5708, 2.4, -2.0)};
+  const Curb now = way.piece(0.0, 2.0, 0.0);
+  const float of_itself_m = likeness_m(now, way.piece(0.2, 2.0, 0.02), 0.4f);
+  CHECK(of_itself_m > 1.5f);
+  CHECK(likeness_m(now, way.piece(2.0, 0.2, 0.02), 0.4f) == Approx(of_itself_m));  // the robot has crossed it
+  CHECK(likeness_m(now, way.piece(-2.0, 4.0, 0.38), 0.4f) < 0.1f * of_itself_m);
+  const Way across{1.0 + std::cos(way.angle), 3.0 + std::sin(way.angle), way.angle + 1.5};
+  CHECK(likeness_m(now, across.piece(-1.0, 1.0, 0.0), 0.4f) <= 0.0f);
+  CHECK(likeness_m(across.piece(-0.1, 0.2, 0.0), now, 0.4f) <= 0.0f);
+}
+
 TEST_CASE("curb: each kind has a word of its own") {
   CHECK(std::string(to_string(CurbKind::step_up)) == "step_up");
   CHECK(std::string(to_string(CurbKind::step_down)) == "step_down");

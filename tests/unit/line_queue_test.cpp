@@ -122,6 +122,19 @@ TEST_CASE("line queue: what has waited too long is given out without its tilt, a
   CHECK(q.counters().covered == 0);
 }
 
+TEST_CASE("line queue: a line waits as much longer as the servo's readings are late") {
+  TiltSettings tilt;
+  tilt.latency_s = 0.15f;
+  tilt.fixed = GENERATE(false, true);
+  Queue q = queue(tilt, {.still = false});
+  const Line line(0);
+  q.push(line.line(), 0);
+  CHECK_FALSE(q.pop({}, 49 * ms, 0.0f));
+  CHECK(q.pop({}, 199 * ms, 0.0f).has_value() == tilt.fixed);
+  CHECK((tilt.fixed || q.pop({}, 201 * ms, 0.0f)));
+  CHECK(q.counters().overdue == 1);
+}
+
 TEST_CASE("line queue: the copy is the queue's own, and lines of any length keep theirs") {
   Queue q = queue();
   {

@@ -130,6 +130,22 @@ TEST_CASE("passability: a step is not passable in two parts, by way of a cell of
   CHECK(cell_passable(step, 15, {0.09f, 0.1f}));
 }
 
+TEST_CASE("passability: a curb goes through the cells on its line, and those within two deviations of its place") {
+  const double angle = GENERATE(0.0, 0.6, 1.5708, 2.3);
+  const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+  Curb curb{.x0_m = 1.0f, .y0_m = 2.0f, .x1_m = 1.0f + 2.0f * c, .y1_m = 2.0f + 2.0f * s};
+  const auto through = [&](float along_m, float aside_m) {
+    return crosses(curb, 1.0f + along_m * c - aside_m * s, 2.0f + along_m * s + aside_m * c, 0.05f, 0.05f);
+  };
+  CHECK(through(1.0f, 0.04f));
+  CHECK(through(0.0f, -0.04f));
+  CHECK_FALSE(through(1.0f, 0.08f));
+  CHECK_FALSE(through(2.2f, 0.0f));
+  curb.position_sd_m = 0.02f;
+  CHECK(through(1.0f, 0.08f));
+  CHECK_FALSE(through(1.0f, -0.12f));
+}
+
 TEST_CASE("passability: what spreads within a cell by more than the step is in the way, noise is not") {
   const auto with_spread = [](double spread_m, float max_step_m) {
     Stages<small_limits> stages(small_settings());

@@ -179,6 +179,21 @@ TEST_CASE("pipeline: a curb beyond which nothing is seen is not passable, whatev
   CHECK(ends == 1);
 }
 
+TEST_CASE("pipeline: a cell is in the way in which a drop begins, though all that is seen of it is above the edge") {
+  const double edge_m = GENERATE(2.03, 2.05, 2.07, 2.09);
+  const auto pipeline = started();
+  NoddingLaser laser;
+  stand(*pipeline, laser, {edge_m, -0.12}, 0, 200);
+  int before = 0, at = 0;
+  for (int j = 10; j < 30; ++j) {
+    before += pipeline->passable(18, j, 0.04f, 0.1f);
+    at += pipeline->passable(20, j, 0.04f, 0.1f);
+    CHECK(pipeline->label(20, j) != no_label);
+  }
+  CHECK(before == 20);
+  CHECK(at == 0);
+}
+
 TEST_CASE("pipeline: outside the window no cell is passable and none has a label") {
   const auto pipeline = started();
   std::vector<Point> level;

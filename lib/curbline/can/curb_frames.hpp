@@ -25,8 +25,8 @@
 //                              is stuck, and a receiver must not trust CurbAhead, though the counter advances
 //   bits 16-23  curbs          u8, in the window; 255 is 255 or more
 //
-// Values out of range are clamped; a NaN distance, position or height gives "nothing ahead". Functions without state:
-// may be called from anywhere. About 200 steps a frame.
+// Values out of range are clamped; a distance, position or height that is not finite gives "nothing ahead". Functions
+// without state: may be called from anywhere. About 200 steps a frame.
 #pragma once
 
 #include <cstdint>

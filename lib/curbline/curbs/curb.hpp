@@ -61,4 +61,8 @@ float to_far_side_m(const Curb& curb, float x_m, float y_m);
 /// less.
 float overlap_m(const Curb& now, const Curb& before, float near_m);
 
+/// How much speaks for `now` being the curb that was `before`: that overlap, the less the farther aside it lies, to 0
+/// at near_m; 0 or less if they run at more than 45 degrees to each other.
+float likeness_m(const Curb& now, const Curb& before, float near_m);
+
 }  // namespace curbline

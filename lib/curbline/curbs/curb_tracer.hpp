@@ -107,7 +107,7 @@ void CurbTracer<limits>::leave_out(Work& work, Out&& out) {
   }
 }
 
-/// A curb takes the number of the last call's curb that it overlaps most, a step only that of a step, in the order in
+/// A curb takes the number of the last call's curb that it is most like, a step only that of a step, in the order in
 /// which they were found; the others get new numbers.
 template <Limits limits>
 void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
@@ -117,9 +117,9 @@ void CurbTracer<limits>::keep_ids(Work& work, float near_m) {
     float most_m = 0.0f;
     for (Curb& before : std::span(curb_).first(curbs_)) {
       if (before.id == 0 || is_step(before) != is_step(now)) continue;
-      const float length_m = overlap_m(now, before, near_m);
-      if (length_m <= most_m) continue;
-      most_m = length_m;
+      const float alike_m = likeness_m(now, before, near_m);
+      if (alike_m <= most_m) continue;
+      most_m = alike_m;
       same = &before;
     }
     now.id = 0;

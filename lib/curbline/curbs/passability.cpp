@@ -15,4 +15,15 @@ bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobil
   return magnitude(curb.height_m) + 2.0f * curb.height_sd_m <= mobility.max_step_m;
 }
 
+/// By the axes along which two convex shapes can be apart (separating axis theorem).
+bool crosses(const Curb& curb, float x_m, float y_m, float half_x_m, float half_y_m) {
+  const float dx_m = 0.5f * (curb.x1_m - curb.x0_m), dy_m = 0.5f * (curb.y1_m - curb.y0_m);
+  const float to_x_m = curb.x0_m + dx_m - x_m, to_y_m = curb.y0_m + dy_m - y_m;
+  const float beside_m = 2.0f * curb.position_sd_m;
+  return magnitude(to_x_m) <= half_x_m + magnitude(dx_m) + beside_m &&
+         magnitude(to_y_m) <= half_y_m + magnitude(dy_m) + beside_m &&
+         magnitude(dx_m * to_y_m - dy_m * to_x_m) <= half_x_m * magnitude(dy_m) + half_y_m * magnitude(dx_m) +
+                                                         beside_m * square_root(square(dx_m) + square(dy_m));
+}
+
 }  // namespace curbline

@@ -2,6 +2,9 @@
 // Unknown ground is not passable.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
 #include "curbline/curbs/curb.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"
@@ -21,6 +24,22 @@ bool passable(const Plane& plane, const Mobility& mobility);
 /// May a curb be crossed? A step, if it is no higher than max_step_m with a probability of 97.5 %; a crease or a ramp
 /// edge, if neither of its planes is steeper than max_slope_rad.
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
+
+/// Does a curb go through the rectangle around (x_m, y_m), of half sides half_x_m and half_y_m, with a probability of
+/// more than 2.5 %? Its place is uncertain by position_sd_m.
+bool crosses(const Curb& curb, float x_m, float y_m, float half_x_m, float half_y_m);
+
+/// Does a step that is too high go through cell (i, j)? Its cell may hold nothing but what the laser sees of the upper
+/// side, if the step hides the rest of it. 20 operations a curb.
+template <Limits limits>
+bool in_the_way(const Dem<limits>& dem, std::span<const Curb> curbs, int i, int j, const Mobility& mobility) {
+  const float x_m = dem.origin_x_m() + (static_cast<float>(i) + 0.5f) * dem.cell_x_m();
+  const float y_m = dem.origin_y_m() + (static_cast<float>(j) + 0.5f) * dem.cell_y_m();
+  return std::ranges::any_of(curbs, [&](const Curb& curb) {
+    return is_step(curb) && !passable(curb, {}, {}, mobility) &&
+           crosses(curb, x_m, y_m, 0.5f * dem.cell_x_m(), 0.5f * dem.cell_y_m());
+  });
+}
 
 /// May a wheel stand in cell (i, j), which must be one of the window, and leave it? Yes, if its plane is ground and not
 /// too steep, if the heights within it spread over no more than the step (the width of a uniform distribution of their

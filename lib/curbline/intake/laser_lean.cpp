@@ -8,7 +8,7 @@ namespace curbline {
 namespace {
 
 /// Share of the prior deviation by which it may change from sweep to sweep.
-constexpr float sweep_share = 0.2f;
+constexpr float change_share = 0.2f;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void LaserLean::init(float sd_rad) {
 /// lean, one standard deviation of what is left is as likely its rest as not.
 void LaserLean::begin_sweep() {
   due_ = square(found_rad_) > (taken_off_rad_ == 0.0f ? gate : 1.0f) * variance_;
-  variance_ = std::min(variance_ + square(sweep_share) * prior_variance_, prior_variance_);
+  variance_ = std::min(variance_ + square(change_share) * prior_variance_, prior_variance_);
 }
 
 void LaserLean::forget() {

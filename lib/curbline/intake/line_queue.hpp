@@ -49,9 +49,10 @@ class LineQueue {
   static_assert(capacity >= 2, "one line waits, one comes");
 
  public:
-  /// Empties the queue. A line waits at most max_wait_s, 0 to 1e9. A good choice is TiltSettings::max_gap_s, as beams
-  /// in a longer gap have no angle, or PoseSettings::max_extrapolation_s of a robot that drives, if longer. The
-  /// pipeline must keep readings and poses for as long: Limits::tilt_samples, Limits::poses.
+  /// Empties the queue. A line waits at most max_wait_s, 0 to 1e9, and as much longer as readings are late by the
+  /// settings (TiltSettings::latency_s). A good choice is TiltSettings::max_gap_s, as beams in a longer gap have no
+  /// angle, or PoseSettings::max_extrapolation_s of a robot that drives, if longer. The pipeline must keep readings and
+  /// poses for as long as a line waits: Limits::tilt_samples, Limits::poses.
   void init(const LaserSettings& laser, const TiltSettings& tilt, const PoseSettings& pose, float max_wait_s);
 
   /// Copies a line that has arrived at now_ns (any clock, the same as for pop()). False if it is refused, for its
@@ -91,7 +92,7 @@ void LineQueue<limits, capacity>::init(const LaserSettings& laser, const TiltSet
                                        float max_wait_s) {
   beam_interval_ns_ = laser.beam_interval_ns();
   latency_s_ = tilt.latency_s;
-  max_wait_ns_ = to_ns(max_wait_s);
+  max_wait_ns_ = to_ns(max_wait_s + (tilt.fixed ? 0.0f : std::max(0.0f, tilt.latency_s)));
   fixed_ = tilt.fixed;
   still_ = pose.still;
   oldest_ = size_ = 0;
