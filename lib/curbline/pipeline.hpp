@@ -119,7 +119,8 @@ class Pipeline {
   /// x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive
   /// its plane by a line.
   Label label(int i, int j) const { return knows(i, j) ? label_field_.label(dem_.slot(i, j)) : no_label; }
-  /// The probability of that label; 0 outside the window and before init().
+  /// The probability of that label; 0 outside the window, before init(), and while it is but the region's, as the cell
+  /// waits for its turn (LabelField::update()).
   float label_probability(int i, int j) const;
   /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. no_label where
   /// label() is. See ground_label.hpp.

@@ -169,6 +169,18 @@ TEST_CASE("program: each step of a flight is found with cells of 10 cm") {
   check_steps("0.1");
 }
 
+//  ____             ____
+//      |_    and  _|        seen by a laser whose spot is as long as a tread is deep
+//        |_      |
+TEST_CASE("program: the steps of stairs down and up are found with a wide spot, too") {
+  const auto recall = [](const char* scene, const char* robot, const char* seed) {
+    const nlohmann::json figures = evaluate(Recording(scene, robot, {"--seed", seed}));
+    return figures.at("step_bands").at(1).at("recall").get<double>();
+  };
+  CHECK(recall("stairs_down", "lms200", "2") > 0.98);
+  CHECK(recall("steps", "lms151", "37") > 0.9);
+}
+
 TEST_CASE("program: garden walls are no curbs, the pavement beside them has one") {
   const Recording logs("low_walls", "lms200");
   replay(logs);

@@ -302,6 +302,10 @@ TEST_CASE("label field: once its messages stand, a line that touches nothing sen
   CHECK(stages->counters.messages == before);
 }
 
+Belief belief_at(const Stages<>& stages, int i, int j) {
+  return stages.field.belief(stages.dem, stages.dem.slot(i, j));
+}
+
 TEST_CASE("label field: the budget of messages is kept, what waits is counted and catches up") {
   Settings settings = small_settings();
   settings.labels.max_messages = 400;
@@ -315,7 +319,7 @@ TEST_CASE("label field: the budget of messages is kept, what waits is counted an
   bounded->label(false);
   CHECK(bounded->counters.messages <= 400);
   CHECK(bounded->counters.cells_deferred == 576 - 100);
-  CHECK(bounded->label_at(23, 23) == no_label);
+  CHECK(belief_at(*bounded, 23, 23).label[0] == no_label);
   for (int call = 0; call < 20; ++call) bounded->infer();
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) CHECK(bounded->label_at(i, j) == free->label_at(i, j));
@@ -335,10 +339,11 @@ TEST_CASE("label field: a budget that is not given grows with the window, five m
   CHECK(stages->counters.messages == 5u * static_cast<unsigned>(rows) * 24u / 8u);
 }
 
-int cells_without_label(const Stages<>& stages) {
+/// Cells whose turn has not come yet.
+int cells_without_candidates(const Stages<>& stages) {
   int without = 0;
   for (int i = 0; i < stages.dem.rows(); ++i) {
-    for (int j = 0; j < stages.dem.cols(); ++j) without += stages.label_at(i, j) == no_label;
+    for (int j = 0; j < stages.dem.cols(); ++j) without += belief_at(stages, i, j).label[0] == no_label;
   }
   return without;
 }
@@ -350,7 +355,46 @@ TEST_CASE("label field: even the smallest budget reaches every cell in the end")
   const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 2000; ++call) stages->infer();
-  CHECK(cells_without_label(*stages) == 0);
+  CHECK(cells_without_candidates(*stages) == 0);
+}
+
+TEST_CASE("label field: rows that every line changes take no more turns than others") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = directions * 24 * 6;  // the messages of six rows
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  for (int call = 0; call < 6; ++call) {
+    for (int j = 0; j < 24; ++j) {
+      for (int i = 0; i < 6; ++i)
+        stages->dem.add({0.1f * static_cast<float>(i) + 0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
+    }
+    stages->infer();
+  }
+  CHECK(cells_without_candidates(*stages) == 0);
+}
+
+//         ______
+//  ______/            what has been level becomes two planes, as where something low has come to stand
+TEST_CASE("label field: a cell that waits for its turn has the label that its region has come to have") {
+  const auto stages = std::make_unique<Stages<>>([] {
+    Settings settings = small_settings();
+    settings.labels.max_messages = directions * 24;
+    return settings;
+  }());
+  fill(stages->dem, [](double, double) { return 0.0; });
+  for (int call = 0; call < 100; ++call) stages->infer();
+  for (int sweep = 0; sweep < 4; ++sweep) fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });
+  stages->infer();
+  REQUIRE(stages->counters.cells_deferred > 0);
+  int of_region = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      const Label region = stages->mixture.region_label(stages->dem.slot(i, j));
+      REQUIRE(region != no_label);
+      of_region += stages->label_at(i, j) == region;
+    }
+  }
+  CHECK(of_region >= 21 * 24);  // of the others it is the turn, beside cells that have still to change
 }
 
 TEST_CASE("label field: a row that every line changes does not starve the others") {
@@ -362,7 +406,7 @@ TEST_CASE("label field: a row that every line changes does not starve the others
     for (int j = 0; j < 24; ++j) stages->dem.add({0.05f, 0.1f * static_cast<float>(j) + 0.05f, 0.0f, 1e-4f});
     stages->infer();
   }
-  CHECK(cells_without_label(*stages) == 0);
+  CHECK(cells_without_candidates(*stages) == 0);
 }
 
 TEST_CASE("label field: a budget that is not given starves no cell, of the smallest window either") {
@@ -373,7 +417,7 @@ TEST_CASE("label field: a budget that is not given starves no cell, of the small
     fill(stages->dem, [](double, double) { return 0.0; });
     stages->infer();
   }
-  CHECK(cells_without_label(*stages) == 0);
+  CHECK(cells_without_candidates(*stages) == 0);
 }
 
 TEST_CASE("label field: on a map that no longer changes the kept field comes to where whole passes end") {

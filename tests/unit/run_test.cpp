@@ -73,23 +73,5 @@ TEST_CASE("strip: an edge blurs the cells that it crosses and those of the spot 
   CHECK(cells(0.0f, 0.01f, -0.1f) == 0.0f);
 }
 
-TEST_CASE("strip: it is half hidden if its cells are seen less than half as often as those on both its sides") {
-  const auto run_of = [](Label label, int first, int times_seen) {
-    Cell cell;
-    for (int k = 0; k < times_seen; ++k) cell.add(0.0f, 0.0f, 0.1f, 1.0f);
-    Run run(label, first, cell);
-    run.add(first + 1, cell);
-    return run;
-  };
-  const auto half_hidden = [&](int before, int seen, int next) {
-    const Run first = run_of(Label{1}, 8, before), strip = run_of(Label{2}, 10, seen),
-              last = run_of(Label{1}, 12, next);
-    return Strip{first, strip, last}.half_hidden();
-  };
-  CHECK(half_hidden(5, 2, 5));
-  CHECK_FALSE(half_hidden(4, 2, 5));  // just half as often, before it
-  CHECK_FALSE(half_hidden(5, 2, 4));  // behind it
-}
-
 }  // namespace
 }  // namespace curbline

@@ -58,8 +58,8 @@ class LabelField {
 
   /// E-step. Cells count as changed if they were touched, if their region changed its plane, if a candidate of theirs
   /// is gone, or if they heard a new message; others keep the candidates and potentials of when they last sent, though
-  /// planes move as they grow. Cells left over by max_messages are counted and wait for the next call. Returns how many
-  /// labels changed.
+  /// planes move as they grow. Cells left over by max_messages are counted and wait for the next call, with the label
+  /// of their region if that has changed. Returns how many labels changed.
   int update(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope, Visits& visits,
              Counters& counters);
 
@@ -142,17 +142,20 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
   });
 }
 
-/// Starts from a row that moves on, so that a small budget starves no cell as long as it suffices for a row.
+/// Starts where the budget of the last call ended, at least a row further on than that did: in as many calls as all
+/// cells need each has sent. Of a large plane that is formed anew, or divided, all cells change at once: one that has
+/// to wait, and whose region has another plane now, or whose plane is gone, meanwhile bears that of its region.
 template <Limits limits>
 void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                       Counters& counters) {
   const int rows = dem.rows();
-  const int first = first_row_ < rows ? first_row_ : 0;
-  first_row_ = first + 1;
+  const int first = first_row_ % rows;
   const int of_a_row = directions * dem.cols();
   const int messages = settings_.max_messages.value_or(std::max(5 * rows * dem.cols() / 8, of_a_row));
   int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
+  const auto lives = [&](Label label) { return label != no_label && mixture.plane(label).alive(); };
   for (int a = 0; a < rows; ++a) {
+    if (left > 0) first_row_ = first + std::max(a, 1);
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
       if (scope != FieldScope::window && !wants_to_send(mixture, s)) {
         flag_[s] = quiet;
@@ -162,6 +165,8 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
       } else {
         flag_[s] = waits;
         ++counters.cells_deferred;
+        const Label region = mixture.region_label(s);
+        if (lives(region) && (mixture.relabelled(s) || !lives(sites_[s].best))) sites_[s].best = region;
       }
     });
   }

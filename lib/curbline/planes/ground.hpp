@@ -5,17 +5,14 @@
 //   - an obstacle, or the top of one: obstacles.hpp.
 //   - a veil: readings that mix an edge with what lies behind it, on the rays between, or a single scan line on bent
 //     ground. Its plane contains the laser itself, as no visible surface does; or it is no wider than the shadow of a
-//     step down between two planes that are no obstacles, and falls there at least half as far as the rays, or is so
-//     narrow that its slope is unknown. What is visible beyond an edge is flatter than the ray that grazes it, and so
-//     wider. The tread of a stair, with half of the next one in the cells at both ends, falls by half a step where the
-//     rays fall by two.
+//     step down between two planes that are no obstacles, and falls there at least half as far as the rays. What is
+//     visible beyond an edge is flatter than the ray that grazes it, and so wider. The tread of a stair, with half of
+//     the next one in the cells at both ends, falls by half a step where the rays fall by two.
 //   - a fringe: a strip beside an obstacle higher than a curb, no wider than the laser's spot on the ground is
 //     long, that rises above the ground: readings that mix the obstacle with the ground around it. One that falls
 //     away from the laser as its rays do is a veil before the obstacle.
-//   - a wake: a narrow strip within a plane, seen less than half as often as that, with an obstacle higher than a curb
-//     between it and the laser: readings that mix the edge of a post with the ground beyond.
 // No cell has the label of such a plane; its cells go to the ground beside them, and curbs look through them. Faces and
-// veils mix two sides, and their cells go to the nearer one; obstacles, fringes and wakes cover the ground, and their
+// veils mix two sides, and their cells go to the nearer one; obstacles and fringes cover the ground, and their
 // heights say nothing about it. A plane that may be a veil, but not for certain, keeps its cells, but is no side of a
 // curb:
 //   - one that falls away as rays do, perhaps with a little of the ground behind in the window;
@@ -61,7 +58,7 @@ class Ground {
   bool is(int label) const { return is_ground(kind(label)); }
   /// May a plane of ground be a veil?
   bool may_be_veil(int label) const { return kind(label) == Kind::doubtful; }
-  /// Is it an obstacle, a fringe or a wake?
+  /// Is it an obstacle or a fringe?
   bool covers(int label) const { return kind(label) == Kind::cover; }
 
  private:
@@ -85,7 +82,7 @@ class Ground {
   Kinds kind_{};
 };
 
-/// Veils and wakes are only considered for a laser well above the ground: else the points were not seen from the
+/// Veils are only considered for a laser well above the ground: else the points were not seen from the
 /// viewpoint, as in a cloud whose origin is on the ground, and a plane that contains it may be a pavement. Where there
 /// is no ground yet, all that has been seen may be single scan lines.
 template <Limits limits>
@@ -99,7 +96,6 @@ auto Ground<limits>::kind_of(std::size_t label, const Plane& plane, const StripT
   const bool fringe = tally.fringe() && !obstacles.way(label) && stands_out(plane, *ground);
   const float laser_m = view.z_m - ground->height_m(view.x_m, view.y_m);
   if (laser_m <= highest_step_m) return fringe ? Kind::cover : Kind::ground;
-  if (tally.wake()) return Kind::cover;
   const bool steep = plane.steeper_than_ramp();
   // A mixture of an edge and the ground behind rises toward the laser at least half as steeply as the rays.
   const float above_m = view.z_m - plane.height_m(view.x_m, view.y_m);

@@ -7,8 +7,7 @@
 // region that reaches the window's end may be larger than it looks, unless it is shorter than a metre along x and along
 // y; so may one that begins where nothing is seen before it and, on a robot that drives, one that ends where nothing is
 // seen beyond: the laser may not have looked there yet. Cost: a pass over the window, one more where there is rough
-// ground or a ring, and two more where there may be tops; of hides(), a look at each cell on the way to the laser, at
-// most.
+// ground or a ring, and two more where there may be tops.
 #pragma once
 
 #include <algorithm>
@@ -42,9 +41,6 @@ class Obstacles {
   bool high(std::size_t label) const { return high_[label]; }
   /// Is it small, level and higher than most steps, but part of a way?
   bool way(std::size_t label) const { return way_[label]; }
-  /// Seen back from cell (i, j) of this plane toward the laser, where it last saw the cell: does an obstacle higher
-  /// than a step stand before any ground? A cell that a step crosses is neither.
-  bool hides(int i, int j, Label label) const;
   /// Number of cells of a plane's region.
   float cells(std::size_t label) const { return cells_[label]; }
   /// A plane through the laser, other than level ground that the origin of a cloud lies on: no visible surface, but
@@ -174,25 +170,6 @@ void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside
       way_[l] = changed = true;
     }
   }
-}
-
-template <Limits limits>
-bool Obstacles<limits>::hides(int i, int j, Label label) const {
-  const Viewpoint from = dem_.seen_from(dem_.slot(i, j), view_);
-  const float x = static_cast<float>(i) + 0.5f, y = static_cast<float>(j) + 0.5f;
-  const float dx = from.x_m / dem_.cell_x_m() - x, dy = from.y_m / dem_.cell_y_m() - y;
-  const float away = std::max(magnitude(dx), magnitude(dy));
-  for (float k = 1.0f; k < away; k += 1.0f) {
-    const float p = x + k / away * dx, q = y + k / away * dy;
-    if (!(p >= 0.0f) || !(q >= 0.0f) || !dem_.contains(static_cast<int>(p), static_cast<int>(q))) return false;
-    const int slot = dem_.slot(static_cast<int>(p), static_cast<int>(q));
-    const Cell& cell = dem_.cell(slot);
-    const Label other = region_label_[slot];
-    if (!cell.valid() || other == label) continue;
-    if ((other != no_label && high_[other]) || higher_than_step(cell.scatter_m2 / cell.weight)) return true;
-    if (!dem_.steep(cell)) return false;
-  }
-  return false;
 }
 
 template <Limits limits>

@@ -87,8 +87,7 @@ class PlaneMixture {
   }
   /// False if the cell's region is not ground (ground.hpp).
   bool on_ground(int slot) const { return region_label(slot) == no_label || ground_.is(region_label(slot)); }
-  /// Is the ground below the cell covered, by an obstacle, a fringe or a wake, so that its height says nothing about
-  /// it?
+  /// Is the ground below the cell covered, by an obstacle or a fringe, so that its height says nothing about it?
   bool covered(int slot) const { return region_label(slot) != no_label && ground_.covers(region_label(slot)); }
   /// Is there an obstacle in the cell: do its heights spread as on 45 degrees, or is its ground covered?
   bool obstructed(const Dem<limits>& dem, int slot) const { return dem.steep(dem.cell(slot)) || covered(slot); }

@@ -122,13 +122,6 @@ struct Strip {
     const float before_m = before.last_height_m - run.first_height_m, next_m = next.first_height_m - run.first_height_m;
     return (before_m + next_m) * run.above_m - run.above_m2 - before_m * next_m * run.weight;
   }
-  /// Are its cells seen less than half as often as those of both runs beside it, as if most beams had met something
-  /// before?
-  bool half_hidden() const {
-    const float a_cell = run.weight / static_cast<float>(run.cells);
-    return 2.0f * a_cell * static_cast<float>(before.cells) < before.weight &&
-           2.0f * a_cell * static_cast<float>(next.cells) < next.weight;
-  }
   /// For a strip between two planes (between(), rises_between()): if the step leads down as the laser sees
   /// it, and the strip is no wider than its shadow (shadow.hpp) and a cell, as those at its ends hold some of the
   /// planes, how far the strip falls. Inlined: calls would cost the worst line of a Cortex-M7 20,000 instructions

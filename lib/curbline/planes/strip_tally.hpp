@@ -1,6 +1,6 @@
 // Statistics of the runs of a plane's cells (run.hpp), by which ground.hpp decides what it is: how many of its cells
-// lie in strips that carry a step, in the shadow of one, beside a high obstacle or behind one, or where an edge is
-// blurred. Cost: that of the runs, and of Obstacles::hides() for each narrow strip within a plane that is seen more.
+// lie in strips that carry a step, in the shadow of one or beside a high obstacle, or where an edge is blurred. Cost:
+// that of the runs.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,11 @@ namespace curbline {
 
 /// Strips in the shadow of a step down.
 struct Shadowed {
-  float cells = 0.0f, strips = 0.0f;
+  float cells = 0.0f;
   Fall fall{};
 
   void add(float strip_cells, const Fall& of_strip) {
     cells += strip_cells;
-    strips += 1.0f;
     fall.own_m += of_strip.own_m;
     fall.of_rays_m += of_strip.of_rays_m;
   }
@@ -59,7 +58,6 @@ struct StripTally {
   std::array<Shadowed, 2> shadow{};
   std::array<float, 2> blurred_cells{};  ///< cells that an edge would blur; for planes that drop off
   std::array<float, 2> fringe_cells{};   ///< in strips beside an obstacle higher than a step
-  std::array<float, 2> wake_cells{};     ///< in strips within one plane, hidden behind an obstacle
 
   /// Adds a strip between two others. Its cells' spread beyond noise is that beyond the spread of the quieter plane
   /// beside it.
@@ -88,7 +86,6 @@ struct StripTally {
   bool narrow() const { return strip_cells < narrow_cells * strips; }
   bool veil() const { return veil(shadow[0]) || veil(shadow[1]); }
   bool fringe() const { return most(fringe_cells[0]) || most(fringe_cells[1]); }
-  bool wake() const { return most(wake_cells[0]) || most(wake_cells[1]); }
   bool blurred_edge() const { return (all(blurred_cells[0]) || all(blurred_cells[1])) && follows_step(); }
 
  private:
@@ -109,9 +106,7 @@ struct StripTally {
   /// less than a quarter of that is no blur but the tread of a stair, level but for what its end cells hold of the
   /// next.
   bool follows_step() const { return 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
-  bool veil(const Shadowed& in_shadow) const {
-    return most(in_shadow.cells) && (in_shadow.cells < narrow_cells * in_shadow.strips || in_shadow.falls_with_rays());
-  }
+  bool veil(const Shadowed& in_shadow) const { return most(in_shadow.cells) && in_shadow.falls_with_rays(); }
 };
 
 /// Those of all planes. Shadows are those for the place from which the laser last saw a strip.
@@ -193,11 +188,6 @@ void StripTallies<limits>::take_short(const Strip& strip, const Line& line, bool
   const bool after_high = before.any() && obstacles_.high(before.label) && run.first == before.last + 1;
   const bool before_high = next.any() && obstacles_.high(next.label) && next.first == run.last + 1;
   if (after_high || before_high) tally.fringe_cells[axis] += cells;
-  const int middle = (run.first + run.last) / 2;
-  if (strip.between(sparse_gap) && before.label == next.label && strip.half_hidden() &&
-      obstacles_.hides(line.row(middle), line.col(middle), run.label)) {
-    tally.wake_cells[axis] += cells;
-  }
   if (strip.alone(sparse_gap)) {
     tally.silent_cells[axis] += cells;
   } else if (rises) {
