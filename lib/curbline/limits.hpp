@@ -5,7 +5,7 @@
 // regions in proportion to the cells, without settle():
 //
 //   cells a side        40      80     120     200     400
-//   stack, bytes     2,904   3,464   6,384  15,736  60,080
+//   stack, bytes     2,912   3,656   6,384  15,736  60,048
 //
 // (tools/boards/stack.py, of the drive.elf of board/_template with these limits in its robot.hpp.)
 #pragma once
