@@ -166,7 +166,6 @@ TiltLatency::Correction TiltLatency::end_line(float tilt_rate_rad_s) {
   correction.later_s.last -= approach_s_;
   correction.later_s.before += approach_s_;
   approach_s_ = 0.0f;
-  mended_s_ += correction.later_s.last;
   return correction;
 }
 
@@ -204,6 +203,7 @@ bool TiltLatency::update(const Observation& seen, Correction& correction) {
   }
   correction.later_s = {offset_s_ - before_s, cross[last] * weight, cross[before] * weight};
   take_off_lean(correction);
+  mended_s_ += correction.later_s.last;
   other_.offset_s += correction.later_s.last;
   return true;
 }

@@ -59,7 +59,7 @@ class TiltLatency {
   /// How many steps of the latency were found.
   std::uint32_t steps() const { return steps_; }
 
-  /// Sum of Correction::later_s.last over all lines.
+  /// Sum of Correction::later_s.last over all lines, but for what brings the directions of a robot that stands together.
   float mended_s() const { return mended_s_; }
 
   /// Variance of a height, or a difference of two, that grows so with the latency of each sweep.
