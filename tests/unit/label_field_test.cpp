@@ -376,11 +376,9 @@ TEST_CASE("label field: rows that every line changes take no more turns than oth
 //         ______
 //  ______/            what has been level becomes two planes, as where something low has come to stand
 TEST_CASE("label field: a cell that waits for its turn has the label that its region has come to have") {
-  const auto stages = std::make_unique<Stages<>>([] {
-    Settings settings = small_settings();
-    settings.labels.max_messages = directions * 24;
-    return settings;
-  }());
+  Settings settings = small_settings();
+  settings.labels.max_messages = directions * 24;
+  const auto stages = std::make_unique<Stages<>>(settings);
   fill(stages->dem, [](double, double) { return 0.0; });
   for (int call = 0; call < 100; ++call) stages->infer();
   for (int sweep = 0; sweep < 4; ++sweep) fill(stages->dem, [](double x, double) { return x < 1.2 ? 0.0 : 0.12; });

@@ -95,19 +95,18 @@ struct CurbPiece {
     return square(0.5f * gap_m) * std::min(1.0f, all) + (gap_m + cell_m) * cell_m * std::min(1.0f, own) / observations;
   }
   /// Is the viewpoint to the right of the line?
-  bool has_right(const Viewpoint& view) const { return !(across(view).to_left > 0.0f); }
+  bool has_right(const Viewpoint& view) const { return !across(view).left; }
   /// Is it on the side of `other` for certain?
   bool seen_from_other(const Viewpoint& view) const {
     const Across from = across(view);
-    return from.certain && (from.to_left > 0.0f) == one_is_right;
+    return from.certain && from.left == one_is_right;
   }
 
  private:
-  /// Where a viewpoint lies: how far to the left of the line, times its length; and whether that is certain, with the
-  /// line anywhere within half a gap of its own at both ends.
+  /// On which side of the line a viewpoint lies, and whether that is certain, with the line anywhere within half a gap
+  /// of its own at both ends.
   struct Across {
-    float to_left;
-    bool certain;
+    bool left, certain;
   };
   Across across(const Viewpoint& view) const;
   void take_sides(float toward_x, float toward_y);
@@ -157,8 +156,9 @@ void CurbPiece<limits>::take_sides(float toward_x, float toward_y) {
     one_is_right = right == first.one && left == first.other;
     sides_known = one_is_right || (left == first.one && right == first.other);
   }
-  one_is_near = one_sided() || one_is_right == has_right(stages.view);
-  if (one_sided() || across(stages.view).certain) return;
+  const Across from = across(stages.view);
+  one_is_near = one_sided() || one_is_right != from.left;
+  if (one_sided() || from.certain) return;
   // A short line may pass on either side of a robot far away, but the ground below that may be in view.
   const Label below = ground_at(stages.view.x_m, stages.view.y_m);
   if (below == first.one || below == first.other) one_is_near = below == first.one;
@@ -170,7 +170,7 @@ auto CurbPiece<limits>::across(const Viewpoint& view) const -> Across {
   const float to_x_m = view.x_m - middle_x_m(), to_y_m = view.y_m - middle_y_m();
   const float to_left = dx_m * to_y_m - dy_m * to_x_m, along = magnitude(dx_m * to_x_m + dy_m * to_y_m);
   const float length_m2 = square(dx_m) + square(dy_m);
-  return {to_left, square(to_left) * length_m2 > square(half_gap_m * (length_m2 + 2.0f * along))};
+  return {to_left > 0.0f, square(to_left) * length_m2 > square(half_gap_m * (length_m2 + 2.0f * along))};
 }
 
 template <Limits limits>
