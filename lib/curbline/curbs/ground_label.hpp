@@ -22,8 +22,7 @@ Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, 
                    std::span<const Curb> curbs, int i, int j) {
   const Label of_readings = field.label(dem.slot(i, j));
   if (of_readings == no_label) return of_readings;
-  const float x_m = dem.origin_x_m() + (static_cast<float>(i) + 0.5f) * dem.cell_x_m();
-  const float y_m = dem.origin_y_m() + (static_cast<float>(j) + 0.5f) * dem.cell_y_m();
+  const float x_m = dem.middle_x_m(i), y_m = dem.middle_y_m(j);
   float nearest_m = dem.cell_x_m() + dem.cell_y_m();
   Label found = of_readings;
   for (const Curb& curb : curbs) {

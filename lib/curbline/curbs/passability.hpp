@@ -33,11 +33,9 @@ bool crosses(const Curb& curb, float x_m, float y_m, float half_x_m, float half_
 /// side, if the step hides the rest of it. 20 operations a curb.
 template <Limits limits>
 bool in_the_way(const Dem<limits>& dem, std::span<const Curb> curbs, int i, int j, const Mobility& mobility) {
-  const float x_m = dem.origin_x_m() + (static_cast<float>(i) + 0.5f) * dem.cell_x_m();
-  const float y_m = dem.origin_y_m() + (static_cast<float>(j) + 0.5f) * dem.cell_y_m();
   return std::ranges::any_of(curbs, [&](const Curb& curb) {
     return is_step(curb) && !passable(curb, {}, {}, mobility) &&
-           crosses(curb, x_m, y_m, 0.5f * dem.cell_x_m(), 0.5f * dem.cell_y_m());
+           crosses(curb, dem.middle_x_m(i), dem.middle_y_m(j), 0.5f * dem.cell_x_m(), 0.5f * dem.cell_y_m());
   });
 }
 

@@ -47,9 +47,9 @@ class Dem : public Window<limits> {
   void follow(const Transform& T_map_base, Left&& left);
 
   /// Takes a point into its cell. False if it is outside the window, above its ceiling, beyond Pose::furthest_m above
-  /// or below, has a value that is not finite, or a weight outside [1e-9, 1e9]; the weight is the expected noise over
-  /// the point's variance plus the ground's texture. In a cell of more than one surface, the first point of a sweep
-  /// makes earlier sweeps fade. O(1).
+  /// or below, has a value that is not finite, or a weight below 1e-9; the weight is the expected noise over the
+  /// point's variance plus the ground's texture, 1e9 at most. In a cell of more than one surface, the first point of a
+  /// sweep makes earlier sweeps fade. O(1).
   bool add(const Point& point);
 
   /// Corrects heights for sweeps that are later than assumed. Cells do not count as touched: neighbours move alike.

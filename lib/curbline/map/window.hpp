@@ -36,6 +36,9 @@ class Window {
   /// Lowest corner in the map frame.
   float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }
   float origin_y_m() const { return static_cast<float>(corner_.col) * settings_.cell_y_m + settings_.origin_y_m; }
+  /// The middle of cells of row i, and of column j, in the map frame.
+  float middle_x_m(int i) const { return origin_x_m() + (static_cast<float>(i) + 0.5f) * settings_.cell_x_m; }
+  float middle_y_m(int j) const { return origin_y_m() + (static_cast<float>(j) + 0.5f) * settings_.cell_y_m; }
 
   /// Points above are ignored; z of the map frame.
   float ceiling_m() const { return ceiling_m_; }
