@@ -5,6 +5,7 @@
 
 #include "curbline/curbs/crossed_cells.hpp"
 #include "curbline/curbs/curb_tracer.hpp"
+#include "curbline/intake/tilt_latency.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/planes/plane_mixture.hpp"
@@ -85,12 +86,13 @@ struct Stages {
     Viewpoint from = view;
     from.x_m = robot_x_m;
     from.y_m = robot_y_m;
-    tracer.trace(dem, mixture, field, from, work.curbs(), counters);
+    tracer.trace(dem, mixture, field, from, latency, work.curbs(), counters);
   }
   auto region_at(int i, int j) const { return segmentation.region(dem.slot(i, j)); }
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
 
   Viewpoint view{0.0f, 0.0f, 1.0f};
+  TiltLatency latency{};  ///< known
   Counters counters{};
   Workspace<limits> work{};
   typename Segmentation<limits>::Work* segmented = nullptr;  ///< valid until label()

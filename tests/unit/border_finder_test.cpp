@@ -26,7 +26,7 @@ FoundBorders found_borders(Stages<small_limits>& stages) {
   const CurbSettings settings{};
   auto& borders = stages.work.curbs().borders;
   borders.clear();
-  BorderFinder<small_limits>({stages.dem, stages.mixture, stages.field, stages.view, settings})
+  BorderFinder<small_limits>({stages.dem, stages.mixture, stages.field, stages.view, stages.latency, settings})
       .find(borders, stages.counters);
   FoundBorders found;
   for (int b = 0; b < borders.size(); ++b) {

@@ -48,7 +48,8 @@ Lower lower(const Flank& flank) {
   });
   stages->settle();
   const CurbSettings settings{};
-  const CurbStages<small_limits> curb_stages{stages->dem, stages->mixture, stages->field, stages->view, settings};
+  const CurbStages<small_limits> curb_stages{stages->dem,  stages->mixture, stages->field,
+                                             stages->view, stages->latency, settings};
   auto& borders = stages->work.curbs().borders;
   borders.clear();
   BorderFinder<small_limits>(curb_stages).find(borders, stages->counters);
@@ -65,8 +66,8 @@ Lower lower(const Flank& flank) {
       auto part = borders.part(0, length - 1);
       part.ends = {first, second};
       CurbPiece<small_limits> anew(curb_stages, part);
-      StepHeight<small_limits> height(anew);
-      height.refine(part, true);
+      StepHeight<small_limits> height(anew, part);
+      height.refine(true);
       return height.variance_m2();
     };
     const auto lower_m = [&](bool first) {  // uniformly by up to as much

@@ -422,7 +422,7 @@ TEST_CASE("curb tracer: numbers begin anew with 1, but for those that curbs stil
   int doubled = 0, none = 0, anew = 0;
   for (int trace = 0; trace < 65'600; ++trace) {
     const auto& of = trace % 2 == 0 ? first : second;
-    tracer.trace(of->dem, of->mixture, of->field, of->view, of->work.curbs(), of->counters);
+    tracer.trace(of->dem, of->mixture, of->field, of->view, of->latency, of->work.curbs(), of->counters);
     doubled += tracer.curbs()[0].id == tracer.curbs()[1].id;
     for (const Curb& curb : tracer.curbs()) {
       none += curb.id == 0;
@@ -507,7 +507,7 @@ TEST_CASE(
   const std::vector<Border::Index> chain{0, 1, 2, 3};
   const auto seen_from = [&](float x_m) {
     const Viewpoint view{x_m, 0.5f, 1.2f};
-    const CurbStages<test::small_limits> seen{stages.dem, stages.mixture, stages.field, view, settings};
+    const CurbStages<test::small_limits> seen{stages.dem, stages.mixture, stages.field, view, stages.latency, settings};
     return CurbMaker<test::small_limits>(seen).make(ChainPart(borders.data(), chain, {true, true}));
   };
   const std::optional<Curb> drop = seen_from(2.0f);
@@ -673,10 +673,12 @@ TEST_CASE("curb tracer: a number goes to one curb of the same kind within two ce
   CurbTracer<test::small_limits> tracer;
   const auto ids_on = [&](Stages<>& stages) {
     tracer.init(CurbSettings{});
-    tracer.trace(first->dem, first->mixture, first->field, first->view, first->work.curbs(), first->counters);
+    tracer.trace(first->dem, first->mixture, first->field, first->view, first->latency, first->work.curbs(),
+                 first->counters);
     REQUIRE(tracer.curbs().size() == 1);
     REQUIRE(tracer.curbs()[0].id == 1);
-    tracer.trace(stages.dem, stages.mixture, stages.field, stages.view, stages.work.curbs(), stages.counters);
+    tracer.trace(stages.dem, stages.mixture, stages.field, stages.view, stages.latency, stages.work.curbs(),
+                 stages.counters);
     std::vector<int> ids;
     for (const Curb& curb : tracer.curbs()) ids.push_back(curb.id);
     std::sort(ids.begin(), ids.end());

@@ -279,6 +279,31 @@ TEST_CASE("step height: the height of a step is less certain where few points te
   CHECK(deviation_m(1) == Approx(2.0 * deviation_m(4)).epsilon(0.1));
 }
 
+//  ^ z            seen by upward lines  ===========
+//  |   ==========  seen by downward lines, both late: the step is wrong by what both sides err
+TEST_CASE("step height: between sides that opposite sweeps have seen it is as uncertain as the tilt's latency") {
+  const float latency_sd_s = 0.002f;
+  const auto variance_m2 = [&](float growth_below_m_s, float growth_above_m_s) {
+    Stages<> stages(small_settings());
+    Noise noise(1);
+    for (Point p : test::sample({0.0, 2.4, 0.0, 2.4}, 0.05, 0.002, noise, up)) {
+      p.growth_m_s = p.x_m < 1.4f ? growth_below_m_s : growth_above_m_s;
+      stages.dem.add(p);
+    }
+    TiltSettings tilt;
+    tilt.latency_sd_s = latency_sd_s;
+    stages.latency.init(tilt, {});
+    stages.settle();
+    stages.trace(0.0f, 1.2f);
+    REQUIRE(stages.tracer.curbs().size() == 1);
+    const float sd_m = stages.tracer.curbs()[0].height_sd_m;
+    return static_cast<double>(sd_m * sd_m);
+  };
+  const double alike_m2 = variance_m2(1.0f, 1.0f), apart_m2 = variance_m2(1.0f, -1.0f);
+  CHECK(alike_m2 == Approx(variance_m2(0.0f, 0.0f)).epsilon(0.01));
+  CHECK(std::sqrt(apart_m2 - alike_m2) == Approx(2.0f * latency_sd_s).epsilon(0.02));
+}
+
 //  x ^   ===========   lines that run along the step see one side each        |   those that cross it see both, and
 //    |   -----------   with errors of their own                           ----+---  their errors cancel
 TEST_CASE("step height: a step is as uncertain as the scan lines along it, not as those that cross it") {

@@ -118,7 +118,7 @@ TEST_CASE("surfaces: the foot of a ramp is the edge of a ramp, whatever the grou
 TEST_CASE("surfaces: planes that are told apart by a step, more than by a crease, are two, though the ground is bent") {
   const auto stages = traced([](double x, double) { return -0.0125 * (x - 2.0) * (x - 2.0); });
   const CurbSettings settings;
-  const CurbStages<limits> found{stages->dem, stages->mixture, stages->field, stages->view, settings};
+  const CurbStages<limits> found{stages->dem, stages->mixture, stages->field, stages->view, stages->latency, settings};
   Curb crease, step;
   crease.near_label = step.far_label = stages->label_at(5, 20);
   crease.far_label = step.near_label = stages->label_at(35, 20);

@@ -61,16 +61,16 @@ std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   if (!piece.sides_known) return std::nullopt;
   if (part.ends.first) piece.go_on(Piece::End::first);
   if (part.ends.second) piece.go_on(Piece::End::second);
-  StepHeight<limits> step(piece);
+  StepHeight<limits> step(piece, part);
   Curb curb = without_height(piece);
-  curb.kind = piece.planes.kind(piece.line, step.measured(part));
+  curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();
   if (one_sided && is_step(curb)) {
     if (part.size() == 1) return std::nullopt;  // a single row or column makes no line
     const bool from_behind = piece.seen_from_other(stages_.view);
-    if (from_behind && piece.seen_from_other(step.seen_from(part, piece.first.one))) return std::nullopt;
+    if (from_behind && piece.seen_from_other(step.seen_from(piece.first.one))) return std::nullopt;
   }
-  step.refine(part, is_step(curb));
+  step.refine(is_step(curb));
   if (is_step(curb)) curb.height_m = piece.one_is_near ? step.height_m() : -step.height_m();
   if (curb.height_m < 0.0f) curb.kind = CurbKind::step_down;
   // The side of an obstacle; it has a far plane, as what ends unseen is a drop or a crease.

@@ -1,11 +1,12 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
 // the ground along it and next to it where that deviates from them. Cost: eight cells beside each border; the way to
-// the first cell of a side that is too narrow to show the ground beside it, and on a robot that drives to that of the
-// lower side.
+// the first cell of each side, again if it is too narrow to show the ground beside it, and on a robot that drives to
+// that of the lower side.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 #include "curbline/borders/beside.hpp"
 #include "curbline/borders/border.hpp"
@@ -21,6 +22,7 @@
 #include "curbline/plane.hpp"
 #include "curbline/planes/strip_tally.hpp"
 #include "curbline/point.hpp"
+#include "curbline/sweeps.hpp"
 
 namespace curbline {
 
@@ -29,21 +31,23 @@ class StepHeight {
  public:
   using Piece = CurbPiece<limits>;
 
-  /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
-  explicit StepHeight(Piece& piece) : stages_(piece.stages), piece_(piece) {
+  /// Starts with the height by the planes, at the middle of a piece made of that part of a chain; both must outlive
+  /// this.
+  StepHeight(Piece& piece, const ChainPart& part) : stages_(piece.stages), piece_(piece), part_(part) {
     height_m_ = piece.planes.step_m(piece.middle_x_m(), piece.middle_y_m()) - piece.drop_m;
+    latency_m2_ = latency_m2();
   }
 
-  /// For PlanePair::kind(), to decide whether it is a step, given the part that the piece was made of.
-  MeasuredStep measured(const ChainPart& part) const;
+  /// For PlanePair::kind(), to decide whether it is a step.
+  MeasuredStep measured() const;
   /// Refines the height by everything else. Moves the piece's line to the edge of a step that casts a shadow. Without a
   /// step the height is 0, with a variance.
-  void refine(const ChainPart& part, bool is_step);
+  void refine(bool is_step);
   /// Adds the uncertainty of the piece's position, given its variance.
   void doubt_place(float place_variance_m2);
 
   /// From where the ground on one of its sides was last seen: mean over its cells next to the borders.
-  Viewpoint seen_from(const ChainPart& part, Label side) const;
+  Viewpoint seen_from(Label side) const;
 
   /// Of PlanePair::other above PlanePair::one.
   float height_m() const { return height_m_; }
@@ -60,10 +64,12 @@ class StepHeight {
     int i, j, slot;
   };
   CellBeside cell_beside(const Border& border, Label own) const;
-  float narrow_too_far_m2(const ChainPart& part, bool of_other) const;
+  std::optional<BySweep> growth_m_s(Label side) const;
+  float latency_m2() const;
+  float narrow_too_far_m2(bool of_other) const;
   static float carried_m(const Plane& plane, float dx_m, float dy_m);
-  GroundAlong ground_along(const ChainPart& part, bool of_other) const;
-  void follow_ground(const ChainPart& part);
+  GroundAlong ground_along(bool of_other) const;
+  void follow_ground();
   struct Deviations {
     Deviation one, other;
   };
@@ -79,29 +85,59 @@ class StepHeight {
 
   const CurbStages<limits>& stages_;
   Piece& piece_;
-  float height_m_, variance_m2_ = 0.0f, shadow_m_ = 0.0f;
+  const ChainPart& part_;
+  float height_m_, latency_m2_, variance_m2_ = 0.0f, shadow_m_ = 0.0f;
 };
 
 template <Limits limits>
-MeasuredStep StepHeight<limits>::measured(const ChainPart& part) const {
+MeasuredStep StepHeight<limits>::measured() const {
   const Deviations sides = deviations();
   const float too_far_m2 = sides.one.too_far_m2(piece_.borders) + sides.other.too_far_m2(piece_.borders) +
-                           narrow_too_far_m2(part, false) + narrow_too_far_m2(part, true);
+                           narrow_too_far_m2(false) + narrow_too_far_m2(true);
   const auto [one, other] = piece_.planes;
-  const float sd_m = square_root(piece_.variance_m2(one) + piece_.variance_m2(other) + too_far_m2);
+  const float sd_m = square_root(piece_.variance_m2(one) + piece_.variance_m2(other) + latency_m2_ + too_far_m2);
   return {height_m_, sd_m, piece_.half_gap_m, piece_.place_variance_m2, stages_.dem.prior().texture_m2};
+}
+
+/// Mean growth of a side's ground next to the borders with the latency of each sweep; none if no cell shows it.
+template <Limits limits>
+std::optional<BySweep> StepHeight<limits>::growth_m_s(Label side) const {
+  BySweep sum{};
+  float cells = 0.0f;
+  for (const Border& border : part_) {
+    const int slot = cell_beside(border, side).slot;
+    if (slot < 0) continue;
+    const BySweep growth_m_s = stages_.dem.growths_m_s(slot, stages_.latency.sweep_rates());
+    sum.now += growth_m_s.now;
+    sum.last += growth_m_s.last;
+    sum.before += growth_m_s.before;
+    cells += 1.0f;
+  }
+  if (!(cells > 0.0f)) return std::nullopt;
+  return BySweep{sum.now / cells, sum.last / cells, sum.before / cells};
+}
+
+/// What is not known of the tilt's latency lifts both sides alike where the same sweeps have seen them, and apart where
+/// upward ones have seen the one and downward ones the other.
+template <Limits limits>
+float StepHeight<limits>::latency_m2() const {
+  if (piece_.one_sided()) return 0.0f;
+  const auto one = growth_m_s(piece_.first.one), other = growth_m_s(piece_.first.other);
+  if (!one || !other) return 0.0f;
+  return stages_.latency.height_variance_m2(
+      {other->now - one->now, other->last - one->last, other->before - one->before});
 }
 
 /// Deviation::too_far_m2() of the borders beside which a side is too narrow for that, as a scan line that is the first
 /// one there, or cells that a plane lost to its neighbour: by the cell next to each. If that mixes both sides, it is up
 /// to half of the step off its plane; what it is off beyond that, twice, is missing from the step.
 template <Limits limits>
-float StepHeight<limits>::narrow_too_far_m2(const ChainPart& part, bool of_other) const {
+float StepHeight<limits>::narrow_too_far_m2(bool of_other) const {
   const auto [plane, label, beside] = piece_.side(of_other);
   if (piece_.one_sided() || beside.borders == piece_.borders) return 0.0f;
   const float step_m = magnitude(height_m_), toward = of_other == other_is_upper() ? -1.0f : 1.0f;
   float sum_m = 0.0f, cells = 0.0f;
-  for (const Border& border : part) {
+  for (const Border& border : part_) {
     if ((of_other ? border.beside_other : border.beside_one).borders > 0.0f) continue;
     const auto [i, j, slot] = cell_beside(border, label);
     if (slot < 0) continue;
@@ -115,12 +151,12 @@ float StepHeight<limits>::narrow_too_far_m2(const ChainPart& part, bool of_other
 }
 
 template <Limits limits>
-void StepHeight<limits>::refine(const ChainPart& part, bool is_step) {
+void StepHeight<limits>::refine(bool is_step) {
   const bool one_sided = piece_.one_sided();
   if (!is_step) height_m_ = 0.0f;
   float ground_share = 0.0f;  // of the step
   if (is_step && !one_sided) {
-    const Viewpoint view = seen_from(part, lower().label);
+    const Viewpoint view = seen_from(lower().label);
     ground_share = ground_share_of_slope(view);
     leave_shadow(view);
   }
@@ -128,18 +164,18 @@ void StepHeight<limits>::refine(const ChainPart& part, bool is_step) {
   // Behind a brink up to as much again as is visible may be hidden, uniformly.
   variance_m2_ = (one_sided ? square(height_m_) : square(ground_share * height_m_)) * (1.0f / 3);
   if (is_step) {
-    follow_ground(part);
+    follow_ground();
   } else {
     const PlaneErrors planes = plane_errors();
     variance_m2_ += planes.one_m2 + planes.other_m2 - 2.0f * planes.covariance_m2;
   }
   // Rough ground may begin at its edge anywhere within its roughness, uniformly.
-  variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3);
+  variance_m2_ += (one.rough_m2 + other.rough_m2) * (1.0f / 3) + latency_m2_;
   if (!is_step || one_sided) return;
   variance_m2_ += hidden_m2(false) + hidden_m2(true);
   // Beyond an end of the chain the ground may be another plane's.
-  if (part.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
-  if (part.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
+  if (part_.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
+  if (part_.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
 }
 
 /// Beyond an end of the chain another plane may take the place of a side's: by how much lower the step would be, in
@@ -189,11 +225,11 @@ void StepHeight<limits>::doubt_place(float place_variance_m2) {
 }
 
 template <Limits limits>
-Viewpoint StepHeight<limits>::seen_from(const ChainPart& part, Label side) const {
+Viewpoint StepHeight<limits>::seen_from(Label side) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
-  for (const Border& border : part) {
+  for (const Border& border : part_) {
     const int slot = cell_beside(border, side).slot;
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
@@ -264,13 +300,13 @@ float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) 
 /// By the cells of a side a little farther from the borders, along rows or along columns, whichever are more across the
 /// piece, so that each cell counts once.
 template <Limits limits>
-GroundAlong StepHeight<limits>::ground_along(const ChainPart& part, bool of_other) const {
+GroundAlong StepHeight<limits>::ground_along(bool of_other) const {
   const Dem<limits>& dem = stages_.dem;
   const auto [plane, label, beside] = piece_.side(of_other);
   const float slope_m2 = dem.slope_m2(plane);
   const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
   float cells = 0.0f, borders = 0.0f, above_m = 0.0f;
-  for (const Border& border : part) {
+  for (const Border& border : part_) {
     if (border.axis != across) continue;
     const float before = cells;
     const std::size_t d = border.toward(label);
@@ -292,14 +328,14 @@ GroundAlong StepHeight<limits>::ground_along(const ChainPart& part, bool of_othe
 /// Where the ground next to the borders deviates from a plane, the step begins at that ground, by its share; for the
 /// rest at the ground along the step, by that one's share; and for the rest of that at the plane.
 template <Limits limits>
-void StepHeight<limits>::follow_ground(const ChainPart& part) {
+void StepHeight<limits>::follow_ground() {
   const Deviations beside = deviations();
   const PlaneErrors planes = plane_errors();
   const float toward = height_m_ < 0.0f ? -1.0f : 1.0f;
   float planes_share = 1.0f;  // of both planes' errors
   for (const bool other : {false, true}) {
     const Deviation& next = other ? beside.other : beside.one;
-    const GroundAlong along = piece_.one_sided() ? GroundAlong{} : ground_along(part, other);
+    const GroundAlong along = piece_.one_sided() ? GroundAlong{} : ground_along(other);
     const float share = next.share(), rest = 1.0f - share;
     height_m_ += toward * share * next.away_m + rest * (other ? along.above_m : -along.above_m);
     const float plane_m2 = other ? planes.other_m2 : planes.one_m2;
