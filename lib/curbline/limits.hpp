@@ -15,8 +15,8 @@ namespace curbline {
 /// Every size is a capacity. The window in use may be smaller (Settings::window); a full store refuses and counts
 /// (Counters). Scale regions, links, borders and curbs with the number of cells.
 struct Limits {
-  int rows = 40;          ///< cells of the window along x, a multiple of 4
-  int cols = 40;          ///< cells of the window along y, a multiple of 4
+  int rows = 40;          ///< cells of the window along x, a multiple of 4 below 32768
+  int cols = 40;          ///< cells of the window along y, likewise
   int planes = 16;        ///< planes of the mixture, 2 to 255
   int beams = 1081;       ///< beams of a scan line
   int tilt_samples = 64;  ///< tilt readings kept, a power of two from 4 on: of a line and its wait; 2 s at 32 Hz

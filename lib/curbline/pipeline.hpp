@@ -6,7 +6,8 @@
 //   \_________________ LineIntake _________________/                                                              |
 //   curbs <------------------------------------------------------------------------------------ CurbTracer <------+
 //
-// No heap, no exceptions, no I/O, no clock. Settings are checked once, in init(); bad data is dropped and counted.
+// No heap, no exceptions, no I/O, no clock. Its constructor fills it, so start-up code must run those of static objects
+// (.init_array; board/common/runtime.cpp does). Settings are checked once, in init(); bad data is dropped and counted.
 // add_tilt() may be called from an interrupt; all other calls come from one context, or from two that exclude each
 // other.
 #pragma once
@@ -103,7 +104,7 @@ class Pipeline {
 
   /// May a robot that can take steps of max_step_m and slopes of max_slope_rad drive on cell (i, j) of the window, or
   /// over one of curbs()? A curb may be a line older than the planes. Outside the window the ground is unknown, and not
-  /// passable. See passability.hpp.
+  /// passable. About 20 operations a curb for a cell. See passability.hpp.
   bool passable(int i, int j, float max_step_m, float max_slope_rad) const {
     const Mobility mobility{max_step_m, max_slope_rad};
     return knows(i, j) && curbline::passable(dem_, plane_mixture_, label_field_, i, j, mobility) &&
@@ -119,8 +120,8 @@ class Pipeline {
   /// x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive
   /// its plane by a line.
   Label label(int i, int j) const { return knows(i, j) ? label_field_.label(dem_.slot(i, j)) : no_label; }
-  /// The probability of that label; 0 outside the window, before init(), and while it is but the region's, as the cell
-  /// waits for its turn (LabelField::update()).
+  /// The probability of that label; 0 outside the window and before init(). While the label is but the region's, as the
+  /// cell waits for its turn (LabelField::update()), it is what the last update gave that plane there, 0 as a rule.
   float label_probability(int i, int j) const;
   /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. no_label where
   /// label() is. See ground_label.hpp.

@@ -66,7 +66,7 @@ Lower lower(const Flank& flank) {
       auto part = borders.part(0, length - 1);
       part.ends = {first, second};
       CurbPiece<small_limits> anew(curb_stages, part);
-      StepHeight<small_limits> height(anew, part);
+      StepHeight<small_limits> height(anew);
       height.refine(true);
       return height.variance_m2();
     };

@@ -768,6 +768,21 @@ TEST_CASE("ground: a block is no obstacle if a robot has room on it, if it leans
   }
 }
 
+//        ___ . . .
+//   ____|     . . .        the same in the middle of the window, of which the laser has not seen more yet
+TEST_CASE("ground: raised ground is no obstacle as long as the laser has not seen it end") {
+  const auto raised = [](double seen_to_m) {
+    return [=](double x, double y) {
+      if (x > seen_to_m) return std::nan("");
+      return x > 0.8 && x < 1.6 && y > 0.6 && y < 1.8 ? 0.28 : 0.0;
+    };
+  };
+  for (const int quarters : {0, 1, 2, 3}) {
+    CHECK(label_count(turned_ground(raised(1.6), quarters), 3.0f) == 2);
+    CHECK(label_count(turned_ground(raised(1.9), quarters), 3.0f) == 1);
+  }
+}
+
 //              _____
 //     _  _    |           two boxes of about the same height lead nowhere; beside a platform they are low steps on it
 //  __| || |___|

@@ -146,6 +146,20 @@ TEST_CASE("passability: a curb goes through the cells on its line, and those wit
   CHECK_FALSE(through(1.0f, -0.12f));
 }
 
+TEST_CASE(
+    "passability: a line's direction is uncertain, too, so that it may go through cells farther off at its ends") {
+  const Curb curb{.x1_m = 1.0f, .position_sd_m = 0.02f};
+  const auto through = [&](float x_m, float y_m) { return crosses(curb, x_m, y_m, 0.05f, 0.05f); };
+  for (const float sign : {-1.0f, 1.0f}) {
+    CHECK(through(0.5f, sign * 0.08f));
+    CHECK_FALSE(through(0.5f, sign * 0.1f));
+    for (const float x_m : {0.05f, 0.95f}) {
+      CHECK(through(x_m, sign * 0.12f));
+      CHECK_FALSE(through(x_m, sign * 0.14f));
+    }
+  }
+}
+
 TEST_CASE("passability: what spreads within a cell by more than the step is in the way, noise is not") {
   const auto with_spread = [](double spread_m, float max_step_m) {
     Stages<small_limits> stages(small_settings());

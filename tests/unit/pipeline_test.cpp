@@ -672,6 +672,30 @@ TEST_CASE(
   CHECK(longest(pipeline->curbs()).height_sd_m > 0.006f);  // the edge may begin anywhere within 1 cm / sqrt 3
 }
 
+//           ,.-,_.,-.     readings of a lawn, 3 cm to either side of its middle: few cells are even, by chance
+//  ________|
+TEST_CASE("pipeline: the step before a wide lawn is as high as the middle of its readings, in a finished map") {
+  double errors_m2 = 0.0, pieces = 0.0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    test::Noise noise(seed);
+    const double at_m = 1.5 + noise.uniform(), slope = 0.15 * (noise.uniform() - 0.5);
+    std::vector<Point> points(6400);
+    for (Point& p : points) {
+      const double x = 4.0 * noise.uniform(), y = 4.0 * noise.uniform() - 2.0;
+      const double lawn_m = x < at_m + slope * y ? 0.0 : 0.12 + 0.03 * noise.normal();
+      p = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(lawn_m + 0.005 * noise.normal()), 2.5e-5f};
+    }
+    const auto pipeline = map_of(points);
+    for (const Curb& curb : pipeline->curbs()) {
+      if (!is_step(curb) || length_of(curb) < 1.0f) continue;
+      errors_m2 += std::pow(static_cast<double>(curb.height_m) - 0.12, 2);
+      pieces += 1.0;
+    }
+  }
+  REQUIRE(pieces >= 40.0);
+  CHECK(std::sqrt(errors_m2 / pieces) < 0.006);
+}
+
 TEST_CASE("pipeline: a damaged tilt reading leaves no wrong latency where readings come more slowly than lines") {
   const auto pipeline = started();
   NoddingLaser laser;

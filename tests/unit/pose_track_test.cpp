@@ -235,6 +235,22 @@ Track on_ramp(int poses, const PoseSettings& settings, Changed&& changed) {
   return track;
 }
 
+TEST_CASE("pose track: of poses that err each on its own one in 400 jumps, after another that has jumped, too") {
+  PoseSettings settings;
+  settings.height_sd_m = 0.003f;
+  const int apart = GENERATE(0, 1);  // between the poses that tell the speed and the one it is gone on from
+  test::Noise noise(1);
+  int jumps = 0;
+  for (int k = 0; k < 100000; ++k) {
+    const auto pose = [&](int n) {
+      return Pose{t0 + 20 * ms * n, 0.0f, 0.0f, static_cast<float>(0.003 * noise.normal())};
+    };
+    const Pose first = pose(0), last = pose(4), before = apart == 0 ? last : pose(5), now = pose(5 + apart);
+    jumps += detail::residual_of(first, last, before, now, settings).height_jumps ? 1 : 0;
+  }
+  CHECK(jumps == Approx(100000 / 400).epsilon(0.2));
+}
+
 TEST_CASE("pose track: poses that jump say by how much, those around them do not") {
   const Track track = on_ramp(8, noisy_poses(), [](Pose& pose, int k) {
     if (k < 5) return;

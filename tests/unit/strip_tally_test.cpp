@@ -96,5 +96,47 @@ TEST_CASE("strip tally: a level tread is no face, nor is a slope of two cells") 
   }));
 }
 
+/// Of 20 strips beside an edge of 12 cm, all as narrow as the laser's spot, that all rise by so much of it together.
+bool blurred(float cells_a_strip, float rise_m) {
+  StripTally tally;
+  tally.strips = 20.0f;
+  tally.cells = tally.strip_cells = tally.blurred_cells[0] = cells_a_strip * tally.strips;
+  tally.step_m = 0.12f * tally.strips;
+  tally.along_step_m = rise_m;
+  return tally.blurred_edge();
+}
+
+//       ____         ____
+//    --'          __|        of strips of two cells those of a blur lead from one plane to the other, a tread is level
+// __|          __|
+TEST_CASE("strip tally: strips of which hardly any has two cells tell no tread, whatever those few do") {
+  CHECK(blurred(2.0f, 1.2f));
+  CHECK_FALSE(blurred(2.0f, 0.0f));
+  CHECK(blurred(1.05f, 0.0f));
+}
+
+TEST_CASE("strip tally: the laser's spot on an edge aslant is as long on its one side as on the other") {
+  const auto blurred_cells = [](float aside_m) {
+    Dem<small_limits> dem;
+    const Settings settings = test::small_settings();
+    dem.init(settings.window, settings.planes.prior);
+    CellLabels<small_limits> labels;
+    labels.fill(no_label);
+    for (int i = 0; i < 24; ++i) {
+      dem.add({0.1f * static_cast<float>(i) + 0.05f, 1.25f, i < 10 ? 0.0f : i > 10 ? -0.15f : -0.07f, 1e-4f});
+      labels[dem.slot(i, 12)] = i < 10 ? 0 : i > 10 ? 2 : 1;
+    }
+    std::array<Plane, small_limits.planes> planes{};
+    for (Plane& plane : planes) plane.x_m = 1.05f, plane.y_m = 1.25f, plane.cells = 10.0f;
+    planes[1].slope_x = planes[1].slope_y = -1.0f;
+    planes[1].pxx = planes[1].pxy = 1.0f;
+    const Viewpoint view{-1.0f, 1.25f + aside_m, 1.2f};
+    const Obstacles<small_limits> obstacles(dem, planes, view, labels);
+    return StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1].blurred_cells[0];
+  };
+  CHECK(blurred_cells(1.0f) > 2.0f);  // an edge at 45 degrees, and the spot
+  CHECK(blurred_cells(1.0f) == Approx(blurred_cells(-1.0f)));
+}
+
 }  // namespace
 }  // namespace curbline

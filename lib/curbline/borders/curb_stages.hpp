@@ -54,7 +54,7 @@ struct CurbStages {
   [[gnu::noinline]] bool holds_alone(int slot, Label label, float slope_m2) const {
     const Cell& cell = dem.cell(slot);
     return cell.valid() && field.label(slot) == label && mixture.region_label(slot) != no_label &&
-           mixture.on_ground(slot) && !dem.mixed(cell, slope_m2);
+           mixture.on_ground(slot) && !dem.mixed(cell, slope_m2, mixture.plane(label).rough_m2);
   }
   /// Do the heights of a cell, the middle one of three along (di, dj), spread as on an edge of the planes of the
   /// others: is their variance nearer to that of two levels with this mean than to none?

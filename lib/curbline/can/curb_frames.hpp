@@ -43,7 +43,7 @@ namespace curbline::can {
 inline constexpr std::uint32_t curb_ahead_id = 0x6A0, curb_status_id = 0x6A1;
 
 struct CurbStatus {
-  std::uint8_t counter = 0;
+  std::uint8_t counter = 255;  ///< of the last CurbAhead, from 0 on; 255 before the first
   SourceState tilt = SourceState::never;
   std::uint32_t curbs = 0;
   bool resting = false;  ///< the tilt's readings come, but do not change; told if `tilt` is ok

@@ -61,7 +61,7 @@ std::optional<Curb> CurbMaker<limits>::make(const ChainPart& part) {
   if (!piece.sides_known) return std::nullopt;
   if (part.ends.first) piece.go_on(Piece::End::first);
   if (part.ends.second) piece.go_on(Piece::End::second);
-  StepHeight<limits> step(piece, part);
+  StepHeight<limits> step(piece);
   Curb curb = without_height(piece);
   curb.kind = piece.planes.kind(piece.line, step.measured());
   const bool one_sided = piece.one_sided();

@@ -23,6 +23,7 @@ struct CurbPiece {
   using Stages = CurbStages<limits>;
 
   const Stages& stages;
+  const ChainPart& part;
   const Border& first;  ///< all have the same planes
   PlanePair planes;
   LineFit::Segment line{};
@@ -41,8 +42,8 @@ struct CurbPiece {
   bool one_is_right = false;            ///< of the line, from its first end to its second
   bool sides_known = true;              ///< else one_is_right and one_is_near mean nothing
 
-  /// Fits the line to the borders and computes the means.
-  CurbPiece(const Stages& in, const ChainPart& part);
+  /// Fits the line to the borders and computes the means. The part must outlive it.
+  CurbPiece(const Stages& in, const ChainPart& of);
 
   static PlanePair planes_of(const Stages& in, const Border& border) {
     const Label beyond = border.other == no_label ? border.one : border.other;
@@ -110,15 +111,16 @@ struct CurbPiece {
   };
   Across across(const Viewpoint& view) const;
   void take_sides(float toward_x, float toward_y);
-  void take_means(const ChainPart& part);
-  void take_variances(const ChainPart& part, const LineFit& fit);
+  void take_means();
+  void take_variances(const LineFit& fit);
   float lines_seen() const;
-  void take_widths(const ChainPart& part);
+  void take_widths();
 };
 
 template <Limits limits>
-CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& part)
+CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& of)
     : stages(in),
+      part(of),
       first(part.front()),
       planes(planes_of(in, first)),
       borders(static_cast<float>(part.size())),
@@ -134,9 +136,9 @@ CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& part)
   // For a single border, or two at one place, where surfaces meet at an unseen cell.
   if (!line.has_direction()) line = LineFit::across(first.x_m, first.y_m, toward_x, toward_y, half_cell_m);
   for (const Border& border : part) line.reach(border.x_m, border.y_m, half_cell_m);  // the last need not be outermost
-  take_means(part);
-  take_variances(part, fit);
-  take_widths(part);
+  take_means();
+  take_variances(fit);
+  take_widths();
   take_sides(toward_x, toward_y);
 }
 
@@ -174,7 +176,7 @@ auto CurbPiece<limits>::across(const Viewpoint& view) const -> Across {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_means(const ChainPart& part) {
+void CurbPiece<limits>::take_means() {
   for (const Border& border : part) {
     const float each = part.share(border) / observations;
     drop_m += each * border.drop_m;
@@ -187,7 +189,7 @@ void CurbPiece<limits>::take_means(const ChainPart& part) {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_variances(const ChainPart& part, const LineFit& fit) {
+void CurbPiece<limits>::take_variances(const LineFit& fit) {
   float located = 0.0f, open = 0.0f, parted_m = 0.0f;
   bool alike = true;  // all err alike: each is open, or has no far plane
   for (const Border& border : part) {
@@ -230,7 +232,7 @@ float CurbPiece<limits>::lines_seen() const {
 }
 
 template <Limits limits>
-void CurbPiece<limits>::take_widths(const ChainPart& part) {
+void CurbPiece<limits>::take_widths() {
   for (const Border& border : part) {
     const float cosine = border.axis == 0 ? line.normal_x : line.normal_y;
     const float across = part.share(border) / observations * magnitude(cosine);

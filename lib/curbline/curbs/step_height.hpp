@@ -31,9 +31,8 @@ class StepHeight {
  public:
   using Piece = CurbPiece<limits>;
 
-  /// Starts with the height by the planes, at the middle of a piece made of that part of a chain; both must outlive
-  /// this.
-  StepHeight(Piece& piece, const ChainPart& part) : stages_(piece.stages), piece_(piece), part_(part) {
+  /// Starts with the height by the planes, at the middle of a piece, which must outlive this.
+  explicit StepHeight(Piece& piece) : stages_(piece.stages), piece_(piece) {
     height_m_ = piece.planes.step_m(piece.middle_x_m(), piece.middle_y_m()) - piece.drop_m;
     latency_m2_ = latency_m2();
   }
@@ -85,7 +84,6 @@ class StepHeight {
 
   const CurbStages<limits>& stages_;
   Piece& piece_;
-  const ChainPart& part_;
   float height_m_, latency_m2_, variance_m2_ = 0.0f, shadow_m_ = 0.0f;
 };
 
@@ -104,7 +102,7 @@ template <Limits limits>
 std::optional<BySweep> StepHeight<limits>::growth_m_s(Label side) const {
   BySweep sum{};
   float cells = 0.0f;
-  for (const Border& border : part_) {
+  for (const Border& border : piece_.part) {
     const int slot = cell_beside(border, side).slot;
     if (slot < 0) continue;
     const BySweep growth_m_s = stages_.dem.growths_m_s(slot, stages_.latency.sweep_rates());
@@ -137,7 +135,7 @@ float StepHeight<limits>::narrow_too_far_m2(bool of_other) const {
   if (piece_.one_sided() || beside.borders == piece_.borders) return 0.0f;
   const float step_m = magnitude(height_m_), toward = of_other == other_is_upper() ? -1.0f : 1.0f;
   float sum_m = 0.0f, cells = 0.0f;
-  for (const Border& border : part_) {
+  for (const Border& border : piece_.part) {
     if ((of_other ? border.beside_other : border.beside_one).borders > 0.0f) continue;
     const auto [i, j, slot] = cell_beside(border, label);
     if (slot < 0) continue;
@@ -174,8 +172,8 @@ void StepHeight<limits>::refine(bool is_step) {
   if (!is_step || one_sided) return;
   variance_m2_ += hidden_m2(false) + hidden_m2(true);
   // Beyond an end of the chain the ground may be another plane's.
-  if (part_.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
-  if (part_.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
+  if (piece_.part.ends.first) variance_m2_ += lower_m2(Piece::End::first) * (1.0f / 3);
+  if (piece_.part.ends.second) variance_m2_ += lower_m2(Piece::End::second) * (1.0f / 3);
 }
 
 /// Beyond an end of the chain another plane may take the place of a side's: by how much lower the step would be, in
@@ -229,7 +227,7 @@ Viewpoint StepHeight<limits>::seen_from(Label side) const {
   Viewpoint mean = stages_.view;
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
-  for (const Border& border : part_) {
+  for (const Border& border : piece_.part) {
     const int slot = cell_beside(border, side).slot;
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
@@ -306,7 +304,7 @@ GroundAlong StepHeight<limits>::ground_along(bool of_other) const {
   const float slope_m2 = dem.slope_m2(plane);
   const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
   float cells = 0.0f, borders = 0.0f, above_m = 0.0f;
-  for (const Border& border : part_) {
+  for (const Border& border : piece_.part) {
     if (border.axis != across) continue;
     const float before = cells;
     const std::size_t d = border.toward(label);

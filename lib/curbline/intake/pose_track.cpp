@@ -56,11 +56,13 @@ Pose interpolate(const Pose& a, const Pose& b, std::int64_t time_ns) {
           mix(a.qw, sign * b.qw)};
 }
 
-/// Independent errors of the poses enter its variance with 1, (1 + f)^2 and f^2.
+/// Independent errors of the poses enter its variance with 1, (1 + f)^2 and f^2, or, if `before` is not `last`, with 1,
+/// 1, f^2 and f^2.
 PoseResidual residual_of(const Pose& first, const Pose& last, const Pose& before, const Pose& now,
                          const PoseSettings& settings) {
   const float f = to_float(now.time_ns - before.time_ns) / to_float(last.time_ns - first.time_ns);
-  const float noise = gate * (1.0f + (1.0f + f) * (1.0f + f) + f * f);
+  const float of_last = before.time_ns == last.time_ns ? square(1.0f + f) : 1.0f + f * f;
+  const float noise = gate * (1.0f + of_last + f * f);
   const Turn led = turn(first, last), went = turn(before, now);
   PoseResidual off{now.z_m - before.z_m - f * (last.z_m - first.z_m), went.roll_rad - f * led.roll_rad,
                    went.pitch_rad - f * led.pitch_rad};

@@ -36,10 +36,11 @@ struct PatchResiduals {
   struct Row {
     float cells = 0.0f, x = 0.0f, y = 0.0f, off_m = 0.0f;
   };
-  static constexpr std::size_t most_rows = side * 3 / 2;  ///< along the diagonal
+  static constexpr std::size_t most_rows = 2 * side;  ///< of very long cells, along the diagonal
   std::array<Row, most_rows> rows{};
 
-  /// A cell above its plane. `ahead`: of at most unit length.
+  /// A cell above its plane. `ahead`: how many rows farther ahead the next cell along x (cos) and along y (sin) lies,
+  /// together at most two.
   void add(float x_cells, float y_cells, float above_m, const SinCos& ahead);
   void add_rise(std::size_t axis, float rise_m) {
     rises[axis].pairs += 1.0f;
@@ -109,6 +110,12 @@ class CommonNoise {
   };
   void look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
                PatchRow& row) const;
+  /// How many rows, each as long as the mean of a cell's sides (CurbStages::pitch_m()), a cell leads ahead.
+  static SinCos rows_ahead(const Dem<limits>& dem) {
+    const SinCos& ahead = dem.ahead_is();
+    const float pitch_m = 0.5f * (dem.cell_x_m() + dem.cell_y_m());
+    return {ahead.sin * (dem.cell_y_m() / pitch_m), ahead.cos * (dem.cell_x_m() / pitch_m)};
+  }
   /// The estimate of a patch, and its weight.
   struct Shown {
     float value, weight;
@@ -148,7 +155,7 @@ void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<lim
   if (dem.mixed(cell, dem.slope_m2(plane))) return;
   const Seen now{label, i, dem.above_m(i, j, cell, plane)};
   PatchSums& sums = row.patch[static_cast<std::size_t>(j / side)];
-  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m, dem.ahead_is());
+  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m, rows_ahead(dem));
   sums.growth_m2_s2 += square(dem.growth_m_s(slot));
   sums.points += cell.points;
   const auto column = static_cast<std::size_t>(j);

@@ -60,10 +60,18 @@ class Obstacles {
 
   /// Extent of a plane's region.
   struct Extent {
-    bool reaches_end = false;  ///< of the window
+    bool reaches_end = false;  ///< of what has been seen of the window
     float thin_cells = 0.0f;   ///< cells in runs shorter than shoulders, along x or along y
     std::array<int, 2> first{limits.rows, limits.cols}, last{};  ///< cells, along x and along y
 
+    void add(int i, int j) {
+      first = {std::min(first[0], i), std::min(first[1], j)};
+      last = {std::max(last[0], i), std::max(last[1], j)};
+    }
+    bool touches_end_of(const Extent& seen) const {
+      return first[0] == seen.first[0] || first[1] == seen.first[1] || last[0] == seen.last[0] ||
+             last[1] == seen.last[1];
+    }
     bool narrow(float cells) const { return 2.0f * thin_cells >= cells; }
     float length_m(std::size_t axis, float cell_m) const {
       return static_cast<float>(last[axis] - first[axis] + 1) * cell_m;
@@ -175,15 +183,16 @@ void Obstacles<limits>::take_ways_from(PlaneFlags& top, const Neighbours& beside
 template <Limits limits>
 auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
   Extents found{};
+  Extent seen;
   dem_.for_each_valid([&](int i, int j, int s) {
+    seen.add(i, j);
     const Label label = region_label_[s];
     if (label == no_label || !asked[label]) return;
     Extent& extent = found[label];
-    if (i == 0 || j == 0 || i == dem_.rows() - 1 || j == dem_.cols() - 1) extent.reaches_end = true;
-    extent.first = {std::min(extent.first[0], i), std::min(extent.first[1], j)};
-    extent.last = {std::max(extent.last[0], i), std::max(extent.last[1], j)};
+    extent.add(i, j);
     if (thin({dem_, 0, j}, i, label) || thin({dem_, 1, i}, j, label)) extent.thin_cells += 1.0f;
   });
+  for (Extent& extent : found) extent.reaches_end = extent.touches_end_of(seen);
   return found;
 }
 
@@ -193,7 +202,7 @@ auto Obstacles<limits>::extents_of(const PlaneFlags& asked) const -> Extents {
 template <Limits limits>
 bool Obstacles<limits>::thin(const CellLine<limits>& line, int at, Label label) const {
   const float cell_m = line.pitch_m();
-  const int toward = static_cast<float>(at) * cell_m < view_.place_m(line.axis) ? 1 : -1;
+  const int toward = -line.away(view_, at);
   int length = 1;
   for (const int step : {toward, -toward}) {
     int last = at;

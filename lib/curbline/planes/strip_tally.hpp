@@ -104,8 +104,8 @@ struct StripTally {
   }
   /// The blur of an edge goes from one plane to the other: over n cells it falls by 1 - 1/n of the step. What falls by
   /// less than a quarter of that is no blur but the tread of a stair, level but for what its end cells hold of the
-  /// next.
-  bool follows_step() const { return 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
+  /// next. Narrow strips have too few cells to tell.
+  bool follows_step() const { return narrow() || 4.0f * along_step_m * strip_cells >= step_m * (strip_cells - strips); }
   bool veil(const Shadowed& in_shadow) const { return most(in_shadow.cells) && in_shadow.falls_with_rays(); }
 };
 
@@ -172,11 +172,11 @@ void StripTallies<limits>::take_edge(const Strip& strip, const Line& line, bool 
   const auto axis = static_cast<std::size_t>(line.axis);
   const Viewpoint from = dem_.seen_from(line.slot(run.first), view_);
   const float tangent = askew(planes_[run.label], line.axis);
-  const Sight across = Sight::along(line, from).across(tangent);
+  const Sight sight = Sight::along(line, from), across = sight.across(tangent);
   if (rises) {
     if (const auto fall = strip.fall_in_shadow(across)) tally.shadow[axis].add(static_cast<float>(run.cells), *fall);
   }
-  if (drops_[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(across, tangent);
+  if (drops_[run.label] && !strip.stands()) tally.blurred_cells[axis] += strip.blurred_cells(sight, tangent);
 }
 
 template <Limits limits>

@@ -130,14 +130,13 @@ void Segmentation<limits>::cut_touched_blocks(const Dem<limits>& dem, const Plan
 /// (lib/formulas.md).
 template <Limits limits>
 void Segmentation<limits>::cut(const Dem<limits>& dem, int row, int col, const Plane& lean) {
-  const bool leans = square(lean.slope_x) + square(lean.slope_y) > 0.0f;
   const int first = dem.slot(row, col);
   std::array<BlockCell, block_cells> cells;
   for (int k = 0; k < block_cells; ++k) {
     const int s = dem.slot_in_block(first, k);
     const Cell& cell = dem.cell(s);
-    const float height_m = leans ? dem.above_m(row + k / block_side, col + k % block_side, cell, lean) : cell.height_m;
-    cells[static_cast<std::size_t>(k)] = {height_m, cell.variance_m2(settings_.cell), cell.valid()};
+    cells[static_cast<std::size_t>(k)] = {dem.above_m(row + k / block_side, col + k % block_side, cell, lean),
+                                          cell.variance_m2(settings_.cell), cell.valid()};
     if (region_[s] != none) dissolved_.insert(region_[s]);
   }
   const BlockLeaves leaves = cut_block(cells, settings_.leaf_scale);
