@@ -11,29 +11,38 @@ namespace {
 
 using test::small_limits;
 
+/// A map, and the plane of each cell's region.
+struct Map {
+  Map() {
+    const Settings settings = test::small_settings();
+    dem.init(settings.window, settings.planes.prior);
+    labels.fill(no_label);
+  }
+  void see(int i, int j, Label label, float height_m, float across = 0.5f) {
+    dem.add({0.1f * (static_cast<float>(i) + across), 0.1f * static_cast<float>(j) + 0.05f, height_m, 1e-4f});
+    labels[dem.slot(i, j)] = label;
+  }
+  StripTally tally(Label of, const Viewpoint& view, const std::array<Plane, small_limits.planes>& planes = {}) const {
+    const Obstacles<small_limits> obstacles(dem, planes, view, labels);
+    return StripTallies<small_limits>(dem, planes, view, labels, obstacles)[of];
+  }
+
+  Dem<small_limits> dem{};
+  CellLabels<small_limits> labels{};
+};
+
 // _______
 //        `              two cells on one row, four apart, in the shadow of a step; on other rows nothing lies beyond
 //           ` ____
 TEST_CASE("strip tally: of a strip the cells that are seen count, as of its plane, not those between") {
-  Dem<small_limits> dem;
-  const Settings settings = test::small_settings();
-  dem.init(settings.window, settings.planes.prior);
-  CellLabels<small_limits> labels;
-  labels.fill(no_label);
-  const auto see = [&](int i, int j, Label label, float height_m) {
-    dem.add({0.1f * static_cast<float>(i) + 0.05f, 0.1f * static_cast<float>(j) + 0.05f, height_m, 1e-4f});
-    labels[dem.slot(i, j)] = label;
-  };
+  Map map;
   for (int i = 0; i < 24; ++i) {
-    if (i < 10 || i > 14) see(i, 12, i < 10 ? 0 : 2, i < 10 ? 0.0f : -0.15f);
+    if (i < 10 || i > 14) map.see(i, 12, i < 10 ? 0 : 2, i < 10 ? 0.0f : -0.15f);
   }
-  see(10, 12, 1, -0.03f);
-  see(14, 12, 1, -0.12f);
-  for (int j = 0; j < 8; ++j) see(10, j, 1, -0.03f);
-  const std::array<Plane, small_limits.planes> planes{};
-  const Viewpoint view{-2.5f, 1.25f, 1.0f};
-  const Obstacles<small_limits> obstacles(dem, planes, view, labels);
-  const StripTally tally = StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1];
+  map.see(10, 12, 1, -0.03f);
+  map.see(14, 12, 1, -0.12f);
+  for (int j = 0; j < 8; ++j) map.see(10, j, 1, -0.03f);
+  const StripTally tally = map.tally(1, {-2.5f, 1.25f, 1.0f});
   CHECK(tally.cells == 10.0f);
   CHECK(tally.shadow[0].cells == 2.0f);
 }
@@ -42,27 +51,18 @@ TEST_CASE("strip tally: of a strip the cells that are seen count, as of its plan
 /// of the step, in row k of the strip, from 0 to 1 across the row.
 template <typename Height>
 bool face(int cells, Height&& height) {
-  Dem<small_limits> dem;
-  const Settings settings = test::small_settings();
-  dem.init(settings.window, settings.planes.prior);
-  CellLabels<small_limits> labels;
-  labels.fill(no_label);
+  Map map;
   for (int i = 0; i < 24; ++i) {
     const int k = i - 10;
     for (int j = 0; j < 24; ++j) {
       for (int n = 0; n < 12; ++n) {
         const float across = (static_cast<float>(n) + 0.5f) / 12.0f, noise_m = n % 2 == 0 ? 0.002f : -0.002f;
         const float share = k < 0 ? 0.0f : k >= cells ? 1.0f : height(across, k);
-        dem.add({0.1f * (static_cast<float>(i) + across), 0.1f * static_cast<float>(j) + 0.05f, 0.12f * share + noise_m,
-                 1e-4f});
+        map.see(i, j, k < 0 ? 0 : k >= cells ? 2 : 1, 0.12f * share + noise_m, across);
       }
-      labels[dem.slot(i, j)] = k < 0 ? 0 : k >= cells ? 2 : 1;
     }
   }
-  const std::array<Plane, small_limits.planes> planes{};
-  const Viewpoint view{0.0f, 1.2f, 1.0f};
-  const Obstacles<small_limits> obstacles(dem, planes, view, labels);
-  return StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1].face();
+  return map.tally(1, {0.0f, 1.2f, 1.0f}).face();
 }
 
 //            _____
@@ -117,22 +117,13 @@ TEST_CASE("strip tally: strips of which hardly any has two cells tell no tread, 
 
 TEST_CASE("strip tally: the laser's spot on an edge aslant is as long on its one side as on the other") {
   const auto blurred_cells = [](float aside_m) {
-    Dem<small_limits> dem;
-    const Settings settings = test::small_settings();
-    dem.init(settings.window, settings.planes.prior);
-    CellLabels<small_limits> labels;
-    labels.fill(no_label);
-    for (int i = 0; i < 24; ++i) {
-      dem.add({0.1f * static_cast<float>(i) + 0.05f, 1.25f, i < 10 ? 0.0f : i > 10 ? -0.15f : -0.07f, 1e-4f});
-      labels[dem.slot(i, 12)] = i < 10 ? 0 : i > 10 ? 2 : 1;
-    }
+    Map map;
+    for (int i = 0; i < 24; ++i) map.see(i, 12, i < 10 ? 0 : i > 10 ? 2 : 1, i < 10 ? 0.0f : i > 10 ? -0.15f : -0.07f);
     std::array<Plane, small_limits.planes> planes{};
     for (Plane& plane : planes) plane.x_m = 1.05f, plane.y_m = 1.25f, plane.cells = 10.0f;
     planes[1].slope_x = planes[1].slope_y = -1.0f;
     planes[1].pxx = planes[1].pxy = 1.0f;
-    const Viewpoint view{-1.0f, 1.25f + aside_m, 1.2f};
-    const Obstacles<small_limits> obstacles(dem, planes, view, labels);
-    return StripTallies<small_limits>(dem, planes, view, labels, obstacles)[1].blurred_cells[0];
+    return map.tally(1, {-1.0f, 1.25f + aside_m, 1.2f}, planes).blurred_cells[0];
   };
   CHECK(blurred_cells(1.0f) > 2.0f);  // an edge at 45 degrees, and the spot
   CHECK(blurred_cells(1.0f) == Approx(blurred_cells(-1.0f)));
