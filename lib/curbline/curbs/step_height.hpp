@@ -62,7 +62,10 @@ class StepHeight {
   struct CellBeside {
     int i, j, slot;
   };
-  CellBeside cell_beside(const Border& border, Label own) const;
+  template <typename Wanted>
+  CellBeside cell_beside(const Border& border, Label own, Wanted&& wanted) const;
+  /// The cell that shows the ground of the plane `own`.
+  CellBeside ground_beside(const Border& border, Label own) const;
   std::optional<BySweep> growth_m_s(Label side) const;
   float latency_m2() const;
   float narrow_too_far_m2(bool of_other) const;
@@ -97,13 +100,14 @@ MeasuredStep StepHeight<limits>::measured() const {
   return {height_m_, sd_m, piece_.half_gap_m, piece_.place_variance_m2, stages_.dem.prior().texture_m2};
 }
 
-/// Mean growth of a side's ground next to the borders with the latency of each sweep; none if no cell shows it.
+/// Mean growth of a side's cells next to the borders with the latency of each sweep; none if there are none. What they
+/// mix does not matter here.
 template <Limits limits>
 std::optional<BySweep> StepHeight<limits>::growth_m_s(Label side) const {
   BySweep sum{};
   float cells = 0.0f;
   for (const Border& border : piece_.part) {
-    const int slot = cell_beside(border, side).slot;
+    const int slot = cell_beside(border, side, [](int, int, int) { return true; }).slot;
     if (slot < 0) continue;
     const BySweep growth_m_s = stages_.dem.growths_m_s(slot, stages_.latency.sweep_rates());
     sum.now += growth_m_s.now;
@@ -137,7 +141,7 @@ float StepHeight<limits>::narrow_too_far_m2(bool of_other) const {
   float sum_m = 0.0f, cells = 0.0f;
   for (const Border& border : piece_.part) {
     if ((of_other ? border.beside_other : border.beside_one).borders > 0.0f) continue;
-    const auto [i, j, slot] = cell_beside(border, label);
+    const auto [i, j, slot] = ground_beside(border, label);
     if (slot < 0) continue;
     const float off_m = toward * stages_.dem.above_m(i, j, stages_.dem.cell(slot), plane);
     sum_m += std::clamp(2.0f * off_m - step_m, 0.0f, step_m);
@@ -228,7 +232,7 @@ Viewpoint StepHeight<limits>::seen_from(Label side) const {
   if (!stages_.dem.seen_from_several()) return mean;
   float sum_x = 0.0f, sum_y = 0.0f, cells = 0.0f;
   for (const Border& border : piece_.part) {
-    const int slot = cell_beside(border, side).slot;
+    const int slot = ground_beside(border, side).slot;
     if (slot < 0) continue;
     const Viewpoint view = stages_.dem.seen_from(slot, stages_.view);
     sum_x += view.x_m;
@@ -242,21 +246,27 @@ Viewpoint StepHeight<limits>::seen_from(Label side) const {
   return mean;
 }
 
-/// The cell that shows the ground of the plane `own`, nearest to a border, on its side; slot -1 if there is none.
+/// The cell that bears the label `own` and is `wanted(i, j, slot)`, nearest to a border, on its side; slot -1 if there
+/// is none.
 template <Limits limits>
-auto StepHeight<limits>::cell_beside(const Border& border, Label own) const -> CellBeside {
+template <typename Wanted>
+auto StepHeight<limits>::cell_beside(const Border& border, Label own, Wanted&& wanted) const -> CellBeside {
   const Dem<limits>& dem = stages_.dem;
   const std::size_t d = border.toward(own);
   const int reach = stages_.settings.link_reach + static_cast<int>(border.half_gap_m / dem.cell_m(border.axis));
   int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
   for (int g = 0; g <= reach && dem.contains(i, j); ++g) {
     const int slot = dem.slot(i, j);
-    const bool of_own = dem.cell(slot).valid() && stages_.field.label(slot) == own;
-    if (of_own && stages_.shows_ground(i, j, slot)) return {i, j, slot};
+    if (dem.cell(slot).valid() && stages_.field.label(slot) == own && wanted(i, j, slot)) return {i, j, slot};
     i += step_i[d];
     j += step_j[d];
   }
   return {i, j, -1};
+}
+
+template <Limits limits>
+auto StepHeight<limits>::ground_beside(const Border& border, Label own) const -> CellBeside {
+  return cell_beside(border, own, [this](int i, int j, int slot) { return stages_.shows_ground(i, j, slot); });
 }
 
 /// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on
