@@ -359,7 +359,7 @@ int Pipeline<limits>::follow_labels(FieldScope scope) {
 
 template <Limits limits>
 void Pipeline<limits>::follow_curbs() {
-  curb_tracer_.trace(dem_, plane_mixture_, label_field_, view(), tilt_latency(), workspace_.curbs(), counters_);
+  curb_tracer_.trace(dem_, plane_mixture_, label_field_, view(), tilt_latency().doubt(), workspace_.curbs(), counters_);
 }
 
 template <Limits limits>

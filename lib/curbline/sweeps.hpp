@@ -15,4 +15,19 @@ struct SweepRates {
   float this_share = 0.5f;  ///< rate of the sweep before it, which went this one's way, in the difference of both
 };
 
+/// What is not known of how late each was: the covariance of their latencies, s^2; and by which rates a growth is
+/// theirs.
+struct LatencyDoubt {
+  BySweep variance_s2{};
+  float now_last_s2 = 0.0f, now_before_s2 = 0.0f, last_before_s2 = 0.0f;
+  SweepRates rates{};
+
+  /// Variance of a height, or a difference of two, that grows so with the latency of each sweep.
+  float height_variance_m2(const BySweep& growth_m_s) const {
+    const auto [g, l, b] = growth_m_s;
+    return g * (g * variance_s2.now + 2.0f * (l * now_last_s2 + b * now_before_s2)) +
+           l * (l * variance_s2.last + 2.0f * b * last_before_s2) + b * b * variance_s2.before;
+  }
+};
+
 }  // namespace curbline

@@ -5,11 +5,11 @@
 
 #include "curbline/curbs/crossed_cells.hpp"
 #include "curbline/curbs/curb_tracer.hpp"
-#include "curbline/intake/tilt_latency.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/regions/segmentation.hpp"
+#include "curbline/sweeps.hpp"
 #include "curbline/workspace.hpp"
 #include "support/terrain.hpp"
 
@@ -92,7 +92,7 @@ struct Stages {
   auto label_at(int i, int j) const { return field.label(dem.slot(i, j)); }
 
   Viewpoint view{0.0f, 0.0f, 1.0f};
-  TiltLatency latency{};  ///< known
+  LatencyDoubt latency{};  ///< none
   Counters counters{};
   Workspace<limits> work{};
   typename Segmentation<limits>::Work* segmented = nullptr;  ///< valid until label()

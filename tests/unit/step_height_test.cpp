@@ -290,9 +290,7 @@ TEST_CASE("step height: between sides that opposite sweeps have seen it is as un
       p.growth_m_s = p.x_m < 1.4f ? growth_below_m_s : growth_above_m_s;
       stages.dem.add(p);
     }
-    TiltSettings tilt;
-    tilt.latency_sd_s = latency_sd_s;
-    stages.latency.init(tilt, {});
+    stages.latency.variance_s2.now = latency_sd_s * latency_sd_s;
     stages.settle();
     stages.trace(0.0f, 1.2f);
     REQUIRE(stages.tracer.curbs().size() == 1);

@@ -1,9 +1,8 @@
-// What curbs are found in, the stages before, how the laser sees them and what is known of its tilt, and by which
-// settings; questions about a cell that need several of them.
+// What curbs are found in, the stages before, how the laser sees them and what is not known of its tilt, and by
+// which settings; questions about a cell that need several of them.
 #pragma once
 
 #include "curbline/grid.hpp"
-#include "curbline/intake/tilt_latency.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/map/cell.hpp"
@@ -13,6 +12,7 @@
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/point.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/sweeps.hpp"
 
 namespace curbline {
 
@@ -22,7 +22,7 @@ struct CurbStages {
   const PlaneMixture<limits>& mixture;
   const LabelField<limits>& field;
   const Viewpoint& view;
-  const TiltLatency& latency;
+  const LatencyDoubt& latency;
   const CurbSettings& settings;
 
   /// Of cells, mean of both axes.

@@ -23,11 +23,11 @@
 #include "curbline/curbs/duplicates.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/surfaces.hpp"
-#include "curbline/intake/tilt_latency.hpp"
 #include "curbline/labels/label_field.hpp"
 #include "curbline/map/dem.hpp"
 #include "curbline/planes/plane_mixture.hpp"
 #include "curbline/settings.hpp"
+#include "curbline/sweeps.hpp"
 
 namespace curbline {
 
@@ -55,7 +55,7 @@ class CurbTracer {
 
   /// Finds all curbs of the window, in working memory of the caller.
   void trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
-             const Viewpoint& view, const TiltLatency& latency, Work& work, Counters& counters);
+             const Viewpoint& view, const LatencyDoubt& latency, Work& work, Counters& counters);
 
   /// The curbs of the last trace(). Valid until the next.
   std::span<const Curb> curbs() const { return {curb_.data(), curbs_}; }
@@ -79,7 +79,7 @@ class CurbTracer {
 
 template <Limits limits>
 void CurbTracer<limits>::trace(const Dem<limits>& dem, const PlaneMixture<limits>& mixture,
-                               const LabelField<limits>& field, const Viewpoint& view, const TiltLatency& latency,
+                               const LabelField<limits>& field, const Viewpoint& view, const LatencyDoubt& latency,
                                Work& work, Counters& counters) {
   work.curbs = 0;
   work.borders.clear();

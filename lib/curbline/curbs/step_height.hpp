@@ -109,10 +109,10 @@ std::optional<BySweep> StepHeight<limits>::growth_m_s(Label side) const {
   for (const Border& border : piece_.part) {
     const int slot = cell_beside(border, side, [](int, int, int) { return true; }).slot;
     if (slot < 0) continue;
-    const BySweep growth_m_s = stages_.dem.growths_m_s(slot, stages_.latency.sweep_rates());
-    sum.now += growth_m_s.now;
-    sum.last += growth_m_s.last;
-    sum.before += growth_m_s.before;
+    const BySweep of_cell = stages_.dem.growths_m_s(slot, stages_.latency.rates);
+    sum.now += of_cell.now;
+    sum.last += of_cell.last;
+    sum.before += of_cell.before;
     cells += 1.0f;
   }
   if (!(cells > 0.0f)) return std::nullopt;

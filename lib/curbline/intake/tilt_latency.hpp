@@ -59,16 +59,17 @@ class TiltLatency {
   /// How many steps of the latency were found.
   std::uint32_t steps() const { return steps_; }
 
-  /// Sum of Correction::later_s.last over all lines, but for what brings the directions of a robot that stands together.
+  /// Sum of Correction::later_s.last over all lines, but for what brings the directions of a robot that stands
+  /// together.
   float mended_s() const { return mended_s_; }
 
-  /// Variance of a height, or a difference of two, that grows so with the latency of each sweep.
-  float height_variance_m2(const BySweep& growth_m_s) const {
+  /// What is not known of the latencies.
+  LatencyDoubt doubt() const {
     const auto& p = covariance_;
-    const auto [g, l, b] = growth_m_s;
-    return g * (g * p[now][now] + 2.0f * (l * p[now][last] + b * p[now][before])) +
-           l * (l * p[last][last] + 2.0f * b * p[last][before]) + b * b * p[before][before];
+    return {
+        {p[now][now], p[last][last], p[before][before]}, p[now][last], p[now][before], p[last][before], sweep_rates_};
   }
+  float height_variance_m2(const BySweep& growth_m_s) const { return doubt().height_variance_m2(growth_m_s); }
 
   /// How fast the last two sweeps were; those before the first one, as fast as it.
   const SweepRates& sweep_rates() const { return sweep_rates_; }
