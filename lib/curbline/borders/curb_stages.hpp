@@ -25,8 +25,6 @@ struct CurbStages {
   const LatencyDoubt& latency;
   const CurbSettings& settings;
 
-  /// Of cells, mean of both axes.
-  float pitch_m() const { return 0.5f * (dem.cell_x_m() + dem.cell_y_m()); }
   /// Does a cell belong to a plane that may be a side of a curb? (A label may outlive its plane by a line.)
   bool bears_ground(int slot) const {
     const Label label = field.label(slot);

@@ -66,7 +66,7 @@ struct CurbPiece {
   float rows_ahead() const {
     const SinCos& ahead = stages.dem.ahead_is();
     const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
-    return 1.0f + magnitude(dx_m * ahead.cos + dy_m * ahead.sin) / stages.pitch_m();
+    return 1.0f + magnitude(dx_m * ahead.cos + dy_m * ahead.sin) / stages.dem.pitch_m();
   }
   /// Change of its height from end to end, by its planes.
   float change_m() const { return planes.change_m(line.x1_m - line.x0_m, line.y1_m - line.y0_m); }
@@ -129,7 +129,7 @@ CurbPiece<limits>::CurbPiece(const Stages& in, const ChainPart& of)
   for (const Border& border : part) fit.add(border.x_m, border.y_m, border.weight() * part.share(border));
   x_m = fit.x_m();
   y_m = fit.y_m();
-  const float half_cell_m = 0.5f * stages.pitch_m();
+  const float half_cell_m = 0.5f * stages.dem.pitch_m();
   line = fit.segment(first.x_m, first.y_m, part.back().x_m, part.back().y_m, half_cell_m);
   float toward_x = 0.0f, toward_y = 0.0f;  // plane `other`, from `one`
   for (const Border& border : part) (border.axis == 0 ? toward_x : toward_y) += border.sign;
@@ -152,7 +152,7 @@ void CurbPiece<limits>::take_sides(float toward_x, float toward_y) {
   const float length_m = square_root(square(dx_m) + square(dy_m)), to_left_m = dx_m * toward_y - dy_m * toward_x;
   one_is_right = to_left_m >= 0.0f;
   if (magnitude(to_left_m) < least_across * borders * length_m) {
-    const float aside = std::max(stages.pitch_m(), half_gap_m) / length_m;
+    const float aside = std::max(stages.dem.pitch_m(), half_gap_m) / length_m;
     const Label left = ground_at(middle_x_m() - aside * dy_m, middle_y_m() + aside * dx_m);
     const Label right = ground_at(middle_x_m() + aside * dy_m, middle_y_m() - aside * dx_m);
     one_is_right = right == first.one && left == first.other;
@@ -226,7 +226,7 @@ float CurbPiece<limits>::lines_seen() const {
   const Viewpoint& view = stages.view;
   const float above_m = view.z_m - one.height_m(x_m, y_m);
   const float range_m = square_root(square(above_m) + square(view.x_m - x_m) + square(view.y_m - y_m));
-  const float beams = std::max(1.0f, stages.pitch_m() / (view.bearing_step_rad * range_m));
+  const float beams = std::max(1.0f, stages.dem.pitch_m() / (view.bearing_step_rad * range_m));
   const float lines = std::max(1.0f, square_root(one.points_a_cell * other.points_a_cell) / beams);
   return lines * rows_ahead();
 }
@@ -253,9 +253,9 @@ auto CurbPiece<limits>::beyond(End end) const -> Beyond {
   const bool second = end == End::second;
   const float dx_m = second ? line.x1_m - line.x0_m : line.x0_m - line.x1_m;
   const float dy_m = second ? line.y1_m - line.y0_m : line.y0_m - line.y1_m;
-  const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.pitch_m();
+  const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.dem.pitch_m();
   const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
-  const float aside_m = std::max(stages.pitch_m(), half_gap_m);
+  const float aside_m = std::max(stages.dem.pitch_m(), half_gap_m);
   const float to_other_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
   const float each = cells > 0.0f ? 1.0f / cells : 0.0f;
   return {second ? line.x1_m : line.x0_m, second ? line.y1_m : line.y0_m, dx_m * each, dy_m * each,

@@ -370,7 +370,7 @@ template <Limits limits>
 auto StepHeight<limits>::plane_errors() const -> PlaneErrors {
   const Dem<limits>& dem = stages_.dem;
   const auto weights_of = [&](const Plane& plane) {
-    return LineWeights(plane, dem.ahead_is(), stages_.pitch_m(), piece_.middle_x_m(), piece_.middle_y_m());
+    return LineWeights(plane, dem.ahead_is(), dem.pitch_m(), piece_.middle_x_m(), piece_.middle_y_m());
   };
   const auto [one, other] = piece_.planes;
   const LineWeights lines_of_one = weights_of(one), lines_of_other = weights_of(other);

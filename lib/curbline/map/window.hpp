@@ -32,6 +32,8 @@ class Window {
   /// Along x (axis 0) or y (1).
   int cells_along(int axis) const { return axis == 0 ? settings_.rows : settings_.cols; }
   float cell_m(int axis) const { return axis == 0 ? settings_.cell_x_m : settings_.cell_y_m; }
+  /// Mean of both sides of a cell.
+  float pitch_m() const { return 0.5f * (cell_x_m() + cell_y_m()); }
   float length_m(int axis) const { return static_cast<float>(cells_along(axis)) * cell_m(axis); }
   /// Lowest corner in the map frame.
   float origin_x_m() const { return static_cast<float>(corner_.row) * settings_.cell_x_m + settings_.origin_x_m; }

@@ -105,16 +105,16 @@ class CommonNoise {
     float growth_m2_s2 = 0.0f, points = 0.0f;
   };
   struct PatchRow {
+    SinCos ahead;  ///< rows_ahead()
     std::array<PatchSums, patches_in_row> patch{};
     std::array<Seen, limits.cols> last{};  ///< of each column
   };
   void look_at(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, int i, int j, int slot,
                PatchRow& row) const;
-  /// How many rows, each as long as the mean of a cell's sides (CurbStages::pitch_m()), a cell leads ahead.
+  /// How many rows, each as long as a cell in the mean, a cell leads ahead.
   static SinCos rows_ahead(const Dem<limits>& dem) {
     const SinCos& ahead = dem.ahead_is();
-    const float pitch_m = 0.5f * (dem.cell_x_m() + dem.cell_y_m());
-    return {ahead.sin * (dem.cell_y_m() / pitch_m), ahead.cos * (dem.cell_x_m() / pitch_m)};
+    return {ahead.sin * (dem.cell_y_m() / dem.pitch_m()), ahead.cos * (dem.cell_x_m() / dem.pitch_m())};
   }
   /// The estimate of a patch, and its weight.
   struct Shown {
@@ -128,7 +128,7 @@ class CommonNoise {
 
 template <Limits limits>
 void CommonNoise<limits>::follow(const Dem<limits>& dem, const PlaneMixture<limits>& mixture) {
-  PatchRow row;
+  PatchRow row{rows_ahead(dem)};
   for (int i = first_row_; i < first_row_ + side && i < dem.rows(); ++i) {
     dem.for_each_valid_in_row(i, [&](int, int j, int s) { look_at(dem, mixture, i, j, s, row); });
   }
@@ -155,7 +155,7 @@ void CommonNoise<limits>::look_at(const Dem<limits>& dem, const PlaneMixture<lim
   if (dem.mixed(cell, dem.slope_m2(plane))) return;
   const Seen now{label, i, dem.above_m(i, j, cell, plane)};
   PatchSums& sums = row.patch[static_cast<std::size_t>(j / side)];
-  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m, rows_ahead(dem));
+  sums.residuals.add(static_cast<float>(i - first_row_), static_cast<float>(j % side), now.above_m, row.ahead);
   sums.growth_m2_s2 += square(dem.growth_m_s(slot));
   sums.points += cell.points;
   const auto column = static_cast<std::size_t>(j);
