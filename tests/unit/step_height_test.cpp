@@ -171,6 +171,26 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("step height: a step states what its plane errs there, of two surfaces that a weak crease divides") {
+  // A pavement around the corner of a road, aslant. On one side of a crease through the corner it rises by 0.5 %, too
+  // little for planes of their own: the plane of both is up to 1 mm off at each of the two steps of 3 cm.
+  Stages<> stages(small_settings());
+  stages.dem.set_common(1e-6f, 0.0f);
+  Noise noise;
+  const double cos = std::cos(0.5), sin = std::sin(0.5);
+  const auto ground = [&](double x, double y) {
+    const double across = cos * (x - 1.2) + sin * (y - 1.2), along = cos * (y - 1.2) - sin * (x - 1.2) + 0.2;
+    if (across < 0.0 && along < 0.0) return 0.0;
+    return 0.03 + 0.005 * std::max(0.0, along);
+  };
+  for (const Point& p : test::sample({0, 2.4, 0, 2.4}, 0.02, 0.003, noise, ground)) stages.dem.add(p);
+  stages.settle();
+  stages.trace();
+  REQUIRE(stages.label_at(20, 2) == stages.label_at(10, 22));
+  REQUIRE(stages.tracer.curbs().size() == 2);
+  for (const Curb& curb : stages.tracer.curbs()) CHECK(std::abs(curb.height_m - 0.03f) < 2.0f * curb.height_sd_m);
+}
+
 //               .:'.    grass, 3 cm rough
 //  ____________|
 TEST_CASE(

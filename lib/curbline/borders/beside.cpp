@@ -10,7 +10,7 @@ float share_beyond(float chance_m2, float found_m) {
 GroundAlong GroundAlong::of(float cells, float borders, float above_m, const Plane& plane) {
   if (!(cells > 0.0f)) return {};
   const float mean_m = above_m / cells, share = share_beyond(4.0f * plane.fit_variance_m2 / cells, mean_m);
-  return {share * mean_m, share, plane.fit_variance_m2 / borders};
+  return {share * mean_m, share, plane.fit_variance_m2 / borders + square(mean_m)};
 }
 
 Deviation deviation(const Beside& beside, const Plane& plane, float away, float further_cells, float common_m2,

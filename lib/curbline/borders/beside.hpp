@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "curbline/math.hpp"
 #include "curbline/plane.hpp"
@@ -46,16 +47,17 @@ float share_beyond(float chance_m2, float found_m);
 /// both sides. A plane may hold more than one surface, parted by a crease too weak to be found, and deviate from both
 /// all along a curb.
 struct GroundAlong {
-  /// Cells used, counted from the border's own.
-  static constexpr int nearest = 2, farthest = 5;
+  /// Cells used, counted from the border's own: two of each border, whether it parts rows or columns.
+  static constexpr std::array<int, 2> away_cells{2, 4};
 
   float above_m = 0.0f;      ///< the share of the cells' mean beyond two standard deviations of chance
   float share = 0.0f;        ///< that share; the same share of the plane's variance is replaced by variance_m2
-  float variance_m2 = 0.0f;  ///< of the cells' mean
+  float variance_m2 = 0.0f;  ///< of the cells' mean as the ground at the border
 
   /// From the number of cells, of the borders that they lie behind, and the sum of their heights above the plane.
   /// Chance alone decides the share, and by chance cells err independently. In variance_m2 each border is one
-  /// observation: what the cells behind one are off from the ground there, they are off alike.
+  /// observation: what the cells behind one are off from the ground there, they are off alike. And where the plane is
+  /// off the cells, the ground at the border may be as far off them as the plane is.
   static GroundAlong of(float cells, float borders, float above_m, const Plane& plane);
 };
 

@@ -1,5 +1,5 @@
 // The height of the step at a piece of curb, and its variance: by its planes, at the edge that casts a shadow, and by
-// the ground along it and next to it where that deviates from them. Cost: eight cells beside each border; the way to
+// the ground along it and next to it where that deviates from them. Cost: four cells beside each border; the way to
 // the first cell of each side, again if it is too narrow to show the ground beside it, and on a robot that drives to
 // that of the lower side.
 #pragma once
@@ -305,26 +305,23 @@ float StepHeight<limits>::carried_m(const Plane& plane, float dx_m, float dy_m) 
   return (plane.slope_x * dx_m + plane.slope_y * dy_m) / (1.0f + beyond);
 }
 
-/// By the cells of a side a little farther from the borders, along rows or along columns, whichever are more across the
-/// piece, so that each cell counts once.
+/// By the cells of a side a little farther from the borders.
 template <Limits limits>
 GroundAlong StepHeight<limits>::ground_along(bool of_other) const {
   const Dem<limits>& dem = stages_.dem;
   const auto [plane, label, beside] = piece_.side(of_other);
   const float slope_m2 = dem.slope_m2(plane);
-  const int across = magnitude(piece_.line.normal_x) < magnitude(piece_.line.normal_y);
   float cells = 0.0f, borders = 0.0f, above_m = 0.0f;
   for (const Border& border : piece_.part) {
-    if (border.axis != across) continue;
     const float before = cells;
     const std::size_t d = border.toward(label);
-    int i = static_cast<int>(border.x_m / dem.cell_x_m()), j = static_cast<int>(border.y_m / dem.cell_y_m());
-    for (int k = 1; k <= GroundAlong::farthest; ++k) {
-      i += step_i[d];
-      j += step_j[d];
+    const int border_i = static_cast<int>(border.x_m / dem.cell_x_m());
+    const int border_j = static_cast<int>(border.y_m / dem.cell_y_m());
+    for (const int k : GroundAlong::away_cells) {
+      const int i = border_i + k * step_i[d], j = border_j + k * step_j[d];
       if (!dem.contains(i, j)) break;
       const int s = dem.slot(i, j);
-      if (k < GroundAlong::nearest || !stages_.holds_alone(s, label, slope_m2)) continue;
+      if (!stages_.holds_alone(s, label, slope_m2)) continue;
       cells += 1.0f;
       above_m += dem.above_m(i, j, dem.cell(s), plane);
     }
