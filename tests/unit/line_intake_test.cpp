@@ -86,6 +86,27 @@ TEST_CASE("line intake: when the servo turns, what the map holds is that of an e
   CHECK(in.stages->dem.mapped_before(slot));
 }
 
+TEST_CASE("line intake: the line that tells how late the servo is lies where the corrected map does") {
+  Settings settings = settings_of(true, false);
+  settings.laser.bearing_step_rad = 0.002f;
+  settings.laser.first_bearing_rad = -0.01f;
+  settings.tilt.T_base_tilt.y_m = 1.25f;
+  Intake in(settings);
+  test::fill(in.stages->dem, [](double, double) { return 0.0; });
+  in.stages->settle();
+  const auto angle_rad = [](int n) { return 0.3f + 0.01f * static_cast<float>(n < 30 ? n : 60 - n); };  // 0.5 rad/s
+  for (int n = 0; n < 60; ++n) in.intake->add_tilt({n * 20 * ms, angle_rad(n)});
+  for (int n = 1; n < 40; ++n) REQUIRE(in.place(n * 20 * ms) == Status::ok);
+  const float later_rad = 0.5f * 0.01f;  // in 10 ms, as late as the servo is
+  in.range_m = 1.0f / std::sin(angle_rad(40) - later_rad);
+  REQUIRE(in.place(40 * 20 * ms) == Status::ok);
+  REQUIRE(in.project(40 * 20 * ms));
+  REQUIRE_FALSE(in.work->projected.points().empty());
+  const float uncorrected_m = 1.0f - in.range_m * std::sin(angle_rad(40));
+  CHECK(uncorrected_m < -0.009f);
+  for (const Point& p : in.work->projected.points()) CHECK(p.z_m > 0.2f * uncorrected_m);
+}
+
 /// Lines with poses 20 ms apart. The localisation steps after 0.4 s and is found out; then the robot climbs by 8 cm on
 /// two poses, neither of which is next to a line, while the localisation steps by step_m. The last line is placed.
 struct Climb {

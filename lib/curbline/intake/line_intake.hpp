@@ -168,7 +168,10 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
   if (line_projection_.tilt().fixed) return true;
   map.follow_latency(work.projected, motion, pose_offset_, tilt_latency_);
   const TiltLatency::Correction correction = tilt_latency_.end_line(tilt_rate_rad_s_);
-  if (correction.any()) dem.delay(correction.later_s, tilt_latency_.sweep_rates());
+  if (correction.any()) {
+    dem.delay(correction.later_s, tilt_latency_.sweep_rates());
+    for (Point& p : work.projected.points()) p.z_m += p.growth_m_s * correction.later_s.now;
+  }
   if (correction.lean_rad != 0.0f) lean(correction, dem, work.projected);
   return true;
 }
@@ -177,7 +180,7 @@ bool LineIntake<limits>::project(const ScanLine& line, const MapComparison<limit
 template <Limits limits>
 void LineIntake<limits>::lean(const TiltLatency::Correction& by, Dem<limits>& dem, ProjectedLine<limits>& line) {
   dem.lean(by.lean_rad);
-  for (Point& p : line.points()) p.z_m += p.growth_m_s * by.later_s.now - by.lean_rad * dem.ahead_m(p.x_m, p.y_m);
+  for (Point& p : line.points()) p.z_m -= by.lean_rad * dem.ahead_m(p.x_m, p.y_m);
   line_projection_.lean(tilt_latency_.lean_rad());
 }
 
