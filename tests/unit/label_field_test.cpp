@@ -395,6 +395,35 @@ TEST_CASE("label field: a cell that waits for its turn has the label that its re
   CHECK(of_region >= 21 * 24);  // of the others it is the turn, beside cells that have still to change
 }
 
+TEST_CASE("label field: a cell that waits for its turn has a label, also if it hears of the cells before it") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = 5 * directions * 24;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double, double) { return 0.0; });
+  for (int call = 0; call < 4; ++call) {
+    stages->infer();
+    for (int i = 0; i < 24; ++i) {
+      for (int j = 0; j < 24; ++j) REQUIRE(stages->label_at(i, j) != no_label);
+    }
+  }
+}
+
+TEST_CASE("label field: a cell that waits for its turn has no obstacle's label") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = directions * 24;
+  const auto stages = std::make_unique<Stages<>>(settings);
+  fill(stages->dem, [](double x, double y) { return x > 1.4 && x < 2.0 && y > 0.8 && y < 1.4 ? 0.35 : 0.0; });
+  for (int call = 0; call < 24; ++call) {
+    stages->infer();
+    for (int i = 15; i < 19; ++i) {
+      for (int j = 9; j < 13; ++j) {
+        const Label label = stages->label_at(i, j);
+        REQUIRE((label == no_label || stages->mixture.ground(label)));
+      }
+    }
+  }
+}
+
 TEST_CASE("label field: a row that every line changes does not starve the others") {
   Settings settings = small_settings();
   settings.labels.max_messages = directions * 24;  // the messages of one row

@@ -55,6 +55,26 @@ TEST_CASE("passability: ground that nobody has seen is not passable") {
   CHECK_FALSE(passable(stages.dem, stages.mixture, stages.field, 3, 3, {1.0f, 1.0f}));
 }
 
+TEST_CASE("passability: what turns out to be no ground is not passable, also while its cells wait for other labels") {
+  Settings settings = small_settings();
+  settings.labels.max_messages = directions * 24;  // of one row of cells
+  Stages<small_limits> stages(settings);
+  // A veil for a laser 1 m up, a slope for a higher one.
+  fill(stages.dem, [](double x, double) { return x < 1.2 || x > 1.8 ? 0.0 : 1.0 - x / 1.8; });
+  stages.view.z_m = 3.0f;
+  stages.settle();
+  const auto passable_cells = [&] {
+    int cells = 0;
+    for (int i = 13; i < 17; ++i) cells += passable(stages.dem, stages.mixture, stages.field, i, 12, {0.3f, 0.6f});
+    return cells;
+  };
+  CHECK(passable_cells() == 4);
+  stages.view.z_m = 1.0f;
+  stages.dem.add({0.05f, 0.05f, 0.0f, 1e-4f});
+  stages.infer();
+  CHECK(passable_cells() == 0);
+}
+
 TEST_CASE("passability: a curb is crossed if it is low enough for sure, a ramp's edge if the ramp is not too steep") {
   Plane level, ramp;
   level.cells = ramp.cells = 100.0f;

@@ -15,7 +15,7 @@
 namespace curbline {
 
 /// By the step nearest to the middle of cell (i, j), within two cells (farther away readings are of their own side), if
-/// it parts the plane of the readings from another that is in view and still alive (a curb may be a scan line old).
+/// it parts the plane of the readings from another that is in view and still ground (a curb may be a scan line old).
 /// Else the cell's label.
 template <Limits limits>
 Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const LabelField<limits>& field,
@@ -31,7 +31,7 @@ Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, 
     const float to_far_m = to_far_side_m(curb, x_m, y_m);
     const float away_m = magnitude(to_far_m);
     const Label there = to_far_m > 0.0f ? curb.far_label : curb.near_label;
-    if (!(away_m < nearest_m) || !mixture.plane(there).alive()) continue;
+    if (!(away_m < nearest_m) || !mixture.plane(there).alive() || !mixture.ground(there)) continue;
     nearest_m = away_m;
     found = there;
   }

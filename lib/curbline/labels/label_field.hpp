@@ -144,7 +144,8 @@ void LabelField<limits>::choose_visits(const Dem<limits>& dem, const PlaneMixtur
 
 /// Starts where the budget of the last call ended, at least a row further on than that did: in as many calls as all
 /// cells need each has sent. Of a large plane that is formed anew, or divided, all cells change at once: one that has
-/// to wait, and whose region has another plane now, or whose plane is gone, meanwhile bears that of its region.
+/// to wait, and whose region has another plane now, or whose own is gone or no longer ground, meanwhile bears that of
+/// its region; none if that is no ground either.
 template <Limits limits>
 void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, FieldScope scope,
                                       Counters& counters) {
@@ -153,7 +154,9 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   const int of_a_row = directions * dem.cols();
   const int messages = settings_.max_messages.value_or(std::max(5 * rows * dem.cols() / 8, of_a_row));
   int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
-  const auto lives = [&](Label label) { return label != no_label && mixture.plane(label).alive(); };
+  const auto may_have = [&](Label label) {
+    return label != no_label && mixture.plane(label).alive() && mixture.ground(label);
+  };
   for (int a = 0; a < rows; ++a) {
     if (left > 0) first_row_ = first + std::max(a, 1);
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {
@@ -166,7 +169,12 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
         flag_[s] = waits;
         ++counters.cells_deferred;
         const Label region = mixture.region_label(s);
-        if (lives(region) && (mixture.relabelled(s) || !lives(sites_[s].best))) sites_[s].best = region;
+        const bool none_left = !may_have(sites_[s].best);
+        if (may_have(region) && (mixture.relabelled(s) || none_left)) {
+          sites_[s].best = region;
+        } else if (none_left) {
+          sites_[s].best = no_label;
+        }
       }
     });
   }
@@ -252,7 +260,7 @@ int LabelField<limits>::follow_beliefs(const Dem<limits>& dem, std::span<const V
   int changed = 0;
   for (const Visit& visit : visits) changed += follow_belief(visit);
   dem.for_each_valid([&](int, int, int s) {
-    if ((flag_[s] & (visited | heard)) == heard) changed += follow_belief(heard_by(dem, s));
+    if ((flag_[s] & (visited | heard | waits)) == heard) changed += follow_belief(heard_by(dem, s));
   });
   return changed;
 }
