@@ -47,6 +47,23 @@ TEST_CASE("duplicates: a step is told beside a longer crease, and of two far apa
   CHECK(shorter_is_told(CurbKind::step_up, 0.05f));  // two creases are both told
 }
 
+TEST_CASE("duplicates: a step of one cell or less is told, unless a longer one is beside it") {
+  const auto is_told = [](float x_m, float y_m, float cell_m) {
+    Curb shorter = step(x_m, cell_m);
+    shorter.y0_m += y_m;
+    shorter.y1_m += y_m;  // rounded: about as long as a cell
+    std::array<bool, 2> is_duplicate{};
+    find_duplicates(std::array{shorter, step(3.5f, 3.0f)}, 0.1f, is_duplicate);
+    return !is_duplicate[0];
+  };
+  for (int k = 0; k < 100; ++k) {
+    const float y_m = 0.0137f * static_cast<float>(k);
+    CHECK(is_told(1.0f, y_m, 0.1f));
+    CHECK(is_told(1.0f, y_m, 0.075f));
+    CHECK_FALSE(is_told(3.45f, y_m, 0.1f));
+  }
+}
+
 TEST_CASE("duplicates: a step with ground on both sides is told beside a longer brink, and alone beside one as long") {
   for (const float brink_m : {1.05f, 2.0f}) {
     std::array<Curb, 2> curbs{step(1.0f, 1.0f), step(1.05f, brink_m)};

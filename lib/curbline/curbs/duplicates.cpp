@@ -1,5 +1,6 @@
 #include "curbline/curbs/duplicates.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace curbline {
@@ -13,7 +14,9 @@ void find_duplicates(std::span<const Curb> curbs, float cell_m, std::span<bool> 
       const float other_m = length_of(curbs[o]);
       const bool longer = other_m > length_m || (other_m == length_m && o < k);
       const bool stands_for_it = (curbs[o].far_label == no_label) == brink ? longer : brink;
-      is_duplicate[k] = stands_for_it && is_step(curbs[o]) && overlap_m(curbs[k], curbs[o], cell_m) > length_m - cell_m;
+      const float most_beyond_m = std::min(length_m, cell_m);
+      is_duplicate[k] =
+          stands_for_it && is_step(curbs[o]) && overlap_m(curbs[k], curbs[o], cell_m) > length_m - most_beyond_m;
     }
   }
 }
