@@ -3,6 +3,7 @@
 #include "curbline/curbs/curb_piece.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -299,6 +300,38 @@ TEST_CASE("curb piece: of a brink, and of the end of a face, all borders err ali
   CHECK(brinks[0].height_sd_m == Approx(-brinks[0].height_m / std::sqrt(3.0)).epsilon(0.02));
   REQUIRE(faces.size() == 1);
   CHECK(faces[0].position_sd_m == Approx(0.1 / std::sqrt(3.0)).epsilon(0.02));
+}
+
+//          1.6
+//  y  0.12  |  not seen      the chain begins with a border that was found along its line, on a cell of the other side
+//     0.0
+TEST_CASE("curb piece: a curb goes on where one side is not seen, though its first border was found along its line") {
+  const float lean = GENERATE(0.02f, -0.02f);
+  Stages<small_limits> stages(small_settings());
+  fill(stages.dem, [](double x, double y) { return y < 1.2 ? 0.0 : x > 1.6 ? std::nan("") : 0.12; });
+  stages.settle();
+  const Label low = stages.label_at(3, 3), high = stages.label_at(3, 20);
+  std::array<Border, 15> borders{};
+  std::array<Border::Index, 15> chain{};
+  for (std::size_t k = 0; k < borders.size(); ++k) {
+    const float x_m = 0.1f * static_cast<float>(k) + 0.05f;
+    chain[k] = static_cast<Border::Index>(k);
+    borders[k].axis = k == 0 ? 0 : 1;
+    borders[k].x_m = k == 0 ? 0.1f : x_m;
+    borders[k].y_m = k == 0 ? 1.22f : 1.2f + lean * (x_m - 0.85f);
+    borders[k].half_gap_m = 0.05f;
+    borders[k].probability = 1.0f;
+    borders[k].one = std::min(low, high);
+    borders[k].other = std::max(low, high);
+    borders[k].sign = low < high ? 1 : -1;
+  }
+  const CurbSettings settings{};
+  const CurbStages<small_limits> curb_stages{stages.dem,  stages.mixture, stages.field,
+                                             stages.view, stages.latency, settings};
+  CurbPiece<small_limits> piece(curb_stages, ChainPart(borders.data(), chain, {true, true}));
+  const float seen_m = piece.line.x1_m;
+  piece.go_on(CurbPiece<small_limits>::End::second);
+  CHECK(piece.line.x1_m > seen_m + 0.15f);
 }
 
 //  y  near  |   not seen, at one end of the edge, whichever way it runs

@@ -254,9 +254,9 @@ auto CurbPiece<limits>::beyond(End end) const -> Beyond {
   const float dx_m = second ? line.x1_m - line.x0_m : line.x0_m - line.x1_m;
   const float dy_m = second ? line.y1_m - line.y0_m : line.y0_m - line.y1_m;
   const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.dem.pitch_m();
-  const float along = (first.axis == 0 ? line.normal_x : line.normal_y) * first.sign;
   const float aside_m = std::max(stages.dem.pitch_m(), half_gap_m);
-  const float to_other_m = along < 0.0f ? -aside_m : aside_m;  // along the normal
+  const float left_m = line.normal_y * (line.x1_m - line.x0_m) - line.normal_x * (line.y1_m - line.y0_m);
+  const float to_other_m = (left_m > 0.0f) == one_is_right ? aside_m : -aside_m;  // along the normal
   const float each = cells > 0.0f ? 1.0f / cells : 0.0f;
   return {second ? line.x1_m : line.x0_m, second ? line.y1_m : line.y0_m, dx_m * each, dy_m * each,
           line.normal_x * to_other_m,     line.normal_y * to_other_m,     cells};
