@@ -551,6 +551,28 @@ TEST_CASE("border finder: a bump on the ground is no obstacle before what an edg
   CHECK(open_borders(*stages, 24) == 0);
 }
 
+//  o
+//  _______  | |  ____
+TEST_CASE("border finder: a wall leaves open an edge that it hides, on either side of the robot") {
+  const bool mirrored = GENERATE(false, true);
+  const auto height_m = [=](double, double y) {
+    const double along = mirrored ? 2.4 - y : y;
+    const bool unseen = along > 1.0 && along < 1.4;
+    return unseen ? std::nan("") : along < 1.2 ? 0.0 : 0.12;
+  };
+  Stages<small_limits> stages(small_settings());
+  test::fill(stages.dem, height_m);
+  for (int i = 0; i < 24; ++i) {
+    for (int k = 0; k < 10; ++k) {  // the wall
+      const float x_m = 0.1f * static_cast<float>(i) + 0.03f + 0.004f * static_cast<float>(k);
+      stages.dem.add({x_m, mirrored ? 1.25f : 1.15f, 0.08f * static_cast<float>(k) + 0.1f, 1e-4f});
+    }
+  }
+  stages.settle();
+  stages.trace(1.2f, mirrored ? 2.35f : 0.05f);
+  CHECK(open_borders(stages, 24) == 24);
+}
+
 /// What a robot at (0, 1.2) has seen, traced after it has driven on.
 template <typename Height>
 std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& height_m) {
@@ -566,7 +588,7 @@ std::unique_ptr<Stages<small_limits>> seen_before(float robot_x_m, Height&& heig
 }
 
 TEST_CASE("border finder: what a step down hid when it was seen it hides for a robot that has driven up to it") {
-  for (const float robot_x_m : {0.0f, 1.1f}) {
+  for (const float robot_x_m : {0.0f, 1.1f, 1.5f}) {
     const auto stages = seen_before(robot_x_m, [](double x, double) {
       return x > 1.2 && x < 1.8 ? std::nan("") : x < 1.2 ? 0.0 : -0.5;
     });

@@ -96,12 +96,13 @@ class PlaneGap {
  private:
   static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
 
-  /// As the laser sees them.
+  /// As the laser saw them.
   struct Sides {
     const Side &near, &far;
   };
   Sides sides() const {
-    return line_.away(stages_.view, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
+    const Viewpoint from = stages_.dem.seen_from(line_.slot(first_.along), stages_.view);
+    return line_.away(from, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
   }
   /// The cells that hold both heights of a step up, from the first one to the last; without any, the cells on both
   /// sides of the gap.
@@ -119,7 +120,7 @@ class PlaneGap {
   bool mixed(int along, const Plane& plane) const;
   Face seen_face(bool second_is_upper) const;
   float centroid_share(int along, const Face& face) const;
-  [[gnu::cold]] bool behind_obstacle(int along) const;
+  [[gnu::cold]] bool behind_obstacle(int first_empty, int last_empty) const;
 
   const CurbStages<limits>& stages_;
   const Line& line_;
@@ -194,12 +195,12 @@ auto PlaneGap<limits>::middle() const -> Middle {
   const Face face = seen_face(step_m > 0.0f);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f, sloped = 0.0f;
-  int empty = 0, last_empty = 0;
+  int empty = 0, first_empty = 0, last_empty = 0;
   for (int along = first_.along; along <= second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
     if (!cell.valid()) {
-      ++empty;
+      if (empty++ == 0) first_empty = along;
       last_empty = along;
       before += along < face.first ? 1.0f : along > face.last ? 0.0f : 0.5f;
     } else if (stages_.mixture.covered(s)) {
@@ -212,7 +213,7 @@ auto PlaneGap<limits>::middle() const -> Middle {
         sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
-  const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(last_empty));
+  const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(first_empty, last_empty));
   if (2.0f * step_m * step_m <= gate * (first_.plane.variance_m2 + second_.plane.variance_m2))
     return {halfway_m, open, false, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
@@ -266,15 +267,17 @@ float PlaneGap<limits>::centroid_share(int along, const Face& face) const {
   return line_.dem.cell(s).valid() && !stages_.mixture.covered(s) ? 0.0f : 1.0f;
 }
 
-/// Does an obstacle hide a cell of the gap, from where the gap's far side was seen? If so, a cell on the way that is
-/// not ground is above the planes of both sides; the face of a step up is between them.
+/// Does an obstacle hide the empty cell next to the gap's far side, from where that was seen? If so, a cell on the way
+/// that is not ground is above the planes of both sides; the face of a step up is between them.
 template <Limits limits>
-bool PlaneGap<limits>::behind_obstacle(int along) const {
+bool PlaneGap<limits>::behind_obstacle(int first_empty, int last_empty) const {
   const Dem<limits>& dem = stages_.dem;
   const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
     return dem.above_m(i, j, cell, plane) > 0.0f && !stages_.lies_on(i, j, cell, plane);
   };
-  const Viewpoint from = dem.seen_from(line_.slot(sides().far.along), stages_.view);
+  const Side& far = sides().far;
+  const Viewpoint from = dem.seen_from(line_.slot(far.along), stages_.view);
+  const int along = &far == &second_ ? last_empty : first_empty;
   const float middle_m = (static_cast<float>(along) + 0.5f) * line_.pitch_m();
   const float x_m = line_.x_m(middle_m), y_m = line_.y_m(middle_m);
   const float dx = (from.x_m - x_m) / dem.cell_x_m(), dy = (from.y_m - y_m) / dem.cell_y_m();
