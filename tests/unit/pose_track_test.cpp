@@ -369,6 +369,33 @@ TEST_CASE("pose track: a climb is over where poses begin anew") {
   CHECK_FALSE(track.climbs());
 }
 
+TEST_CASE("pose track: a step that has begun is withdrawn where poses begin anew, once") {
+  Track track;
+  track.init(noisy_poses());
+  const auto news = [&] { return track.next_step(track.newest().time_ns); };
+  const auto step = [&] {
+    track.init(noisy_poses());
+    for (int k = 0; k < 8; ++k) {
+      Pose pose = driving(t0 + k * 20 * ms);
+      pose.z_m += k == 7 ? 0.1f : 0.0f;
+      REQUIRE(track.push(pose));
+      if (k < 7) REQUIRE_FALSE(news());
+    }
+    REQUIRE(news()->kind == PoseStepNews::Kind::begun);
+  };
+  step();
+  for (int k = 0; k <= RisingTimes::most_refused; ++k) track.push(driving(t0 - 1000 * ms + k * ms));
+  REQUIRE(track.newest().time_ns < t0);
+  const auto first = news();
+  REQUIRE(first);
+  CHECK(first->kind == PoseStepNews::Kind::withdrawn);
+  CHECK_FALSE(news());
+  step();
+  track.init(noisy_poses());
+  track.push(driving(t0));
+  CHECK_FALSE(news());
+}
+
 TEST_CASE("pose track: of a track of four poses a climb is over, too") {
   constexpr Limits four{.poses = 4};
   PoseTrack<four> track;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "curbline/frames.hpp"
 #include "curbline/intake/extrapolation.hpp"
@@ -42,8 +43,9 @@ struct PoseShift {
 /// What a pose says about steps. A step begins with a pose off the way of those before it; the next pose confirms it by
 /// going on from there at the old speed, off the old way too. No robot moves like that, but a localisation does (and a
 /// robot, if poses are far apart in time). Until the next pose has come, one that jumps may be either. A next pose that
-/// jumps again, or back to the old way, withdraws the step. Consecutive jumps mean that the robot climbs; no pose shows
-/// whether its localisation steps meanwhile. It has climbed when poses have gone on for a whole way without a jump.
+/// jumps again, or back to the old way, withdraws the step, and so do poses that begin anew. Consecutive jumps mean
+/// that the robot climbs; no pose shows whether its localisation steps meanwhile. It has climbed when poses have gone
+/// on for a whole way without a jump.
 struct PoseStepNews {
   enum class Kind { begun, confirmed, withdrawn, climbed } kind;
   PoseShift by{};  ///< of a step that has begun
@@ -78,6 +80,7 @@ class PoseTrack {
     next_ = 0;
     times_ = RisingTimes{};
     forget();
+    begun_lost_ = false;
   }
 
   /// Takes a pose. It replaces the newest if that one came within 12 ms of the one before, so the pose of a line
@@ -122,6 +125,7 @@ class PoseTrack {
   }
 
   void forget() {
+    begun_lost_ = begun_lost_ || jumps_on_end_ == 1;
     size_ = fresh_ = 0;
     jumps_on_end_ = 0;
     since_jump_ = limits.poses;
@@ -138,10 +142,11 @@ class PoseTrack {
   PoseSettings settings_{};
   std::array<Pose, limits.poses> poses_{};
   int size_ = 0, next_ = 0;
-  int fresh_ = 0;         ///< so many of the newest poses have not been examined for steps
-  int jumps_on_end_ = 0;  ///< consecutive jumps up to the last one examined; 0 if that did not jump
-  int since_jump_ = 0;    ///< poses from the last jump on; limits.poses: long ago
-  bool climbs_ = false;   ///< consecutive poses have jumped, and not gone on for a whole way since
+  int fresh_ = 0;            ///< so many of the newest poses have not been examined for steps
+  int jumps_on_end_ = 0;     ///< consecutive jumps up to the last one examined; 0 if that did not jump
+  int since_jump_ = 0;       ///< poses from the last jump on; limits.poses: long ago
+  bool climbs_ = false;      ///< consecutive poses have jumped, and not gone on for a whole way since
+  bool begun_lost_ = false;  ///< poses began anew after a step was reported to have begun
   RisingTimes times_{};
 };
 
@@ -189,6 +194,7 @@ PoseJumps PoseTrack<limits>::jumps(std::int64_t first_ns, std::int64_t last_ns) 
 template <Limits limits>
 std::optional<PoseStepNews> PoseTrack<limits>::next_step(std::int64_t until_ns) {
   using Kind = PoseStepNews::Kind;
+  if (std::exchange(begun_lost_, false)) return PoseStepNews{Kind::withdrawn};
   while (fresh_ > (open() ? 1 : 0) && back(fresh_ - 1).time_ns <= until_ns) {
     const int age = --fresh_;
     // At the speed since the last jump if two poses show it, else at that before.
