@@ -120,8 +120,8 @@ class Pipeline {
   /// x, j along y, from the window's lowest corner: 0 <= i < dem().rows(), 0 <= j < dem().cols(). A label may outlive
   /// its plane by a line.
   Label label(int i, int j) const { return knows(i, j) ? label_field_.label(dem_.slot(i, j)) : no_label; }
-  /// The probability of that label; 0 outside the window and before init(). While the label is but the region's, as the
-  /// cell waits for its turn (LabelField::update()), it is what the last update gave that plane there, 0 as a rule.
+  /// The probability of that label; 0 outside the window and before init(). A cell that waits for its turn may have its
+  /// region's label (LabelField::update()): then it is what that plane had there before, 0 as a rule.
   float label_probability(int i, int j) const;
   /// The plane of the ground under the cell's middle; beside a step, not always that of the readings. no_label where
   /// label() is. See ground_label.hpp.

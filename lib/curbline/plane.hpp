@@ -81,7 +81,7 @@ struct PlanePrior {
   /// Variance that the points of a cell have in common: averaging over them does not reduce it.
   float common_m2() const { return common_share * noise_m2; }
 };
-/// A fitted plane with the uncertainty of its height.
+/// A fitted plane with the uncertainty of its height. x and y are the window's, from its lowest corner; z is the map's.
 struct Plane {
   float x_m = 0.0f, y_m = 0.0f;              ///< centroid
   float z_m = 0.0f;                          ///< height there

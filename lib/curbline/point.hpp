@@ -15,7 +15,9 @@ struct Point {
   float y_m = 0.0f;
   float z_m = 0.0f;
   float variance_m2 = 0.0f;
-  float growth_m_s = 0.0f;  ///< derivative of z by the tilt's latency; 0 without a servo
+  /// Derivative of z by the tilt's latency; 0 without a servo. Cells keep its mean: as the latency becomes known, their
+  /// heights move by that (Dem::delay()).
+  float growth_m_s = 0.0f;
   /// From here to the place by the ranges of the two neighbouring beams. The point goes into the cell there: by its own
   /// range error it would cross a cell's border or not, and where the next cell is not seen those that do are all too
   /// high, or all too low.

@@ -3,7 +3,7 @@
 
 namespace curbline {
 
-/// Something of this sweep, of the last one, and of the one before that, which went this one's way.
+/// A value each for this sweep, the last one, and the one before that, which went the same way as this one.
 struct BySweep {
   float now = 0.0f, last = 0.0f, before = 0.0f;
 };
@@ -11,12 +11,11 @@ struct BySweep {
 /// How fast the sweeps were that have mapped the ground: by this, a cell's growth is divided between their directions
 /// (Dem::growths_m_s()).
 struct SweepRates {
-  float last_rad_s = 0.0f;  ///< mean of the last sweep
-  float this_share = 0.5f;  ///< rate of the sweep before it, which went this one's way, in the difference of both
+  float last_rad_s = 0.0f;  ///< mean of the last sweep, w
+  float this_share = 0.5f;  ///< v / (v - w), v the mean of the sweep before it; a half if it is not known
 };
 
-/// What is not known of how late each was: the covariance of their latencies, s^2; and by which rates a growth is
-/// theirs.
+/// Covariance of the sweeps' latencies, s^2, and the rates by which a cell's growth is divided between them.
 struct LatencyDoubt {
   BySweep variance_s2{};
   float now_last_s2 = 0.0f, now_before_s2 = 0.0f, last_before_s2 = 0.0f;

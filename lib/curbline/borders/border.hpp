@@ -24,7 +24,7 @@ struct Border {
   std::int8_t axis;  ///< 0: found along x, 1: along y
   std::int8_t sign;  ///< +1 if `other` is in the positive direction of the axis
   bool open : 1;     ///< the edge may be anywhere in the gap: an obstacle stands there, or hides it
-  bool parted : 1;   ///< the edge of a step up is between the scan lines of two cells side by side
+  bool parted : 1;   ///< a step up between two cells side by side, each of one height: it lies between two scan lines
   bool chained : 1;
   std::uint8_t empty;  ///< cells of the gap without a point, 255 at most
   Index next_in_cell;  ///< another border in the same cell

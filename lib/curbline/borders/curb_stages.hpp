@@ -1,5 +1,5 @@
-// What curbs are found in, the stages before, how the laser sees them and what is not known of its tilt, and by
-// which settings; questions about a cell that need several of them.
+// What the search for curbs works on: map, planes, labels, viewpoint, the latency's uncertainty and settings; and
+// questions about a cell that need several of them.
 #pragma once
 
 #include "curbline/grid.hpp"

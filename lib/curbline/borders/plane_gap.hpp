@@ -31,8 +31,8 @@ struct CrossedCell {
   float centroid;   ///< of its points, in cells from its near side
 };
 
-/// How much of a cell is before the middle of what parts the planes, in cells. With equal density of points on both
-/// planes, the sum over the cells of a gap is exact for
+/// The length of a cell that lies before the middle of what parts the planes, in cells. With equal density of points on
+/// both planes, the sum over the cells of a gap is exact for
 ///   - a vertical face with any number of points: 1/2 - far_share + centroid is its place;
 ///   - a sloped face as dense as the planes;
 ///   - a gap without points that reaches into the cells on both sides: their centroids show how far, and half of it
@@ -110,8 +110,8 @@ class PlaneGap {
     int first, last;
     bool parted = false;  ///< of two cells side by side, each holds one height
   };
-  /// Ground that the ray to the far cell, from where that was seen, has met at the height of the near plane, or up to a
-  /// blur before: that plane's, nearest to the far cell at (x_m, y_m), or another's.
+  /// Ground where the ray to the far cell, from where that was seen, crosses the height of the near plane, or up to
+  /// widest_blur cells nearer: of that plane (`near`; its nearest cell to the far one at (x_m, y_m)), of another one.
   struct Passed {
     bool near = false, other = false;
     float x_m = 0.0f, y_m = 0.0f;

@@ -32,7 +32,7 @@ struct Curb {
   float height_sd_m = 0.0f;   ///< of that: both planes' posteriors and roughness, the ground next to the curb, a slope
                               ///< between the planes, what is unseen of a face that a sweep has just come upon, and
                               ///< the piece's position where slopes differ (lib/formulas.md)
-  float probability = 0.0f;   ///< that the cells on both sides belong to different planes, mean along the piece
+  float probability = 0.0f;   ///< that the cells on both sides belong to different planes, mean along the piece; 0 to 1
   float face_width_m = 0.0f;  ///< between the cells of both planes, across the piece, less the shadow of a step down;
                               ///< resolves a cell; 0 for the end of a face
   CurbKind kind = CurbKind::crease;

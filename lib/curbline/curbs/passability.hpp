@@ -25,8 +25,8 @@ bool passable(const Plane& plane, const Mobility& mobility);
 /// edge, if neither of its planes is steeper than max_slope_rad.
 bool passable(const Curb& curb, const Plane& near, const Plane& far, const Mobility& mobility);
 
-/// Does a curb go through the rectangle around (x_m, y_m), of half sides half_x_m and half_y_m, with a probability of
-/// more than 2.5 %? Its place is uncertain by position_sd_m, at its ends by twice that.
+/// Does a curb go through the rectangle of half sides half_x_m and half_y_m around (x_m, y_m) of the map, with a
+/// probability of more than 2.5 %? Its place is uncertain by position_sd_m, at its ends by twice that.
 bool crosses(const Curb& curb, float x_m, float y_m, float half_x_m, float half_y_m);
 
 /// Does a step that is too high go through cell (i, j)? Its cell may hold nothing but what the laser sees of the upper

@@ -18,10 +18,10 @@ class LaserLean {
   /// Begins again, but for what has been taken off.
   void forget();
 
-  /// What an observation lacks by the lean, if it lacks `by` for each radian: its mean and its variance.
+  /// Effect of the lean on an observation, of which the derivative by the lean is `by`: mean and variance.
   float mean(float by) const { return by * found_rad_; }
   float variance(float by) const { return by * by * variance_; }
-  /// An observation that lacks `missing`, with its variance without that of the lean.
+  /// An observation that is off by `missing`, with its variance but for the lean's.
   void observe(float by, float missing, float variance_without);
 
   /// If a lean is due: from now on it counts as taken off. Returns it, otherwise 0.

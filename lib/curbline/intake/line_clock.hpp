@@ -36,7 +36,7 @@ class LineClock {
   void init(const LaserSettings& laser);
 
   /// The time at which the line with this stamp was measured: the stamp or, if it came late, an earlier time. Nothing
-  /// if its turn is not clear, or if a newer line has been given an earlier time. Call for each line, in order of
+  /// if its turn is ambiguous, or if that time is not later than the last one given. Call for each line, in order of
   /// arrival.
   std::optional<std::int64_t> time_of(std::int64_t stamp_ns);
 
@@ -74,7 +74,7 @@ class LineClock {
   bool steady_ = true;                             ///< turns take no other time than a motor's may
   std::int64_t usual_turns_ = 1, last_turns_ = 1;  ///< from line to line
   std::int64_t lost_turns_ = 0;                    ///< that were taken for lost before the newest
-  int waited_ = 0;                ///< arrivals for which one that came whole turns late is still among those kept
+  int waited_ = 0;                ///< arrivals until one that came whole turns late is no longer among those kept
   int late_ = 0, turn_late_ = 0;  ///< consecutive arrivals later than usual, and by a turn and more
   RisingTimes stamps_{};
   std::int64_t time_ns_ = RisingTimes::none;  ///< the newest that was given

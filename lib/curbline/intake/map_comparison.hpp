@@ -24,8 +24,8 @@ class MapComparison {
   /// correction to the line.
   void follow_jump(ProjectedLine<limits>& line, const TiltLatency& latency, PoseOffset& offset) const;
 
-  /// Tests a line measured while poses jump, or between jumps of a robot that climbs. It is off the map if it deviates
-  /// as a whole, by about as much as the poses jump. If too little of it lies on mapped ground, it is taken in part:
+  /// Tests a line measured while poses jump, or between jumps of a robot that climbs. It is off the map if all of it
+  /// is, by about as much as the poses jump. If too little of it lies on mapped ground to tell, it is taken in part:
   /// without points that may be off by more than the noise that points of one place share.
   enum class JumpLine : unsigned char { on_map, in_part, off_map };
   JumpLine check_jump(ProjectedLine<limits>& line, const LineMotion& motion, bool climbs, const TiltLatency& latency,

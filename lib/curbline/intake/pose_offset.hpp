@@ -60,7 +60,7 @@ class PoseOffset {
   Pose corrected(const Pose& pose) const;
   /// The change of a height elsewhere in the map, by a shift about the robot's place.
   float at(const PoseShift& shift, float x_m, float y_m) const { return shift.at(x_m - x_m_, y_m - y_m_); }
-  /// Square of the error of heights elsewhere, should the less likely cause be true.
+  /// Square of the error of a height elsewhere if the less likely hypothesis, step or climb, is the true one.
   float doubt_m2(float x_m, float y_m) const;
 
  private:

@@ -1,6 +1,6 @@
-// Times that must rise: of readings, poses and scan lines. One that is not later than the newest is refused. But of 16
-// in a row that are not later but rise among themselves the last is taken: the newest was wrong (a damaged stamp, or a
-// clock set back since), since no queue before the pipeline holds as many in order. O(1); one context.
+// Times that must rise: of readings, poses and scan lines. One that is not later than the newest is refused. After 15
+// refused in a row whose own times rise, the next one that goes on rising is taken: the newest was wrong (a damaged
+// stamp, or a clock set back since), as no queue before the pipeline holds so many in order. O(1); one context.
 #pragma once
 
 #include <cstdint>

@@ -101,7 +101,8 @@ class TiltLatency {
     float offset_s = 0.0f, variance_s2 = 0.0f;
   };
 
-  /// missing_s is what this sweep's offset lacks and shares of the last two's, less a share of the lean.
+  /// Of a line: missing_s = a + last_share b + before_share c - farther_share lean, plus noise, where a, b and c are
+  /// what the offsets of this sweep, the last and the one before still lack.
   struct Observation {
     float missing_s, variance_s2;
     float last_share, before_share, farther_share;

@@ -30,14 +30,14 @@ template <Limits limits>
 class TiltSnapshot {
  public:
   /// For TiltTrack: put() stores `count` readings, number 0 the oldest, and begin() uses the newest `whole` of them, as
-  /// far as their times rise. `written` counts the readings up to the newest since init(). Angles between readings do
-  /// not depend on how many have come after the first one later than `until_ns`, the line's last beam. `repeats`: the
-  /// largest number in a row that earlier snapshots have seen.
+  /// far as their times rise. `written` counts the readings up to the newest since init(). Of those after `until_ns`,
+  /// the line's last beam, angles between readings use the first alone, so that they do not depend on how long the line
+  /// has waited. `repeats`: the longest row of repeats that earlier snapshots have seen.
   void put(std::uint32_t number, const TiltReading& reading) { readings_[number] = reading; }
   void begin(std::uint32_t count, std::uint32_t whole, std::uint32_t written, const TiltSettings& settings,
              std::int64_t until_ns, int repeats);
 
-  /// The same with those that this one sees.
+  /// The longest row of repeats that these and this one have seen.
   int most_repeats() const { return most_repeats_; }
 
   /// The angle at a time; Source::none where no readings are near. Times must not fall, except after rewind(). O(1) on

@@ -54,8 +54,8 @@ struct LabelSite {
     return {exp(nats) - 1.0f, static_cast<std::uint8_t>(round_to_int(nats * float{message_scale}))};
   }
 
-  /// Labels in order of likelihood, the best first. `doubt` is exp(-2 log potential): so a logarithm is needed only for
-  /// those that are kept.
+  /// Labels in order of likelihood, the best first. `doubt` is 1 / potential^2, as it is cheaper to compare: a
+  /// logarithm is taken of those alone that are kept.
   struct Candidates {
     Labels label{no_label, no_label, no_label};
     std::array<float, label_candidates> doubt{};

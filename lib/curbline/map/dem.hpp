@@ -47,9 +47,9 @@ class Dem : public Window<limits> {
   void follow(const Transform& T_map_base, Left&& left);
 
   /// Takes a point into its cell. False if it is outside the window, above its ceiling, beyond Pose::furthest_m above
-  /// or below, has a value that is not finite, or a weight below 1e-9; the weight is the expected noise over the
-  /// point's variance plus the ground's texture, 1e9 at most. In a cell of more than one surface, the first point of a
-  /// sweep makes earlier sweeps fade. O(1).
+  /// or below, has a place, height or variance that is not finite, or a weight below 1e-9; the weight is the expected
+  /// noise over the point's variance plus the ground's texture, 1e9 at most. A growth that is not finite leaves the
+  /// cell's as it was. In a cell of more than one surface, the first point of a sweep makes earlier sweeps fade. O(1).
   bool add(const Point& point);
 
   /// Corrects heights for sweeps that are later than assumed. Cells do not count as touched: neighbours move alike.
@@ -111,8 +111,8 @@ class Dem : public Window<limits> {
   const PlanePrior& prior() const { return prior_; }
   /// Variance that the points of a cell share: as estimated, at first the prior's.
   float common_m2() const { return common_m2_; }
-  /// Variance of what the cells of a row err alike, if they have one point each, by the errors in tilt and pose of the
-  /// scan line that has seen them. More points are of more lines: over their number.
+  /// Variance of the error that the cells of a row share, by the tilt and pose of the scan line that has seen them, for
+  /// cells of one point. More points are of more lines: divide by their number.
   float line_m2() const { return line_m2_; }
   /// Sets both as estimated; in evidences the shared part counts as at least the ground's texture.
   void set_common(float found_m2, float found_line_m2) {

@@ -1,6 +1,6 @@
 // From where a driving laser has seen cells: a ring of the newest places on its way, a 24th of the window's side apart,
-// each with a number of five bits that a cell can store. It holds a way a third longer than that side; for an older
-// cell, the number stands for a place where the robot has been since. O(1).
+// each with a number of five bits that a cell can store. It covers 4/3 of that side; an older cell's number has been
+// reused for a later place. O(1).
 #pragma once
 
 #include <array>

@@ -1,6 +1,5 @@
-// When and from where the window's cells were last seen: since what the stages have followed, since this sweep and
-// these marks began, and from which place on the laser's way. One byte a cell. O(1), but for what begins anew: a pass
-// over the window.
+// Of each cell: was it seen since the stages last ran, in this sweep, since the last mark; and from which place on the
+// laser's way. One byte a cell. O(1); a pass over the window where a sweep, a mark or the stages' turn begins.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 // points is included, the less the more there are. The uncertainty of the tilt's latency, which a single sweep does not
 // show, is added. Errors of tilt and poses are those of whole scan lines, which run across the way ahead: what the
 // cells of a row across it err alike is found by an analysis of variance (Fisher 1925). It averages out over the lines
-// that see the row, so line_m2() is that for cells of one point, from which Dem::line_m2() is that for a plane's.
+// that see the row, so line_m2() is given for cells of one point: divide by the points of a cell.
 #pragma once
 
 #include <algorithm>

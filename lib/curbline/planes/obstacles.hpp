@@ -48,7 +48,7 @@ class Obstacles {
   static bool seen_edge_on(const Plane& plane, const Viewpoint& view) {
     return plane.steeper_than_ramp() && plane.passes_through(view.x_m, view.y_m, view.z_m);
   }
-  /// The largest plane that is no obstacle, nor seen edge on, the reference for the others; null if there is none.
+  /// The reference for the others: the largest plane that is neither an obstacle nor seen edge-on; null if none is.
   const Plane* ground() const { return ground_; }
 
  private:

@@ -34,8 +34,8 @@ struct Sight {
   }
 
   bool ahead(int cell) const { return static_cast<float>(cell) * cell_m > eye_m; }
-  /// Distance to the near end of a run; on a robot that drives, the farthest from which it has been seen. At most 0 if
-  /// the laser is above the run.
+  /// Distance from the laser to the near end of a run; on a robot that drives, the largest from which it may have been
+  /// seen. At most 0 if the laser is above the run.
   float away_m(int first, int last) const {
     const bool is_ahead = ahead(first);
     const float away_m =
