@@ -76,7 +76,7 @@
 
 // Labels to borders.
 #include "curbline/borders/curb_stages.hpp"     // the stages that borders and curbs are found in
-#include "curbline/borders/beside.hpp"          // the ground beside a border
+#include "curbline/borders/beside.hpp"          // what cells show of the ground beside a border
 #include "curbline/borders/border.hpp"          // where labels change on a row or column
 #include "curbline/borders/borders.hpp"         // where labels change, and chains of such points
 #include "curbline/borders/plane_gap.hpp"       // where between two planes the edge lies, to a part of a cell
@@ -91,6 +91,7 @@
 #include "curbline/curbs/corner.hpp"            // where a chain of borders goes on along another line
 #include "curbline/curbs/shadow.hpp"            // of a step down
 #include "curbline/curbs/line_weights.hpp"      // what a plane owes to each scan line
+#include "curbline/curbs/off_plane.hpp"         // how far the ground beside a curb is off its plane
 #include "curbline/curbs/step_height.hpp"       // the height of a step
 #include "curbline/curbs/curb_maker.hpp"        // its kind, position and deviations
 #include "curbline/curbs/bend.hpp"              // whether the ground is bent from one plane to the next

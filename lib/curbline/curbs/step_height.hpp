@@ -8,11 +8,11 @@
 #include <cstddef>
 #include <optional>
 
-#include "curbline/borders/beside.hpp"
 #include "curbline/borders/border.hpp"
 #include "curbline/borders/curb_stages.hpp"
 #include "curbline/curbs/curb_piece.hpp"
 #include "curbline/curbs/line_weights.hpp"
+#include "curbline/curbs/off_plane.hpp"
 #include "curbline/curbs/plane_pair.hpp"
 #include "curbline/curbs/shadow.hpp"
 #include "curbline/grid.hpp"

@@ -1,4 +1,4 @@
-#include "curbline/borders/beside.hpp"
+#include "curbline/curbs/off_plane.hpp"
 
 namespace curbline {
 

@@ -1,13 +1,13 @@
 // What the cells beside a border show about a side of a step: that its ground deviates from its plane, or how wrong the
 // plane may be.
-#include "curbline/borders/beside.hpp"
+#include "curbline/curbs/off_plane.hpp"
 
 #include <catch2/catch.hpp>
 
 namespace curbline {
 namespace {
 
-TEST_CASE("beside: the ground beside a border is carried on to it") {
+TEST_CASE("off plane: the ground beside a border is carried on to it") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const Beside beside = Beside::of({-0.010f, 4.0f}, {-0.004f, 4.0f}, 1.0f);  // falls by 6 mm a cell
@@ -18,7 +18,7 @@ TEST_CASE("beside: the ground beside a border is carried on to it") {
   CHECK(deviation(two, plane, -1.0f, 0.0f, 0.0f, 0.0f).away_m == Approx(0.016));
 }
 
-TEST_CASE("beside: of a deviation from the plane the share is the ground's that chance does not explain") {
+TEST_CASE("off plane: of a deviation from the plane the share is the ground's that chance does not explain") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;  // of the two cells, with weights 2 and -1: 5e-6
   Beside beside = Beside::of({0.010f, 4.0f}, {0.010f, 4.0f}, 1.0f);
@@ -40,7 +40,7 @@ TEST_CASE("beside: of a deviation from the plane the share is the ground's that 
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f, 0.0f).share() == 0.0f);
 }
 
-TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cells' deviation beyond chance") {
+TEST_CASE("off plane: a plane may be wrong beside a border by up to half of its cells' deviation beyond chance") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const auto lying = [&](float off_m) {
@@ -55,7 +55,7 @@ TEST_CASE("beside: a plane may be wrong beside a border by up to half of its cel
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f, 0.0f).height_variance_m2(0.0f) == 0.0f);
 }
 
-TEST_CASE("beside: what the cells beside one border say is no doubt about all the others") {
+TEST_CASE("off plane: what the cells beside one border say is no doubt about all the others") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const Deviation one = deviation(Beside::of({-0.058f, 4.0f}, {-0.058f, 4.0f}, 1.0f), plane, 1.0f, 0.0f, 0.0f, 0.0f);
@@ -63,7 +63,7 @@ TEST_CASE("beside: what the cells beside one border say is no doubt about all th
   CHECK(deviation(Beside{}, plane, 1.0f, 0.0f, 0.0f, 0.0f).too_far_m2(10.0f) == 0.0f);
 }
 
-TEST_CASE("beside: cells along a border tell how far the ground lies off its plane, less two deviations of chance") {
+TEST_CASE("off plane: cells along a border tell how far the ground lies off its plane, less two deviations of chance") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const GroundAlong ground = GroundAlong::of(4.0f, 4.0f, 4 * 0.002f, plane);
@@ -76,7 +76,7 @@ TEST_CASE("beside: cells along a border tell how far the ground lies off its pla
   CHECK(GroundAlong::of(0.0f, 0.0f, 0.0f, plane).share == 0.0f);
 }
 
-TEST_CASE("beside: four cells behind each border tell the ground's height there no better than one would") {
+TEST_CASE("off plane: four cells behind each border tell the ground's height there no better than one would") {
   Plane plane;
   plane.fit_variance_m2 = 1e-6f;
   const GroundAlong one = GroundAlong::of(12.0f, 12.0f, 12 * 0.002f, plane);
