@@ -44,7 +44,8 @@ TEST_CASE("cloud: text is read by blanks or commas, with a header or columns to 
   const TemporaryDirectory dir;
   for (const char* text :
        {"1 2 3\n-4 5e-1 6\n", "  1\t2  3 9 9\n# note\n\n-4 .5 6\n", "1,2,3\n-4, 0.5 ,6,7\n", "x,y,z\n1,2,3\n-4,0.5,6",
-        "i,z_m,Y,\"x\"\n0,3,2,1\n0,6,0.5,-4\r\n", "//X Y Z R\n1 2 3 0\n-4 0.5 6 0\n"}) {
+        "i,z_m,Y,\"x\"\n0,3,2,1\n0,6,0.5,-4\r\n", "//X Y Z R\n1 2 3 0\n-4 0.5 6 0\n", ",x,y,z\n0,1,2,3\n1,-4,0.5,6\n",
+        "\"\",\"x\",\"y\",\"z\"\n\"1\",1,2,3\n\"2\",-4,0.5,6\n"}) {
     INFO(text);
     const auto points = read_cloud(dir.write("a.csv", text));
     REQUIRE(points.size() == 2);
@@ -60,7 +61,10 @@ TEST_CASE("cloud: bad text is refused with line and field") {
   CHECK(error("1 2 3\n1 2 3x\n") == "a.xyz:2: z is \"3x\"; expected a number");
   CHECK(error("1 2 1e999\n") == "a.xyz:1: z is \"1e999\"; expected a number");
   CHECK(error("1,,3\n") == "a.xyz:1: y is \"\"; expected a number");
-  CHECK(error("a,b,c\n1,2,3\n").starts_with("a.xyz:1: no such columns"));
+  for (const char* header : {"a,b,c\n", "x;y;z\n"}) {
+    CHECK(error(header + std::string("1 2 3\n")) ==
+          "a.xyz:1: no such columns; expected numbers, or names with x, y and z among them, apart by commas or blanks");
+  }
   CHECK(error("x y z\n") == "a.xyz: no points; expected at least one");
   CHECK(error("") == "a.xyz: the file is empty; expected at least one line");
   CHECK(error_of([&] { read_cloud(dir.path("a.las")); }).starts_with("a.las: unknown kind of cloud"));
@@ -176,6 +180,17 @@ TEST_CASE("cloud: a coordinate that two columns bear is refused, since only the 
   CHECK(error("a.pcd", pcd_header(twice, 1, "ascii") + "1 2 3 4\n") == "a.pcd:3: column x twice; expected it once");
   const std::string padding = "FIELDS _ x y z _\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\n";
   CHECK(is(read_cloud(dir.write("a.pcd", pcd_header(padding, 1, "ascii") + "0 1 2 3 4\n")).at(0), 1, 2, 3));
+}
+
+TEST_CASE("cloud: columns of what belongs to a coordinate, as its deviation, stand beside it or before it") {
+  const TemporaryDirectory dir;
+  for (const char* text : {"x y z z_sd x_n x_vel\n1 2 3 9 9 9\n", "x_sd,x_n,x,y,z [m],z.1\n9,9,1,2,3,9\n",
+                           "x_m y_m y_sd z y_n\n1 2 9 3 9\n", "//X Y Z Z_SD\n1 2 3 9\n"}) {
+    INFO(text);
+    CHECK(is(read_cloud(dir.write("a.csv", text)).at(0), 1, 2, 3));
+  }
+  CHECK(error_of([&] { read_cloud(dir.write("a.csv", "x y z_sd z_n\n1 2 3 4\n")); }) ==
+        "a.csv:1: column z twice; expected it once");
 }
 
 TEST_CASE("cloud: damaged clouds are read or refused, and nothing worse") {

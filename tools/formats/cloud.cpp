@@ -24,31 +24,48 @@ struct Columns {
   int last() const { return *std::max_element(of_axis.begin(), of_axis.end()); }
 };
 
-/// The axis that a column's name refers to, "X", "y_m", "//z": 0 to 2, or -1.
-int axis_of(std::string_view name) {
+/// What a column's name refers to: "X", "y_m", "//z", "z_sd".
+struct ColumnName {
+  int axis = -1;               ///< 0 to 2; -1: none
+  bool is_coordinate = false;  ///< "z" or "z [m]", not something of it, as "z_sd" may be
+};
+
+ColumnName parse_name(std::string_view name) {
+  const auto is_alnum = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   const std::size_t start = std::min(name.find_first_not_of("/\""), name.size());
-  const std::string word = lower_case(std::string(name.substr(start)));
-  if (word.empty() || word[0] < 'x' || word[0] > 'z') return -1;
-  return word.size() == 1 || std::isalnum(static_cast<unsigned char>(word[1])) == 0 ? word[0] - 'x' : -1;
+  std::string word = lower_case(std::string(name.substr(start)));
+  if (word.empty() || word[0] < 'x' || word[0] > 'z' || (word.size() > 1 && is_alnum(word[1]))) return {};
+  std::erase_if(word, [&](char c) { return !is_alnum(c); });
+  return {word[0] - 'x', word.size() == 1 || word.substr(1) == "m"};
 }
 
+/// A first column without a name is that of an index.
 bool is_header(std::string_view line) {
   const std::string start =
-      lower_case(std::string(line.substr(std::min(line.find_first_not_of(" \t/\""), line.size()), 3)));
+      lower_case(std::string(line.substr(std::min(line.find_first_not_of(" \t/\","), line.size()), 3)));
   return !start.empty() && std::isalpha(static_cast<unsigned char>(start[0])) != 0 && start != "nan" && start != "inf";
 }
 
 Columns read_header(const LineReader& source, Fields fields) {
   Columns columns{{-1, -1, -1}};
+  std::array<bool, 3> is_coordinate{};
+  std::array<int, 3> equals{};
   for (int column = 0; !fields.at_end(); ++column) {
-    const int axis = axis_of(fields.word("a column name"));
-    if (axis < 0) continue;
-    int& place = columns.of_axis[static_cast<std::size_t>(axis)];
-    if (place >= 0) source.fail(std::string("column ") + "xyz"[axis] + " twice; expected it once");
-    place = column;
+    const ColumnName name = parse_name(fields.word("a column name"));
+    if (name.axis < 0) continue;
+    const auto axis = static_cast<std::size_t>(name.axis);
+    if (equals[axis] > 0 && name.is_coordinate <= is_coordinate[axis]) {
+      equals[axis] += name.is_coordinate == is_coordinate[axis];
+      continue;
+    }
+    columns.of_axis[axis] = column;
+    is_coordinate[axis] = name.is_coordinate;
+    equals[axis] = 1;
   }
-  for (const int column : columns.of_axis) {
-    if (column < 0) source.fail("no such columns; expected numbers, or names with x, y and z among them");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (equals[axis] == 0)
+      source.fail("no such columns; expected numbers, or names with x, y and z among them, apart by commas or blanks");
+    if (equals[axis] > 1) source.fail(std::string("column ") + "xyz"[axis] + " twice; expected it once");
   }
   return columns;
 }
