@@ -25,13 +25,13 @@ class LatencyHistogram {
   std::uint64_t mean_us() const { return samples_ == 0 ? 0 : sum_us_ / samples_; }
   std::uint64_t longest_us() const { return longest_us_; }
 
-  /// Upper bound of this many thousandths of the samples; 0 without samples.
+  /// Upper bound of this many thousandths of the samples, the longest at most; 0 without samples.
   std::uint64_t quantile_us(std::uint64_t per_mille) const {
     const std::uint64_t wanted = (samples_ * per_mille + 999) / 1000;
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < buckets && samples_ > 0; ++i) {
       seen += counts_[i];
-      if (seen >= wanted) return end_us(i) < longest_us_ + 1 ? end_us(i) : longest_us_ + 1;
+      if (seen >= wanted) return end_us(i) < longest_us_ ? end_us(i) : longest_us_;
     }
     return 0;
   }

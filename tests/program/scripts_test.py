@@ -76,6 +76,8 @@ class Scripts(unittest.TestCase):
         self.assertEqual(self.shell("test", "kep"), (2, "", "test: kep; expected options of ctest, such as -R NAME\n"))
         self.assertEqual(self.shell("with-vcan", "--kep"),
                          (2, "", "with-vcan: --kep: expected a command; with-vcan [--timeout SECONDS] COMMAND [ARGUMENT...]\n"))
+        for words in [["0", "true"], ["00", "true"], ["-1", "true"], ["1.5", "true"], ["", "true"], []]:
+            self.assertEqual(self.shell("with-vcan", "--timeout", *words), (2, "", "with-vcan: --timeout: expected whole seconds, 1 or more\n"))
 
     def test_help_of_shell_scripts_is_their_head(self):
         for script in ["bench", "budget", "build", "demo", "setup", "test", "with-vcan"]:
