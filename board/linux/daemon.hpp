@@ -23,7 +23,6 @@
 #include "latency_histogram.hpp"
 #include "line_inbox.hpp"
 #include "pose_source.hpp"
-#include "radians_watch.hpp"
 #include "reports.hpp"
 #include "robot/robot.hpp"
 #include "scan_log.hpp"
@@ -31,6 +30,7 @@
 #include "service_manager.hpp"
 #include "socketcan/socketcan.hpp"
 #include "streams/host_pipeline.hpp"
+#include "streams/radians_watch.hpp"
 #include "streams/recorded_times.hpp"
 #include "troubles.hpp"
 
@@ -93,7 +93,7 @@ class Daemon {
   can::TiltDecoderCounters tilt_counters_{};
   SourceWatch tilt_watch_;
   NodWatch nod_watch_;
-  RadiansWatch radians_watch_;
+  tools::RadiansWatch radians_watch_;
   SourceEvent nod_event_ = SourceEvent::none;  ///< to be told
   std::string wanted_tilt_;                    ///< name of the frame that is waited for, for the user
   tools::LogClock clock_ = tools::LogClock::of_the_bus();

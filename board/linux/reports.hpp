@@ -42,7 +42,7 @@ struct Report {
   std::string_view wanted_tilt{};    ///< the first frame that is waited for, for the user
   const can::TiltDecoderCounters* tilt_frames = nullptr;
   const TiltLatency* tilt_latency = nullptr;
-  bool angles_in_doubt = false;     ///< they are not radians: radians_watch.hpp
+  bool angles_in_doubt = false;     ///< they are not radians: streams/radians_watch.hpp
   std::uint64_t angles_beyond = 0;  ///< more than a turn from where a sweep began, while that was so
   PoseReport poses{};
   std::optional<BusReport> bus{};

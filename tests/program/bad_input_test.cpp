@@ -166,10 +166,22 @@ TEST_CASE("program: tilt angles in degrees for radians are told") {
     const std::string robot = logs.directory().write("r.toml", "[tilt.signal]\nscale = " + scale + "\n");
     return curbline(logs.replay("robot", robot)).err;
   };
+  const std::string degrees =
+      " tilt angles are more than a turn from where their sweep began; expected radians, see scale of tilt.signal\n";
   CHECK(told("9.587379924285257e-05").empty());
-  CHECK(told("0.0054931640625")
-            .find(" tilt angles are more than a turn from the first; expected radians, see scale of "
-                  "tilt.signal\n") != std::string::npos);
+  CHECK(told("0.0054931640625").find(degrees) != std::string::npos);
+}
+
+TEST_CASE("program: a first tilt frame that is damaged does not make degrees of the rest") {
+  const Recording logs = standing();
+  const std::string log = read_file(logs.path("can.log")), first = lines_of(log).front();
+  const std::size_t data = first.find('#') + 1;
+  const std::string damaged = first.substr(0, data + 4) + "7FFFFF7F";
+  REQUIRE(first.size() == damaged.size());
+  const Outcome outcome =
+      curbline(logs.replay("can", logs.directory().write("damaged.log", with_line(log, 1, damaged))));
+  CHECK(outcome.status == 0);
+  CHECK(outcome.err.empty());
 }
 
 TEST_CASE("program: a scale at which no frame can hold an angle is refused with the possible angles") {

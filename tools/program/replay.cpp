@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
@@ -27,6 +26,7 @@ Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs,
 Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
     : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), tilt_(robot), left_behind_(pipeline_->grid()) {
   check_logs(robot, logs.can, logs.poses);
+  radians_watch_.init(static_cast<float>(robot.sweep.period_s));
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
     can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id,
@@ -87,8 +87,7 @@ void Replay::feed_tilt(std::int64_t until_ns) {
 
 void Replay::take_tilt(const TiltReading& reading) {
   if (++tilt_readings_ == 1) first_tilt_ = reading;
-  turns_away_ += magnitude(reading.angle_rad - first_tilt_.angle_rad) > 2.0f * std::numbers::pi_v<float>;
-  pipeline_->add_tilt(reading);
+  if (pipeline_->add_tilt(reading)) radians_watch_.update(reading);
 }
 
 /// Whether the newest reading is too old for an extrapolation to that time.
@@ -130,10 +129,12 @@ std::string Replay::remarks() const {
   const Counters& c = pipeline_->counters();
   add(logs_.can, c.tilt_dropped,
       std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
-  if (2 * turns_away_ > tilt_readings_) {  // not a few damaged ones
-    add(logs_.can, turns_away_,
+  if (const auto beyond = static_cast<long>(radians_watch_.beyond());
+      radians_watch_.in_doubt() || 2 * beyond > tilt_readings_) {
+    add(logs_.can, beyond,
         std::to_string(tilt_readings_) +
-            " tilt angles are more than a turn from the first; expected radians, see scale of tilt.signal");
+            " tilt angles are more than a turn from where their sweep began; expected radians, see scale of "
+            "tilt.signal");
   }
   add(logs_.poses, c.poses_dropped, std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
   add(logs_.scans, lines_ - lines_taken_,

@@ -14,6 +14,7 @@
 #include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
 #include "streams/host_pipeline.hpp"
+#include "streams/radians_watch.hpp"
 #include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
@@ -75,7 +76,7 @@ class Replay {
   std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
   TiltReading first_tilt_{};
-  long turns_away_ = 0;  ///< readings more than a turn from the first
+  RadiansWatch radians_watch_;
   std::int64_t first_line_ns_ = 0, first_pose_ns_ = 0;
   LeftBehind left_behind_;
 };

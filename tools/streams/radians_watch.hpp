@@ -1,22 +1,24 @@
 // Whether the tilt's angles are radians: a servo described in degrees sweeps through many turns, which no servo of a
-// laser does, and curbs appear where none are. `curbline replay` tells so of a log. One thread; O(1).
+// laser does, and curbs appear where none are. The daemon tells so at once, `curbline replay` at the end. One thread;
+// O(1).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 
 #include "curbline/math.hpp"
 #include "curbline/tilt_reading.hpp"
 
-namespace curbline::daemon {
+namespace curbline::tools {
 
 class RadiansWatch {
  public:
   /// Starts afresh. sweep_s: a sweep there and back at most, after which angles are compared with another one, as a
-  /// servo may lose its zero.
+  /// servo may lose its zero; no less than half a second, for enough readings.
   void init(float sweep_s) {
     *this = RadiansWatch{};
-    sweep_ns_ = static_cast<std::int64_t>(sweep_s * 1e9f);
+    sweep_ns_ = static_cast<std::int64_t>(std::max(sweep_s, 0.5f) * 1e9f);
   }
 
   /// Call with each reading that the pipeline takes.
@@ -30,13 +32,17 @@ class RadiansWatch {
     }
     if (!agreed_) from_rad_ = reading.angle_rad;  // the one before was damaged, or this one is
     ++away_;
-    in_doubt_ = in_doubt_ || (away_ >= least_away && mostly_away());
-    if (in_doubt_) ++beyond_;
+    if (in_doubt_) {
+      ++beyond_;
+    } else if (away_ >= least_away && mostly_away()) {
+      in_doubt_ = true;
+      beyond_ += static_cast<std::uint64_t>(away_);
+    }
   }
 
   /// Most angles of this sweep or the last one lie more than a turn from where it began.
   bool in_doubt() const { return in_doubt_; }
-  /// Readings that lay there while it was in doubt, since init().
+  /// Readings that lay there in sweeps that were in doubt, since init().
   std::uint64_t beyond() const { return beyond_; }
 
  private:
@@ -60,4 +66,4 @@ class RadiansWatch {
   std::uint64_t beyond_ = 0;
 };
 
-}  // namespace curbline::daemon
+}  // namespace curbline::tools
