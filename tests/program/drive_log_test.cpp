@@ -1,4 +1,5 @@
 // curbline-drive-log: converts logs to the input of boards, and the output of boards to curbs.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -94,6 +95,72 @@ TEST_CASE("drive log: frames behind one with a damaged stamp reach the board in 
   for (std::size_t k = 0; k < sound.size(); ++k) changed += sound[k] != with_damage[k];
   CHECK(changed > 0);
   CHECK(changed <= sizeof(std::int64_t));
+}
+
+TEST_CASE("drive log: what replay tells of the logs themselves is told when they are written, too") {
+  const Recording logs("city", "utm30lx", {"--duration", "2"});
+  const std::string can = read_file(logs.path("can.log")), scans = read_file(logs.path("scans.carmen"));
+  const auto told = [&](Words words) {
+    const Outcome by_replay = curbline(words);
+    words.front() = "write";
+    const Outcome outcome = drive_log(words + Words{"--out", logs.path("drive")});
+    CHECK(by_replay.status == 0);
+    CHECK(outcome.status == 0);
+    return std::pair{by_replay.err, outcome.err};
+  };
+  SECTION("nothing of sound ones") {
+    CHECK(told(logs.replay()).second.empty());
+  }
+  SECTION("frames lost by candump") {
+    const auto [by_replay, err] = told(logs.replay(
+        "can", logs.directory().write("lost.log", "DROPCOUNT: dropped 3 CAN frames on 'can0' socket\n" + can)));
+    CHECK(err == logs.path("lost.log") + ": 3 frames lost by candump\n");
+    CHECK(err == by_replay);
+  }
+  SECTION("poses that lie beside") {
+    const auto [by_replay, err] = told({"replay", "--scans", logs.path("scans.carmen"), "--can", logs.path("can.log"),
+                                        "--robot", logs.path("robot.toml")});
+    CHECK(err == logs.path("poses.tum") + ": not read, the robot was taken to stand; expected --poses\n");
+    CHECK(err == by_replay);
+  }
+  SECTION("a CAN log beside a fixed tilt") {
+    const std::string robot = logs.directory().write("fixed.toml", "[tilt]\nfixed = true\n");
+    const auto [by_replay, err] = told(logs.replay("robot", robot));
+    CHECK(err == logs.path("can.log") + ": not read; the tilt is fixed\n");
+    CHECK(err == by_replay);
+  }
+  SECTION("tilt angles in degrees") {
+    const std::string robot = logs.directory().write("degrees.toml", "[tilt.signal]\nscale = 0.0054931640625\n");
+    const auto [by_replay, err] = told(logs.replay("robot", robot));
+    const std::string start = logs.path("can.log") + ": ", end = " see scale of tilt.signal\n";
+    CHECK(err.starts_with(start));
+    CHECK(err.ends_with(" tilt angles are more than a turn from where their sweep began; expected radians," + end));
+    CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+    CHECK(by_replay.find(" tilt angles are more than a turn from where their sweep began;") != std::string::npos);
+  }
+  SECTION("tilt frames and scan lines that go back") {
+    const Words frames = lines_of(can), lines = lines_of(scans);
+    const auto swapped = [](const std::string& text, const Words& all, std::size_t k) {
+      return with_line(with_line(text, k, all[k]), k + 1, all[k - 1]);
+    };
+    const std::string back = logs.directory().write("back.log", swapped(can, frames, 100));
+    logs.directory().write("scans.carmen", swapped(scans, lines, 60));
+    const auto [by_replay, err] = told(logs.replay("can", back));
+    const std::string order = " are out of order; expected times that rise\n";
+    CHECK(std::count(by_replay.begin(), by_replay.end(), '\n') == 2);
+    CHECK(std::count(err.begin(), err.end(), '\n') == 2);
+    CHECK(err.starts_with(back + ": 1 of "));
+    CHECK(err.find(" tilt readings" + order + logs.path("scans.carmen") + ": 1 of 80 scan lines" + order) !=
+          std::string::npos);
+  }
+  SECTION("a scan line of the future") {
+    const Words lines = lines_of(scans);
+    const std::size_t name = lines[59].rfind(" curbline "), stamp = lines[59].rfind(' ', name - 1) + 1;
+    logs.directory().write("scans.carmen",
+                           with_line(scans, 60, lines[59].substr(0, stamp) + "1700003600.0" + lines[59].substr(name)));
+    CHECK(told(logs.replay()).second ==
+          logs.path("scans.carmen") + ": 1 of 80 scan lines are out of order; expected times that rise\n");
+  }
 }
 
 TEST_CASE("drive log: an empty file name is wrong usage") {

@@ -15,8 +15,8 @@ struct DriveFiles {
 };
 
 /// CAN frames up to the first reading that covers a line's last beam, poses up to it, then the line: as `curbline
-/// replay` feeds the pipeline, with some more readings ahead. Returns remarks for the user about the lines' stamps
-/// (LaserLog::remarks()). Throws BadInput.
+/// replay` feeds the pipeline, with some more readings ahead. Returns remarks for the user: those of `curbline replay`
+/// that are about the logs themselves. Throws BadInput.
 std::string write_drive(const DriveFiles& files);
 
 /// The curbs after the last scan line of a stream of results. Throws BadInput.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "curbline/intake/rising_times.hpp"
 #include "drive_log/drive_log.hpp"
 #include "drive_streams/drive_streams.hpp"
 #include "formats/atomic_file.hpp"
@@ -11,6 +12,8 @@
 #include "formats/laser_log.hpp"
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
+#include "streams/log_remarks.hpp"
+#include "streams/radians_watch.hpp"
 #include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
@@ -39,10 +42,35 @@ void clear_room(std::optional<T>& value) {
   if (!value) std::memset(static_cast<void*>(&value), 0, sizeof value);
 }
 
+/// Counts times that do not rise: the pipeline of a board will drop what bears them.
+class Order {
+ public:
+  bool take(std::int64_t time_ns, bool of_the_future = false) {
+    ++all_;
+    const bool rises = !of_the_future && times_.admits(time_ns);
+    if (rises) times_.take(time_ns);
+    refused_ += !rises;
+    return rises;
+  }
+  long all() const { return all_; }
+  void say(Remarks& remarks, const std::string& log, const std::string& what) const {
+    remarks.say_of(log, refused_, std::to_string(all_) + " " + what + " are out of order; expected times that rise");
+  }
+
+ private:
+  RisingTimes times_;
+  long all_ = 0, refused_ = 0;
+};
+
 class DriveWriter {
  public:
   explicit DriveWriter(const DriveFiles& files)
-      : robot_(read_robot(files.robot)), scans_(files.scans, robot_.laser), out_(files.out), tilt_(robot_) {
+      : logs_{files.scans, files.can, files.poses},
+        robot_(read_robot(files.robot)),
+        scans_(files.scans, robot_.laser),
+        out_(files.out),
+        tilt_(robot_) {
+    radians_watch_.init(static_cast<float>(robot_.sweep.period_s));
     if (!files.poses.empty()) robot_.pose.still = false;
     check_logs(robot_, files.can, files.poses);
     if (!robot_.tilt.fixed) can_.emplace(files.can);
@@ -57,7 +85,9 @@ class DriveWriter {
     put(RecordKind::setup, setup);
     while (const auto line = scans_.next()) {
       const std::int64_t last_beam_ns = line->time_ns + robot_.laser.duration_ns(line->ranges_m.size());
-      if (!scans_.of_the_future()) {
+      const bool of_the_future = scans_.of_the_future();
+      line_order_.take(line->time_ns, of_the_future);
+      if (!of_the_future) {
         put_frames(last_beam_ns + static_cast<std::int64_t>(
                                       (robot_.tilt.latency_s + latency_bound * robot_.tilt.latency_sd_s) * 1e9f));
         put_poses(last_beam_ns);
@@ -68,7 +98,16 @@ class DriveWriter {
       throw BadInput(can_->path() + ": " + without_readings(robot_, tilt_.counters()));
     out_.commit();
   }
-  std::string remarks() const { return scans_.remarks(); }
+  std::string remarks() const {
+    Remarks remarks;
+    if (can_) say_lost_frames(remarks, *can_);
+    remarks.add(scans_.remarks());
+    tilt_order_.say(remarks, logs_.can, "tilt readings");
+    say_degrees(remarks, logs_.can, radians_watch_, tilt_order_.all());
+    line_order_.say(remarks, logs_.scans, "scan lines");
+    say_unread(remarks, robot_, logs_);
+    return remarks.text();
+  }
 
  private:
   void put_bytes(std::span<const std::byte> bytes) {
@@ -92,7 +131,10 @@ class DriveWriter {
       if (frame) interface_.check(*can_, robot_.tilt_signal, *frame);
       return frame;
     };
-    const auto take = [&](const can::Frame& frame, const auto&) { put(RecordKind::can_frame, frame); };
+    const auto take = [&](const can::Frame& frame, const std::optional<TiltReading>& reading) {
+      if (reading && tilt_order_.take(reading->time_ns)) radians_watch_.update(*reading);
+      put(RecordKind::can_frame, frame);
+    };
     if (!tilt_.feed(until_ns, next, take)) tilt_.end();
   }
 
@@ -113,6 +155,7 @@ class DriveWriter {
     put_bytes(ranges);
   }
 
+  DriveLogs logs_;
   Robot robot_;
   LaserLog scans_;
   std::optional<CanLogReader> can_;
@@ -120,6 +163,8 @@ class DriveWriter {
   std::optional<TrajectoryReader> poses_;
   AtomicFile out_;
   TiltFeed tilt_;
+  Order tilt_order_, line_order_;
+  RadiansWatch radians_watch_;
   std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest written
 };
 

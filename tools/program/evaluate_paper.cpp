@@ -122,7 +122,7 @@ std::vector<Map> map_streams(const std::string& data, const std::vector<PaperClo
   std::vector<Sweep> sweeps;
   for (const PaperCloud& cloud : clouds) {
     if (!cloud.same_place) continue;
-    const ReplayLogs logs{data + "/" + cloud.name + ".carmen", data + "/" + cloud.name + ".candump", {}};
+    const DriveLogs logs{data + "/" + cloud.name + ".carmen", data + "/" + cloud.name + ".candump", {}};
     if (!file_exists(logs.scans) || !file_exists(logs.can)) return {};
     Replay replay(robot, logs, std::move(pipeline));
     Sweep& sweep = sweeps.emplace_back();

@@ -17,7 +17,7 @@ Robot robot_of(const std::string& dir) {
   return robot;
 }
 
-ReplayLogs logs_of(const std::string& dir, const Robot& robot) {
+DriveLogs logs_of(const std::string& dir, const Robot& robot) {
   return {dir + "/scans.carmen", robot.tilt.fixed ? "" : dir + "/can.log", robot.pose.still ? "" : dir + "/poses.tum"};
 }
 

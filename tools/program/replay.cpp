@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "formats/bad_input.hpp"
 #include "formats/decimals.hpp"
-#include "formats/file_exists.hpp"
 
 namespace curbline::tools {
 namespace {
@@ -21,9 +19,9 @@ bool is_empty(const Map& map) {
 
 }  // namespace
 
-Replay::Replay(const Robot& robot, const ReplayLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
+Replay::Replay(const Robot& robot, const DriveLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
 
-Replay::Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline)
+Replay::Replay(const Robot& robot, const DriveLogs& logs, std::unique_ptr<HostPipeline> pipeline)
     : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), tilt_(robot), left_behind_(pipeline_->grid()) {
   check_logs(robot, logs.can, logs.poses);
   radians_watch_.init(static_cast<float>(robot.sweep.period_s));
@@ -119,40 +117,30 @@ void Replay::check_poses() {
 }
 
 std::string Replay::remarks() const {
-  std::string text = can_ ? can_->remarks() : std::string();
-  const auto add_line = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
-  const auto say = [&](const std::string& log, const std::string& what) { add_line(log + ": " + what); };
-  if (const std::string of_scans = scans_->remarks(); !of_scans.empty()) add_line(of_scans);
-  const auto add = [&](const std::string& log, long count, const std::string& what) {
-    if (count > 0) say(log, std::to_string(count) + " of " + what);
-  };
+  Remarks remarks;
+  if (can_) remarks.add(can_->remarks());
+  remarks.add(scans_->remarks());
   const Counters& c = pipeline_->counters();
-  add(logs_.can, c.tilt_dropped,
-      std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
-  if (const auto beyond = static_cast<long>(radians_watch_.beyond());
-      radians_watch_.in_doubt() || 2 * beyond > tilt_readings_) {
-    add(logs_.can, beyond,
-        std::to_string(tilt_readings_) +
-            " tilt angles are more than a turn from where their sweep began; expected radians, see scale of "
-            "tilt.signal");
-  }
-  add(logs_.poses, c.poses_dropped, std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
-  add(logs_.scans, lines_ - lines_taken_,
-      std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
+  remarks.say_of(logs_.can, c.tilt_dropped,
+                 std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
+  say_degrees(remarks, logs_.can, radians_watch_, tilt_readings_);
+  remarks.say_of(logs_.poses, c.poses_dropped,
+                 std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
+  remarks.say_of(logs_.scans, lines_ - lines_taken_,
+                 std::to_string(lines_) + " scan lines were dropped, the last for: " + to_string(refused_));
   if (c.points == 0 && c.outside > 0)
-    say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
+    remarks.say(logs_.scans, "none of " + std::to_string(c.outside) + " points lies in the window");
   if (c.points > 0 && is_empty(pipeline_->map()))
-    say(logs_.scans, "the map is empty: its window has left all " + std::to_string(c.points) +
-                         " points behind; expected poses in metres, and a robot that stays where it has mapped");
+    remarks.say(logs_.scans,
+                "the map is empty: its window has left all " + std::to_string(c.points) +
+                    " points behind; expected poses in metres, and a robot that stays where it has mapped");
   if (c.points + c.outside + c.beams_without_tilt == 0 && c.no_returns > 0) {
-    say(logs_.scans, "none of " + std::to_string(c.no_returns) + " beams returned; expected ranges in metres from " +
-                         shortest(robot_.laser.min_range_m) + " to " + shortest(robot_.laser.max_range_m));
+    remarks.say(logs_.scans, "none of " + std::to_string(c.no_returns) +
+                                 " beams returned; expected ranges in metres from " +
+                                 shortest(robot_.laser.min_range_m) + " to " + shortest(robot_.laser.max_range_m));
   }
-  const std::filesystem::path poses = std::filesystem::path(logs_.scans).replace_filename("poses.tum");
-  if (robot_.tilt.fixed && !logs_.can.empty()) say(logs_.can, "not read; the tilt is fixed");
-  if (logs_.poses.empty() && !is_scanner(logs_.scans) && file_exists(poses))
-    say(poses.string(), "not read, the robot was taken to stand; expected --poses");
-  return text;
+  say_unread(remarks, robot_, logs_);
+  return remarks.text();
 }
 
 void Replay::check_complete() const {

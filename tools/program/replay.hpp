@@ -14,24 +14,18 @@
 #include "program/tilt_frames.hpp"
 #include "robot/robot.hpp"
 #include "streams/host_pipeline.hpp"
+#include "streams/log_remarks.hpp"
 #include "streams/radians_watch.hpp"
 #include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
 
-/// The logs of one drive. `can` may be a live interface, "can:vcan0"; it and `poses` are empty if the robot has none.
-struct ReplayLogs {
-  std::string scans;  ///< or a live scanner: scan_source.hpp
-  std::string can;
-  std::string poses;
-};
-
 class Replay {
  public:
   /// Opens the logs. Throws BadInput if a log that the robot needs is missing.
-  Replay(const Robot& robot, const ReplayLogs& logs);
+  Replay(const Robot& robot, const DriveLogs& logs);
   /// Continues with a pipeline that has taken other logs before.
-  Replay(const Robot& robot, const ReplayLogs& logs, std::unique_ptr<HostPipeline> pipeline);
+  Replay(const Robot& robot, const DriveLogs& logs, std::unique_ptr<HostPipeline> pipeline);
   std::unique_ptr<HostPipeline> take_pipeline() { return std::move(pipeline_); }
 
   /// Takes the next scan line; false at the end. Throws BadInput for errors in a log. The line's points are appended to
@@ -63,7 +57,7 @@ class Replay {
   void check_poses();
 
   Robot robot_;
-  ReplayLogs logs_;
+  DriveLogs logs_;
   std::unique_ptr<HostPipeline> pipeline_;
   std::unique_ptr<ScanSource> scans_;
   std::unique_ptr<TiltFrames> can_;  ///< none for a fixed tilt

@@ -23,7 +23,7 @@ namespace curbline::tools {
 namespace {
 
 struct Options {
-  ReplayLogs logs;
+  DriveLogs logs;
   std::string robot;
   std::string speed;
   std::string line_costs;

@@ -7,6 +7,7 @@
 
 #include "formats/bad_input.hpp"
 #include "socketcan/socketcan.hpp"
+#include "streams/log_remarks.hpp"
 #include "streams/recorded_times.hpp"
 
 namespace curbline::tools {
@@ -27,8 +28,9 @@ class LogFrames final : public TiltFrames {
   bool ended() const override { return ended_; }
   void fail_silent() const override { throw BadInput(log_.path() + ": no more frames"); }
   std::string remarks() const override {
-    if (log_.frames_lost() == 0) return {};
-    return log_.path() + ": " + std::to_string(log_.frames_lost()) + " frames lost by candump";
+    Remarks remarks;
+    say_lost_frames(remarks, log_);
+    return remarks.text();
   }
 
  private:

@@ -1,0 +1,42 @@
+#include "streams/log_remarks.hpp"
+
+#include <filesystem>
+
+#include "formats/file_exists.hpp"
+#include "streams/scanner_link.hpp"
+
+namespace curbline::tools {
+
+void Remarks::add(const std::string& lines) {
+  if (!lines.empty()) text_ += (text_.empty() ? "" : "\n") + lines;
+}
+
+void Remarks::say(const std::string& log, const std::string& what) {
+  add(log + ": " + what);
+}
+
+void Remarks::say_of(const std::string& log, long count, const std::string& what) {
+  if (count > 0) say(log, std::to_string(count) + " of " + what);
+}
+
+void say_lost_frames(Remarks& remarks, const CanLogReader& can) {
+  if (can.frames_lost() > 0) remarks.say(can.path(), std::to_string(can.frames_lost()) + " frames lost by candump");
+}
+
+void say_degrees(Remarks& remarks, const std::string& can, const RadiansWatch& watch, long readings) {
+  const auto beyond = static_cast<long>(watch.beyond());
+  if (!watch.in_doubt() && 2 * beyond <= readings) return;
+  remarks.say_of(can, beyond,
+                 std::to_string(readings) +
+                     " tilt angles are more than a turn from where their sweep began; expected radians, see scale of "
+                     "tilt.signal");
+}
+
+void say_unread(Remarks& remarks, const Robot& robot, const DriveLogs& logs) {
+  if (robot.tilt.fixed && !logs.can.empty()) remarks.say(logs.can, "not read; the tilt is fixed");
+  const std::filesystem::path poses = std::filesystem::path(logs.scans).replace_filename("poses.tum");
+  if (logs.poses.empty() && !is_scanner(logs.scans) && file_exists(poses))
+    remarks.say(poses.string(), "not read, the robot was taken to stand; expected --poses");
+}
+
+}  // namespace curbline::tools
