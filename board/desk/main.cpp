@@ -13,11 +13,28 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 struct Files {
   File in, out;
+  int write_error = 0;  ///< errno
   std::size_t read(std::span<std::byte> bytes) { return std::fread(bytes.data(), 1, bytes.size(), in.get()); }
   bool write(std::span<const std::byte> bytes) {
-    return std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size();
+    return keep_error(std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size());
+  }
+  bool flush() { return keep_error(std::fflush(out.get()) == 0); }
+
+ private:
+  bool keep_error(bool written) {
+    if (!written && write_error == 0) write_error = errno;
+    return written;
   }
 };
+
+/// The setting that the pipeline has refused, by reading it once more; nullptr of a pipe, which cannot be.
+const char* refused_setting(std::FILE* in) {
+  curbline::drive_log::Setup setup;
+  if (std::fseek(in, sizeof(curbline::drive_log::RecordHeader), SEEK_SET) != 0) return nullptr;
+  if (std::fread(&setup, sizeof setup, 1, in) != 1) return nullptr;
+  const char* const bad = curbline::bad_setting(setup.settings, curbline::board::limits);
+  return bad != nullptr ? bad : "tilt.signal";
+}
 
 curbline::Pipeline<curbline::board::limits> pipeline;
 
@@ -34,8 +51,13 @@ int main(int count, char** words) {
   if (!out) return std::fprintf(stderr, "%s: cannot be written: %s\n", words[2], std::strerror(errno)), 1;
   Files files{std::move(in), std::move(out)};
   curbline::board::Drive drive(files, pipeline);
-  curbline::board::DriveEnd end = drive.run();
-  if (std::fflush(files.out.get()) != 0) end = curbline::board::DriveEnd::no_room_for_results;
-  if (end == curbline::board::DriveEnd::done) return 0;
-  return std::fprintf(stderr, "%s: %s\n", words[1], to_string(end)), 1;
+  using curbline::board::DriveEnd;
+  const DriveEnd end = drive.run();
+  if (!files.flush() || end == DriveEnd::no_room_for_results)
+    return std::fprintf(stderr, "%s: cannot be written: %s\n", words[2], std::strerror(files.write_error)), 1;
+  if (end == DriveEnd::done) return 0;
+  const char* const bad = end == DriveEnd::setup_refused ? refused_setting(files.in.get()) : nullptr;
+  if (bad == nullptr) return std::fprintf(stderr, "%s: %s\n", words[1], to_string(end)), 1;
+  const char* const expected = "expected what lib/curbline/settings.hpp says of it, and the limits of this build";
+  return std::fprintf(stderr, "%s: %s: %s; %s\n", words[1], to_string(end), bad, expected), 1;
 }
