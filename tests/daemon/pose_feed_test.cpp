@@ -129,8 +129,12 @@ TEST_CASE("pose feed: standard input that cannot be read is not asked again, a f
 TEST_CASE("pose feed: lines that are no poses are counted and passed over, however long") {
   Fifo fifo;
   const std::string good = "1700000000 0 0 0 0 0 0 1\n";
-  const std::string_view bad[] = {"hello\n", "1700000000 0 0 0 0 0 0\n", "1700000000 0 0 0 0 0 0 1 2\n",
-                                  "yesterday 0 0 0 0 0 0 1\n", "1700000000 0 0 0,5 0 0 0 1\n"};
+  const std::string_view bad[] = {"hello\n",
+                                  "1700000000 0 0 0 0 0 0\n",
+                                  "1700000000 0 0 0 0 0 0 1 2\n",
+                                  "yesterday 0 0 0 0 0 0 1\n",
+                                  "1700000000 0 0 0,5 0 0 0 1\n",
+                                  "1700000000 0 0 0 1 0 0 0\n"};  // on its back, as with qw first
   std::uint64_t damaged = 0;
   for (const std::string_view line : bad) {
     INFO(line);

@@ -161,19 +161,26 @@ TEST_CASE("scanner thread: a scanner that reports a front screen too dirty to me
   CHECK(scan.thread.state().device_errors == 30);
 }
 
-TEST_CASE("scanner thread: a scanner with other beams than the robot's laser gives no scan lines") {
-  LaserSettings other;
-  other.beams = 541;
-  LiveScan scan(40, {}, other);
-  bool connected = false;
-  for (int i = 0; i < 500 && scan.thread.state().other_beams < 20; ++i) {
-    std::this_thread::sleep_for(10ms);
-    connected = connected || scan.thread.state().connected;
+TEST_CASE(
+    "scanner thread: a scanner with other beams than the robot's laser, or as many elsewhere, gives no scan lines") {
+  LaserSettings fewer, turned, closer;
+  fewer.beams = 541;
+  turned.first_bearing_rad += turned.bearing_step_rad;
+  closer.bearing_step_rad *= 0.999f;
+  for (const LaserSettings& other : {fewer, turned, closer}) {
+    INFO(other.beams << " beams from " << other.first_bearing_rad << " rad, " << other.bearing_step_rad
+                     << " rad apart");
+    LiveScan scan(40, {}, other);
+    bool connected = false;
+    for (int i = 0; i < 500 && scan.thread.state().other_beams < 20; ++i) {
+      std::this_thread::sleep_for(10ms);
+      connected = connected || scan.thread.state().connected;
+    }
+    scan.end();
+    CHECK(scan.thread.state().other_beams >= 20);
+    CHECK_FALSE(connected);
+    CHECK(scan.inbox->empty());
   }
-  scan.end();
-  CHECK(scan.thread.state().other_beams >= 20);
-  CHECK_FALSE(connected);
-  CHECK(scan.inbox->empty());
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "program.hpp"
 #include "scan_log.hpp"
@@ -11,9 +14,9 @@
 namespace curbline::tools::testing {
 namespace {
 
-Words arguments_of(const TemporaryDirectory& directory) {
+Words arguments_of(const TemporaryDirectory& directory, int lines = 120) {  // 3 s
   return {"--robot", directory.write("fixed.toml", "[tilt]\nfixed = true\nfixed_tilt_rad = 0.5\n"),
-          "--scans", daemon::write_scan_log(directory, 120),  // 3 s
+          "--scans", daemon::write_scan_log(directory, lines),
           "--curbs", "unix:" + directory.path("curbs")};
 }
 
@@ -81,6 +84,43 @@ TEST_CASE("curblined: it tells systemd that it is ready, alive once a second, ho
   CHECK(heard.back() == "STOPPING=1");
   CHECK(std::count(heard.begin(), heard.end(), "STATUS=ok") >= 1);
   CHECK(std::count(heard.begin(), heard.end(), "WATCHDOG=1") >= 2);
+}
+
+/// All that a client reads, from when the daemon listens until it closes the connection.
+std::string read_all(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  REQUIRE(path.size() < sizeof address.sun_path);
+  std::copy(path.begin(), path.end(), address.sun_path);
+  const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  bool connected = false;
+  for (int i = 0; i < 500 && !connected; ++i) {
+    connected = ::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    if (!connected) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  CHECK(connected);
+  std::string text;
+  std::array<char, 4096> some{};
+  for (ssize_t got; connected && (got = ::read(client, some.data(), some.size())) > 0;)
+    text.append(some.data(), static_cast<std::size_t>(got));
+  ::close(client);
+  return text;
+}
+
+TEST_CASE("curblined: the last that a client hears is how it was at the end") {
+  const TemporaryDirectory directory;
+  Outcome outcome;
+  std::thread running([&] { outcome = curbline(arguments_of(directory, 100)); });  // 2.5 s: between two of each second
+  const Words heard = lines_of(read_all(directory.path("curbs")));
+  running.join();
+  REQUIRE(outcome.status == 0);
+  REQUIRE(heard.size() >= 2);
+  const auto lines_in = [](const std::string& line) {
+    return nlohmann::json::parse(line).at("status").at("pipeline").at("lines").get<int>();
+  };
+  CHECK(lines_in(heard.front()) < 100);
+  CHECK(lines_in(heard.back()) == 100);
+  CHECK(lines_in(outcome.out) == 100);
 }
 
 }  // namespace

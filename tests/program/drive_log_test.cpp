@@ -1,7 +1,9 @@
 // curbline-drive-log: converts logs to the input of boards, and the output of boards to curbs.
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <functional>
 
 #include "drive_log/drive_log.hpp"
 #include "program.hpp"
@@ -161,6 +163,47 @@ TEST_CASE("drive log: what replay tells of the logs themselves is told when they
     CHECK(told(logs.replay()).second ==
           logs.path("scans.carmen") + ": 1 of 80 scan lines are out of order; expected times that rise\n");
   }
+}
+
+/// Calls `take` with each record of a stream: its kind and its bytes.
+void for_each_record(const std::string& stream, const std::function<void(drive_log::RecordKind, const char*)>& take) {
+  for (std::size_t at = 0; at < stream.size();) {
+    drive_log::RecordHeader header;
+    REQUIRE(stream.size() - at >= sizeof header);
+    std::memcpy(&header, stream.data() + at, sizeof header);
+    at += sizeof header;
+    REQUIRE(stream.size() - at >= header.bytes);
+    take(header.kind, stream.data() + at);
+    at += header.bytes;
+  }
+}
+
+TEST_CASE("drive log: a scan line comes after the first pose at or behind its last beam, and no later one") {
+  const Recording logs("city", "utm30lx", {"--duration", "2"});
+  REQUIRE(drive_log(write_of(logs) + Words{"--out", logs.path("drive")}).status == 0);
+  drive_log::Setup setup;
+  std::int64_t before_ns = 0, newest_ns = 0;
+  int poses = 0, lines = 0;
+  for_each_record(read_file(logs.path("drive")), [&](drive_log::RecordKind kind, const char* bytes) {
+    if (kind == drive_log::RecordKind::setup) std::memcpy(&setup, bytes, sizeof setup);
+    if (kind == drive_log::RecordKind::pose) {
+      Pose pose;
+      std::memcpy(&pose, bytes, sizeof pose);
+      before_ns = newest_ns;
+      newest_ns = pose.time_ns;
+      ++poses;
+    }
+    if (kind != drive_log::RecordKind::scan_line) return;
+    drive_log::ScanLineHead head;
+    std::memcpy(&head, bytes, sizeof head);
+    const auto beams = static_cast<std::size_t>(setup.settings.laser.beams);
+    const std::int64_t last_beam_ns = head.time_ns + setup.settings.laser.duration_ns(beams);
+    CHECK(newest_ns >= last_beam_ns);
+    CHECK(before_ns < last_beam_ns);
+    ++lines;
+  });
+  CHECK(lines == 80);
+  CHECK(poses > 90);  // 50 a second
 }
 
 TEST_CASE("drive log: an empty file name is wrong usage") {

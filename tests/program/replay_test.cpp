@@ -483,6 +483,22 @@ TEST_CASE("program: --curbs - streams one JSON object a line, the last as in the
   CHECK(nlohmann::json::parse(lines.back()).at("height_m").get<double>() == Approx(curbs[0].height_m).margin(1e-6));
 }
 
+TEST_CASE("program: --curbs - gives each curb as it is found, not at the end") {
+  const Recording logs("straight_curb", "utm30lx");
+  const std::string fifo = logs.path("fifo"), out = logs.path("out"), during = logs.path("during");
+  REQUIRE(std::system(("mkfifo " + fifo).c_str()) == 0);
+  // The scan lines' pipe stays open until curbs have come, for 10 s at most.
+  const std::string feed = "(cat " + logs.path("scans.carmen") + "; i=0; while [ ! -s " + out +
+                           " ] && [ $i -lt 100 ]; do sleep 0.1; i=$((i+1)); done; sleep 0.5; cp " + out + " " + during +
+                           ") > " + fifo + " & ";
+  const std::string replay = line_of(logs.replay("scans", fifo) + Words{"--curbs", "-"}) + " > " + out;
+  REQUIRE(std::system((feed + replay + "; status=$?; wait; exit $status").c_str()) == 0);
+  const std::string then = read_file(during), all = read_file(out);
+  CHECK(then.ends_with('\n'));  // whole lines, not as many as fill a buffer
+  CHECK(all.starts_with(then));
+  CHECK(lines_of(then).size() + 1 >= lines_of(all).size());  // one scan line is read ahead
+}
+
 TEST_CASE("program: replay sums up in one JSON object") {
   const Recording logs("street", "utm30lx", {"--duration", "1"});
   const Outcome outcome = curbline(logs.replay() + Words{"--json"});
