@@ -554,6 +554,19 @@ TEST_CASE("daemon: a servo described in degrees is a state, told once", "[daemon
   CHECK(status_of(drive(send_each).outcome).at("tilt").at("beyond_a_turn") == 0);
 }
 
+TEST_CASE("daemon: angles that a servo samples on SYNC are those of replay, from the same frames", "[daemon]") {
+  const TemporaryDirectory directory;
+  std::string robot = read_file(shipped_robot("utm30lx"));
+  robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
+  const Recording sampled("curb_above_below", directory.write("sampled.toml", robot), {"--duration", "3"});
+  Service service({"--can", "vcan0", "--scans", sampled.path("scans.carmen"), "--robot", sampled.path("robot.toml")});
+  play(sampled.path("can.log"), send_each);
+  const nlohmann::json status = status_of(service.end());
+  CHECK(status.at("tilt").at("readings") > 250);
+  CHECK(status.at("tilt").at("without_sync") == 0);
+  check_same(distinct_curbs(service.lines()), replayed_curbs(sampled.replay()));
+}
+
 TEST_CASE("daemon: sources that may be silent for longer, by the robot's description, are not told as silent sooner",
           "[daemon]") {
   const TemporaryDirectory directory;

@@ -79,6 +79,15 @@ TEST_CASE("replay: a simulated street through vcan gives the curbs of its log, b
   CHECK(live.seconds > 3.0);
 }
 
+TEST_CASE("replay: angles that a servo samples on SYNC give the curbs of their log, byte for byte", "[replay]") {
+  const TemporaryDirectory directory;
+  std::string robot = read_file(shipped_robot("utm30lx"));
+  robot.replace(robot.find("node = 1\n"), 9, "node = 1\nsync_id = 0x80\n");
+  const Recording recording("straight_curb", directory.write("sampled.toml", robot), {"--duration", "2"});
+  const Drive drive = drive_of(recording);
+  CHECK(check_same(drive, drive.can, drive.can).err.empty());
+}
+
 TEST_CASE("replay: a recorded street through vcan gives the curbs of its log, byte for byte", "[replay]") {
   const std::string data = CURBLINE_SOURCE_DIR "/../shared/data/clausius/scan-03";
   if (!std::filesystem::exists(data + ".carmen")) {
