@@ -2,7 +2,8 @@
 """template_test.py BUILD PROGRAM: board/_template's main loop, unchanged, on a port that feeds it a drive, informs the motors after each
 scan line of the same curbs as the desk's own run of that drive: their number, and the height of the one ahead, of a robot that stands and of
 one that drives. While the servo is silent for a second, each line is dropped and the counter does not advance; nor does it while the laser is
-covered, though the lines are taken. An encoder that is stuck is told as a tilt that rests."""
+covered, though the lines are taken, nor with a curb ahead that the bus does not take. An encoder that is stuck is told as a tilt that rests.
+Poses that the pipeline refuses change nothing."""
 import math
 import os
 import struct
@@ -97,8 +98,8 @@ def told_by_frames(path):
             yield status[2], struct.unpack_from("<h", ahead, 4)[0] if ahead[7] & 3 else None
 
 
-def run(program, drive, sent):
-    subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent)}, check=True)
+def run(program, drive, sent, **more):
+    subprocess.run([program], env={**os.environ, "CURBLINE_DRIVE": str(drive), "CURBLINE_SENT": str(sent), **more}, check=True)
 
 
 def change(drive, out, changed, end_ns=2e9):
@@ -130,17 +131,51 @@ def stuck_at_first():
     return stuck
 
 
-def told_of(program, drive, folder, changed, end_ns=2e9):
-    """(AHEAD or None, STATUS) of the changed drive. A line that sees nothing is reported too, by a counter that does not advance; another one
-    by an AHEAD and a counter that is one higher."""
-    other, sent = folder / f"{changed.__name__}.drive", folder / f"{changed.__name__}.sent"
-    change(drive, other, changed, end_ns)
-    run(program, other, sent)
+def told_in(sent):
+    """(AHEAD or None, STATUS) of what was sent. A line that sees nothing is reported too, by a counter that does not advance; another one by an
+    AHEAD and a counter that is one higher."""
     told = list(lines_told(sent))
     for line, ((_, before), (ahead, status)) in enumerate(zip(told, told[1:]), 1):
         if status[0] != (before[0] + (ahead is not None)) % 256:
             sys.exit(f"line {line}: the counter goes from {before[0]} to {status[0]} with{'out' if ahead is None else ''} a curb ahead")
     return told
+
+
+def told_of(program, drive, folder, changed, end_ns=2e9):
+    """told_in() of the changed drive."""
+    other, sent = folder / f"{changed.__name__}.drive", folder / f"{changed.__name__}.sent"
+    change(drive, other, changed, end_ns)
+    run(program, other, sent)
+    return told_in(sent)
+
+
+def check_full_bus(program, drive, folder):
+    counts = []
+    for name, more in [("free", {}), ("full", {"CURBLINE_FULL_BUS": "1"})]:
+        run(program, drive, folder / f"{name}_bus.sent", **more)
+        counts.append(sum(ahead is not None for ahead, _ in told_in(folder / f"{name}_bus.sent")))
+    if counts[0] < 100 or counts[1] != counts[0] - counts[0] // 3:
+        sys.exit(f"of {counts[0]} curbs ahead {counts[1]} are sent over a bus that takes two of three")
+    print(f"{counts[0] - counts[1]} curbs ahead that the bus did not take")
+
+
+def check_refused_poses(program, drive, folder):
+    """Each pose is followed by one of a second before it, elsewhere and on its back, as by a quaternion with qw first."""
+    other, refused = folder / "refused_poses.drive", 0
+    with other.open("wb") as file:
+        for kind, record in run_bus.records(drive):
+            file.write(record)
+            if kind == POSE:
+                time_ns, x, y, z, *_ = struct.unpack_from("<q7f", record, 8)
+                bad = bytearray(record)
+                struct.pack_into("<q7f", bad, 8, time_ns - 1_000_000_000, x + 3, y, z, 1, 0, 0, 0)
+                file.write(bad)
+                refused += 1
+    run(program, drive, folder / "poses.sent")
+    run(program, other, folder / "refused_poses.sent")
+    if refused < 100 or (folder / "poses.sent").read_bytes() != (folder / "refused_poses.sent").read_bytes():
+        sys.exit(f"{drive.stem}: {refused} poses that the pipeline refuses change what the template's loop tells")
+    print(f"{refused} refused poses change nothing")
 
 
 def check_silence(program, drive, folder):
@@ -195,9 +230,11 @@ def main(build, program):
     steps = drives.folder(build) / "steps.drive"  # they lie across the robot's way
     check_silence(program, steps, folder)
     check_cover(program, steps, folder)
+    check_full_bus(program, steps, folder)
     check_curbs(build, program, steps, folder)
     drive = drives.folder(build) / "random-drive-9001.drive"  # longer than a sweep there and back
     check_rest(program, drive, folder)
+    check_refused_poses(program, drive, folder)
     check_curbs(build, program, drive, folder)
 
 

@@ -1,5 +1,6 @@
 // Replaces port/_template and the template's robot.hpp. The records of a drive, in order, stand for the bus and the
-// scanner, and define the time. What the robot sends is written to a file, as records.
+// scanner, and define the time. What the robot sends is written to a file, as records. With CURBLINE_FULL_BUS set, the
+// bus takes only two of three CurbAhead.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "curbline/can/curb_frames.hpp"
 #include "curbline/limits.hpp"
 #include "curbline/pose.hpp"
 #include "curbline/scan_line.hpp"
@@ -62,6 +64,7 @@ class Port {
   }
 
   bool send(const curbline::can::Frame& frame) {
+    if (full_ && frame.id == curbline::can::curb_ahead_id && ++ahead_ % 3 == 0) return false;
     const curbline::drive_log::RecordHeader header{Kind::can_frame, sizeof frame};
     return std::fwrite(&header, sizeof header, 1, sent_) == 1 && std::fwrite(&frame, sizeof frame, 1, sent_) == 1;
   }
@@ -87,6 +90,8 @@ class Port {
   }
 
   std::FILE *drive_, *sent_;
+  bool full_ = std::getenv("CURBLINE_FULL_BUS") != nullptr;
+  int ahead_ = 0;  ///< CurbAhead to send so far
   curbline::drive_log::RecordHeader header_{};
   curbline::drive_log::Setup setup_{};
   std::int64_t now_ns_ = 0;
