@@ -42,10 +42,10 @@ bool is(const Point3& p, double x, double y, double z) {
 
 TEST_CASE("cloud: text is read by blanks or commas, with a header or columns to spare") {
   const TemporaryDirectory dir;
-  for (const char* text :
-       {"1 2 3\n-4 5e-1 6\n", "  1\t2  3 9 9\n# note\n\n-4 .5 6\n", "1,2,3\n-4, 0.5 ,6,7\n", "x,y,z\n1,2,3\n-4,0.5,6",
-        "i,z_m,Y,\"x\"\n0,3,2,1\n0,6,0.5,-4\r\n", "//X Y Z R\n1 2 3 0\n-4 0.5 6 0\n", ",x,y,z\n0,1,2,3\n1,-4,0.5,6\n",
-        "\"\",\"x\",\"y\",\"z\"\n\"1\",1,2,3\n\"2\",-4,0.5,6\n"}) {
+  for (const char* text : {"1 2 3\n-4 5e-1 6\n", "  1\t2  3 9 9\n# note\n\n-4 .5 6\n", "1,2,3\n-4, 0.5 ,6,7\n",
+                           "x,y,z\n1,2,3\n-4,0.5,6", "i,z_m,Y,\"x\"\n0,3,2,1\n0,6,0.5,-4\r\n",
+                           "info,x,y,z\n7,1,2,3\n7,-4,0.5,6\n", "//X Y Z R\n1 2 3 0\n-4 0.5 6 0\n",
+                           ",x,y,z\n0,1,2,3\n1,-4,0.5,6\n", "\"\",\"x\",\"y\",\"z\"\n\"1\",1,2,3\n\"2\",-4,0.5,6\n"}) {
     INFO(text);
     const auto points = read_cloud(dir.write("a.csv", text));
     REQUIRE(points.size() == 2);

@@ -41,9 +41,10 @@ ColumnName parse_name(std::string_view name) {
 
 /// A first column without a name is that of an index.
 bool is_header(std::string_view line) {
-  const std::string start =
-      lower_case(std::string(line.substr(std::min(line.find_first_not_of(" \t/\","), line.size()), 3)));
-  return !start.empty() && std::isalpha(static_cast<unsigned char>(start[0])) != 0 && start != "nan" && start != "inf";
+  line.remove_prefix(std::min(line.find_first_not_of(" \t/\","), line.size()));
+  const auto is_alpha = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const std::string word = lower_case(std::string(line.begin(), std::find_if_not(line.begin(), line.end(), is_alpha)));
+  return !word.empty() && word != "nan" && word != "inf" && word != "infinity";
 }
 
 Columns read_header(const LineReader& source, Fields fields) {
