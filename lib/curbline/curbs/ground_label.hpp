@@ -31,7 +31,7 @@ Label ground_label(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, 
     const float to_far_m = to_far_side_m(curb, x_m, y_m);
     const float away_m = magnitude(to_far_m);
     const Label there = to_far_m > 0.0f ? curb.far_label : curb.near_label;
-    if (!(away_m < nearest_m) || !mixture.plane(there).alive() || !mixture.ground(there)) continue;
+    if (!(away_m < nearest_m) || !mixture.ground(there)) continue;
     nearest_m = away_m;
     found = there;
   }

@@ -154,9 +154,7 @@ void LabelField<limits>::flag_changed(const Dem<limits>& dem, const PlaneMixture
   const int of_a_row = directions * dem.cols();
   const int messages = settings_.max_messages.value_or(std::max(5 * rows * dem.cols() / 8, of_a_row));
   int left = scope == FieldScope::line ? messages / directions : Dem<limits>::capacity;
-  const auto may_have = [&](Label label) {
-    return label != no_label && mixture.plane(label).alive() && mixture.ground(label);
-  };
+  const auto may_have = [&](Label label) { return label != no_label && mixture.ground(label); };
   for (int a = 0; a < rows; ++a) {
     if (left > 0) first_row_ = first + std::max(a, 1);
     dem.for_each_valid_in_row(first + a < rows ? first + a : first + a - rows, [&](int, int, int s) {

@@ -87,7 +87,7 @@ LabelSite::Candidates PlanesNearBy<limits>::candidates(const Dem<limits>& dem, c
   LabelSite::Candidates candidates;
   const auto consider = [&](int k) {
     const Plane& plane = mixture.plane(k);
-    if (!plane.alive() || !mixture.ground(k)) return;
+    if (!mixture.ground(k)) return;
     const float variance = plane.variance_m2 + cell_variance;
     const float residual = cell.height_m - plane.height_m(x, y);
     float u = 1.0f + residual * residual / (2.0f * variance);

@@ -72,15 +72,15 @@ class PlaneMixture {
   Label region_label(int slot) const { return region_label_[slot]; }
   /// Has that changed since forget_changes()?
   bool relabelled(int slot) const { return relabelled_.contains(slot); }
-  /// Is the plane ground, so that cells may have its label? See ground.hpp.
-  bool ground(int label) const { return ground_.is(label); }
+  /// Is there such a plane, and is it ground, so that cells may have its label? See ground.hpp.
+  bool ground(int label) const { return plane(label).alive() && ground_.is(label); }
   /// May a plane of ground be a veil? Then it is no side of a curb.
   bool may_be_veil(int label) const { return ground_.may_be_veil(label); }
   /// The largest plane of ground, a level one if there is none.
   Plane largest_ground() const {
     const Plane* largest = nullptr;
     for (std::size_t l = 0; l < planes_.size(); ++l) {
-      if (!ground_.is(static_cast<int>(l)) || !planes_[l].alive()) continue;
+      if (!ground(static_cast<int>(l))) continue;
       if (largest == nullptr || planes_[l].cells > largest->cells) largest = &planes_[l];
     }
     return largest == nullptr ? Plane{} : *largest;
