@@ -2,6 +2,7 @@
 // a quarter. Fixed size, a few operations a sample. To be used from one context.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -31,7 +32,7 @@ class LatencyHistogram {
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < buckets && samples_ > 0; ++i) {
       seen += counts_[i];
-      if (seen >= wanted) return end_us(i) < longest_us_ ? end_us(i) : longest_us_;
+      if (seen >= wanted) return std::min(end_us(i), longest_us_);
     }
     return 0;
   }

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "map/map.hpp"
+#include "streams/log_remarks.hpp"
 
 namespace curbline::tools {
 
 struct DriveFiles {
-  std::string robot;              ///< TOML
-  std::string scans, can, poses;  ///< can and poses are empty if the robot has none
+  std::string robot;  ///< TOML
+  DriveLogs logs;     ///< recorded ones
   std::string out;
 };
 

@@ -15,14 +15,16 @@ int main(int argc, char** argv) {
   DriveFiles files;
   auto* write = app.add_subcommand("write", "Logs to a stream");
   write->add_option("--robot", files.robot, "robot description (TOML)")->check(file_name())->required();
-  write->add_option("--scans", files.scans, "scan lines, CARMEN log")->check(file_name())->required();
-  write->add_option("--can", files.can, "tilt frames, candump log; none for a fixed tilt")->check(file_name());
-  write->add_option("--poses", files.poses, "robot poses, TUM trajectory; none if the robot stands")
+  write->add_option("--scans", files.logs.scans, "scan lines, CARMEN log")->check(file_name())->required();
+  write->add_option("--can", files.logs.can, "tilt frames, candump log; none for a fixed tilt")->check(file_name());
+  write->add_option("--poses", files.logs.poses, "robot poses, TUM trajectory; none if the robot stands")
       ->check(file_name());
   write->add_option("--out", files.out, "file to write: the stream")->check(file_name())->required();
   write->callback([&] {
-    check_outputs({{"--out", files.out}},
-                  {{"--robot", files.robot}, {"--scans", files.scans}, {"--can", files.can}, {"--poses", files.poses}});
+    check_outputs({{"--out", files.out}}, {{"--robot", files.robot},
+                                           {"--scans", files.logs.scans},
+                                           {"--can", files.logs.can},
+                                           {"--poses", files.logs.poses}});
     if (const std::string remarks = write_drive(files); !remarks.empty()) std::cerr << remarks << '\n';
   });
   std::string results;

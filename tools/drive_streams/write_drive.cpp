@@ -65,16 +65,16 @@ class Order {
 class DriveWriter {
  public:
   explicit DriveWriter(const DriveFiles& files)
-      : logs_{files.scans, files.can, files.poses},
+      : logs_(files.logs),
         robot_(read_robot(files.robot)),
-        scans_(files.scans, robot_.laser),
+        scans_(logs_.scans, robot_.laser),
         out_(files.out),
         tilt_(robot_) {
     radians_watch_.init(static_cast<float>(robot_.sweep.period_s));
-    if (!files.poses.empty()) robot_.pose.still = false;
-    check_logs(robot_, files.can, files.poses);
-    if (!robot_.tilt.fixed) can_.emplace(files.can);
-    if (!robot_.pose.still) poses_.emplace(files.poses);
+    if (!logs_.poses.empty()) robot_.pose.still = false;
+    check_logs(robot_, logs_.can, logs_.poses);
+    if (!robot_.tilt.fixed) can_.emplace(logs_.can);
+    if (!robot_.pose.still) poses_.emplace(logs_.poses);
   }
 
   void write() {
