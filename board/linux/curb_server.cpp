@@ -29,6 +29,12 @@ sockaddr_un unix_address(const std::string& path) {
   return address;
 }
 
+/// The number of a file, which no other has as long as a socket is bound to it; 0 if there is none.
+ino_t number_of(const std::string& path) {
+  struct stat file {};
+  return ::lstat(path.c_str(), &file) == 0 ? file.st_ino : 0;
+}
+
 /// Whether this is a socket file left over from a process that has ended.
 bool is_left_over(const std::string& path) {
   struct stat file {};
@@ -66,8 +72,9 @@ std::uint16_t port_of(int socket) {
 
 CurbServer::~CurbServer() {
   for (int i = 0; i < max_clients; ++i) drop(i);
+  // While it still listens: later another server may take the file for left over, and make its own.
+  if (file_number_ != 0 && number_of(path_) == file_number_) ::unlink(path_.c_str());
   if (listener_ >= 0) ::close(listener_);
-  if (!path_.empty()) ::unlink(path_.c_str());
 }
 
 void CurbServer::open(const std::string& address) {
@@ -92,6 +99,7 @@ void CurbServer::listen_unix(const std::string& path) {
     throw BadInput(address_ + ": " + std::strerror(errno) + "; expected a path that can be made and is not in use");
   }
   path_ = path;
+  file_number_ = number_of(path);
   if (::listen(listener_, max_clients) != 0) throw BadInput(address_ + ": " + std::strerror(errno));
 }
 

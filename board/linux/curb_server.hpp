@@ -5,6 +5,8 @@
 // allocated. To be used from one context.
 #pragma once
 
+#include <sys/types.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -53,6 +55,7 @@ class CurbServer {
   void drop(int client);
 
   std::string address_, path_;  ///< path_: the socket file, to be removed
+  ino_t file_number_ = 0;       ///< its own: another may have come in its place
   int listener_ = -1;
   int connected_ = 0;
   std::array<int, max_clients> clients_{};  ///< descriptors, -1 for a free place

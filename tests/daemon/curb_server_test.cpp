@@ -168,6 +168,21 @@ TEST_CASE("curb server: a socket file that was left over is replaced, one in use
   CHECK(std::filesystem::exists(directory.path("file")));
 }
 
+TEST_CASE("curb server: the socket file of another server, made where its own was removed, is left when it ends") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("s"), address = "unix:" + path;
+  CurbServer second;
+  {
+    CurbServer first;
+    first.open(address);
+    std::filesystem::remove(path);
+    second.open(address);
+  }
+  REQUIRE(std::filesystem::exists(path));
+  ::close(connect_unix(path));
+  CHECK(second.accept_client() == 0);
+}
+
 TEST_CASE("curb server: an address that makes no sense is refused with what was expected") {
   for (const char* address : {"", "unix:", "tcp:", "tcp:7000", "tcp:127.0.0.1", "tcp::7000", "udp:127.0.0.1:7000"}) {
     CurbServer server;
