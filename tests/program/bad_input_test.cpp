@@ -385,6 +385,19 @@ TEST_CASE("program: standard output that cannot be written is an error") {
     check_refused(curbline(words, "/dev/full"), "standard output: ", "cannot be written");
 }
 
+TEST_CASE("program: a replay whose curbs cannot be written ends with the first, as one whose reader has gone") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const Recording logs("street", "utm30lx");
+  const Words before = names_in(logs.folder());
+  const Words outputs{"--curbs", "-", "--labels", logs.path("labels.csv"), "--line-costs", logs.path("lines.csv")};
+  check_refused(curbline(logs.replay() + outputs, "/dev/full"), "standard output: ", "cannot be written");
+  CHECK(names_in(logs.folder()) == before);
+  // A service manager may have the signal ignored that would end it.
+  const std::string replay = line_of(logs.replay() + outputs) + " 2> /dev/null";
+  CHECK(std::system(("(trap '' PIPE; " + replay + ") | true").c_str()) == 0);
+  CHECK(names_in(logs.folder()) == before);
+}
+
 TEST_CASE("program: a scanner whose address cannot be told does not wait for readers that will not find it") {
   if (!std::filesystem::exists("/dev/full")) return;
   const Recording logs = standing();

@@ -59,7 +59,8 @@ double speed_of(const std::string& text, bool live) {
 /// Writes each curb that the last scan line added or changed, one JSON object a line, as far as that tells.
 class CurbStream {
  public:
-  void give_out(std::span<const Curb> curbs) {
+  /// False if standard output cannot be written.
+  bool give_out(std::span<const Curb> curbs) {
     std::vector<std::string> now;
     for (const Curb& curb : curbs) {
       std::ostringstream line;
@@ -67,8 +68,8 @@ class CurbStream {
       now.push_back(line.str());
       if (std::find(before_.begin(), before_.end(), now.back()) == before_.end()) std::cout << now.back();
     }
-    std::cout.flush();
     before_ = std::move(now);
+    return static_cast<bool>(std::cout.flush());
   }
 
  private:
@@ -131,7 +132,7 @@ void run(const Options& o) {
   while (replay.step(batch ? &points : nullptr)) {
     if (costs) costs->add(replay);
     if (replay.status() == Status::ok) pace.wait_for(replay.line().time_ns);  // that of another may be damaged
-    if (streams) stream.give_out(replay.pipeline().curbs());
+    if (streams && !stream.give_out(replay.pipeline().curbs())) return;       // which run_program() tells
   }
   replay.check_complete();
   if (costs) costs->commit();
