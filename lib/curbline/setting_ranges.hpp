@@ -21,8 +21,8 @@ inline constexpr SettingRange extrapolation_s{0.0, 10.0};
 
 // Window.
 inline constexpr SettingRange cell_m{0.001, 10.0};
-inline constexpr SettingRange max_height_m{-double{std::numeric_limits<float>::max()},
-                                           double{std::numeric_limits<float>::max()}};
+inline constexpr auto any_height_m = static_cast<double>(std::numeric_limits<float>::max());
+inline constexpr SettingRange max_height_m{-any_height_m, any_height_m};
 // Laser.
 inline constexpr SettingRange bearing_step_rad{-1.0, 1.0};
 inline constexpr SettingRange beam_interval_s{0.0, 1.0};
