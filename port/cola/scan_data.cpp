@@ -31,7 +31,7 @@ class Numbers {
 
   std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
   std::uint32_t u32() { return number(4); }
-  float f32() { return std::bit_cast<float>(number(4)); }
+  double f32() { return static_cast<double>(std::bit_cast<float>(number(4))); }
 
  private:
   std::uint32_t number(std::size_t size) {

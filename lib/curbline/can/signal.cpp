@@ -92,7 +92,7 @@ constexpr double power_of_2(int n) {
 
 std::uint64_t number_to_raw(const Signal& s, double count) {
   if (s.is_float) {
-    constexpr double most = std::numeric_limits<float>::max();
+    constexpr auto most = static_cast<double>(std::numeric_limits<float>::max());
     const double in_range = !(count > -most) ? -most : count < most ? count : most;
     return std::bit_cast<std::uint32_t>(static_cast<float>(in_range));
   }

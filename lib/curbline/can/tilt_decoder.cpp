@@ -8,7 +8,7 @@ namespace curbline::can {
 namespace {
 
 /// Within them a float holds an angle, whatever the signal's number.
-constexpr double furthest_rad = TiltReading::furthest_rad;
+constexpr auto furthest_rad = static_cast<double>(TiltReading::furthest_rad);
 
 /// How long a position may take after the first SYNC of all: a full bus delays it by a few frames, a millisecond.
 constexpr std::int64_t longest_first_delay_ns = 5'000'000;
