@@ -131,6 +131,15 @@ TEST_CASE("drive log: what replay tells of the logs themselves is told when they
     CHECK(err == logs.path("can.log") + ": not read; the tilt is fixed\n");
     CHECK(err == by_replay);
   }
+  SECTION("a tilt that rests, as by an encoder that is stuck") {
+    const std::string robot =
+        logs.directory().write("stuck.toml", "[tilt.signal]\nscale = 1e-9\n[sweep]\nperiod_s = 1.5\n");
+    const auto [by_replay, err] = told(logs.replay("robot", robot));
+    CHECK(err == logs.path("can.log") +
+                     ": the tilt rests for more than 1.5 s, a sweep there and back; expected a servo that nods, and an "
+                     "encoder that is not stuck\n");
+    CHECK(by_replay.find(err) != std::string::npos);
+  }
   SECTION("tilt angles in degrees") {
     const std::string robot = logs.directory().write("degrees.toml", "[tilt.signal]\nscale = 0.0054931640625\n");
     const auto [by_replay, err] = told(logs.replay("robot", robot));

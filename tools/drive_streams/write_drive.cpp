@@ -13,7 +13,6 @@
 #include "formats/trajectory.hpp"
 #include "robot/robot.hpp"
 #include "streams/log_remarks.hpp"
-#include "streams/radians_watch.hpp"
 #include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
@@ -69,8 +68,8 @@ class DriveWriter {
         robot_(read_robot(files.robot)),
         scans_(logs_.scans, robot_.laser),
         out_(files.out),
-        tilt_(robot_) {
-    radians_watch_.init(static_cast<float>(robot_.sweep.period_s));
+        tilt_(robot_),
+        tilt_remarks_(robot_) {
     if (!logs_.poses.empty()) robot_.pose.still = false;
     check_logs(robot_, logs_.can, logs_.poses);
     if (!robot_.tilt.fixed) can_.emplace(logs_.can);
@@ -103,7 +102,7 @@ class DriveWriter {
     if (can_) say_lost_frames(remarks, *can_);
     remarks.add(scans_.remarks());
     tilt_order_.say(remarks, logs_.can, "tilt readings");
-    say_degrees(remarks, logs_.can, radians_watch_, tilt_order_.all());
+    tilt_remarks_.say(remarks, logs_.can, tilt_order_.all());
     line_order_.say(remarks, logs_.scans, "scan lines");
     say_unread(remarks, robot_, logs_);
     return remarks.text();
@@ -132,7 +131,7 @@ class DriveWriter {
       return frame;
     };
     const auto take = [&](const can::Frame& frame, const std::optional<TiltReading>& reading) {
-      if (reading && tilt_order_.take(reading->time_ns)) radians_watch_.update(*reading);
+      if (reading && tilt_order_.take(reading->time_ns)) tilt_remarks_.update(*reading);
       put(RecordKind::can_frame, frame);
     };
     if (!tilt_.feed(until_ns, next, take)) tilt_.end();
@@ -164,7 +163,7 @@ class DriveWriter {
   AtomicFile out_;
   TiltFeed tilt_;
   Order tilt_order_, line_order_;
-  RadiansWatch radians_watch_;
+  TiltRemarks tilt_remarks_;
   std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest written
 };
 

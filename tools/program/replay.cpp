@@ -22,9 +22,13 @@ bool is_empty(const Map& map) {
 Replay::Replay(const Robot& robot, const DriveLogs& logs) : Replay(robot, logs, make_host_pipeline(robot)) {}
 
 Replay::Replay(const Robot& robot, const DriveLogs& logs, std::unique_ptr<HostPipeline> pipeline)
-    : robot_(robot), logs_(logs), pipeline_(std::move(pipeline)), tilt_(robot), left_behind_(pipeline_->grid()) {
+    : robot_(robot),
+      logs_(logs),
+      pipeline_(std::move(pipeline)),
+      tilt_(robot),
+      tilt_remarks_(robot),
+      left_behind_(pipeline_->grid()) {
   check_logs(robot, logs.can, logs.poses);
-  radians_watch_.init(static_cast<float>(robot.sweep.period_s));
   if (!robot.tilt.fixed) {
     const auto bus = live_interface(logs.can);
     can_ = bus ? live_frames(*bus, robot.tilt_signal, robot.tilt_sync_id,
@@ -85,7 +89,7 @@ void Replay::feed_tilt(std::int64_t until_ns) {
 
 void Replay::take_tilt(const TiltReading& reading) {
   if (++tilt_readings_ == 1) first_tilt_ = reading;
-  if (pipeline_->add_tilt(reading)) radians_watch_.update(reading);
+  if (pipeline_->add_tilt(reading)) tilt_remarks_.update(reading);
 }
 
 /// Whether the newest reading is too old for an extrapolation to that time.
@@ -123,7 +127,7 @@ std::string Replay::remarks() const {
   const Counters& c = pipeline_->counters();
   remarks.say_of(logs_.can, c.tilt_dropped,
                  std::to_string(tilt_readings_) + " tilt readings were dropped; expected times that rise");
-  say_degrees(remarks, logs_.can, radians_watch_, tilt_readings_);
+  tilt_remarks_.say(remarks, logs_.can, tilt_readings_);
   remarks.say_of(logs_.poses, c.poses_dropped,
                  std::to_string(poses_fed_) + " poses were dropped; expected times that rise");
   remarks.say_of(logs_.scans, lines_ - lines_taken_,

@@ -15,7 +15,6 @@
 #include "robot/robot.hpp"
 #include "streams/host_pipeline.hpp"
 #include "streams/log_remarks.hpp"
-#include "streams/radians_watch.hpp"
 #include "streams/tilt_feed.hpp"
 
 namespace curbline::tools {
@@ -70,7 +69,7 @@ class Replay {
   std::int64_t poses_until_ns_ = INT64_MIN;  ///< newest fed; INT64_MAX at the log's end
   long tilt_readings_ = 0, poses_fed_ = 0, lines_ = 0, lines_taken_ = 0;
   TiltReading first_tilt_{};
-  RadiansWatch radians_watch_;
+  TiltRemarks tilt_remarks_;
   std::int64_t first_line_ns_ = 0, first_pose_ns_ = 0;
   LeftBehind left_behind_;
 };

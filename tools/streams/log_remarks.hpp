@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "curbline/intake/nod_watch.hpp"
 #include "formats/can_log.hpp"
 #include "robot/robot.hpp"
 #include "streams/radians_watch.hpp"
@@ -31,9 +32,22 @@ class Remarks {
   std::string text_;
 };
 
+/// What the tilt's readings tell of the servo, by the daemon's watches: angles that are no radians, a tilt that rests.
+class TiltRemarks {
+ public:
+  explicit TiltRemarks(const Robot& robot);
+  /// Call with each reading that the pipeline takes.
+  void update(const TiltReading& reading);
+  /// `readings`: how many there were.
+  void say(Remarks& remarks, const std::string& can, long readings) const;
+
+ private:
+  float sweep_s_;  ///< there and back
+  RadiansWatch radians_;
+  NodWatch nod_;
+};
+
 void say_lost_frames(Remarks& remarks, const CanLogReader& can);
-/// `readings`: how many tilt angles there were.
-void say_degrees(Remarks& remarks, const std::string& can, const RadiansWatch& watch, long readings);
 /// Logs that were given or lie beside, and were not read.
 void say_unread(Remarks& remarks, const Robot& robot, const DriveLogs& logs);
 
