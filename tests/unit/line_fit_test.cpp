@@ -24,6 +24,17 @@ TEST_CASE("line fit: a line through points lies within them, whatever its direct
   CHECK(std::abs(s.normal_x * ux + s.normal_y * uy) < 0.01);
 }
 
+TEST_CASE("line fit: the normal points to the left, looking from the first end to the second") {
+  LineFit fit;
+  for (int k = -4; k <= 4; ++k) fit.add(0.3f * static_cast<float>(k), 0.1f * static_cast<float>(k));
+  const auto left = [](const LineFit::Segment& s) {
+    return s.normal_y * (s.x1_m - s.x0_m) - s.normal_x * (s.y1_m - s.y0_m);
+  };
+  CHECK(left(fit.segment(-1.2f, -0.4f, 1.2f, 0.4f, 0.05f)) > 2.4f);
+  CHECK(left(fit.segment(1.2f, 0.4f, -1.2f, -0.4f, 0.05f)) > 2.4f);
+  CHECK(left(LineFit::across(1.0f, 2.0f, 3.0f, -4.0f, 0.5f)) == Approx(1.0));
+}
+
 TEST_CASE("line fit: a line reaches a margin beyond a point outside its ends, and is not changed by one within") {
   LineFit fit;
   for (int k = 0; k <= 4; ++k) fit.add(static_cast<float>(k), 0.0f);
@@ -73,7 +84,7 @@ TEST_CASE("line fit: points in one place have no direction and stay that place")
 
 TEST_CASE("line fit: a line across ways that cancel lies across x, and is one") {
   const auto s = LineFit::across(1.0f, 2.0f, 0.0f, 0.0f, 0.5f);
-  CHECK(s.normal_x == 1.0f);
+  CHECK(s.normal_x == -1.0f);
   CHECK(s.x0_m == 1.0f);
   CHECK(s.y1_m - s.y0_m == Approx(1.0));
 }
@@ -81,8 +92,8 @@ TEST_CASE("line fit: a line across ways that cancel lies across x, and is one") 
 TEST_CASE("line fit: a line of a single place lies across the way that is asked for") {
   const auto s = LineFit::across(1.0f, 2.0f, 3.0f, -4.0f, 0.5f);
   CHECK(s.has_direction());
-  CHECK(s.normal_x == Approx(0.6));
-  CHECK(s.normal_y == Approx(-0.8));
+  CHECK(s.normal_x == Approx(-0.6));
+  CHECK(s.normal_y == Approx(0.8));
   CHECK((s.x1_m - s.x0_m) * 3.0f - (s.y1_m - s.y0_m) * 4.0f == Approx(0.0).margin(1e-6));
   CHECK(std::hypot(s.x1_m - s.x0_m, s.y1_m - s.y0_m) == Approx(1.0));
   CHECK(0.5f * (s.x0_m + s.x1_m) == Approx(1.0));

@@ -110,6 +110,8 @@ struct CurbPiece {
     bool left, certain;
   };
   Across across(const Viewpoint& view) const;
+  /// How far beside the line cells are of one side.
+  float aside_m() const { return std::max(stages.dem.pitch_m(), half_gap_m); }
   void take_sides(float toward_x, float toward_y);
   void take_means();
   void take_variances(const LineFit& fit);
@@ -148,13 +150,12 @@ template <Limits limits>
 void CurbPiece<limits>::take_sides(float toward_x, float toward_y) {
   // Ways that are along the line in the mean, as around a cell with the label of the other side, tell nothing.
   constexpr float least_across = 0.1f;  // of a border: 6 degrees
-  const float dx_m = line.x1_m - line.x0_m, dy_m = line.y1_m - line.y0_m;
-  const float length_m = square_root(square(dx_m) + square(dy_m)), to_left_m = dx_m * toward_y - dy_m * toward_x;
-  one_is_right = to_left_m >= 0.0f;
-  if (magnitude(to_left_m) < least_across * borders * length_m) {
-    const float aside = std::max(stages.dem.pitch_m(), half_gap_m) / length_m;
-    const Label left = ground_at(middle_x_m() - aside * dy_m, middle_y_m() + aside * dx_m);
-    const Label right = ground_at(middle_x_m() + aside * dy_m, middle_y_m() - aside * dx_m);
+  const float to_left = line.normal_x * toward_x + line.normal_y * toward_y;
+  one_is_right = to_left >= 0.0f;
+  if (magnitude(to_left) < least_across * borders) {
+    const float left_x_m = aside_m() * line.normal_x, left_y_m = aside_m() * line.normal_y;
+    const Label left = ground_at(middle_x_m() + left_x_m, middle_y_m() + left_y_m);
+    const Label right = ground_at(middle_x_m() - left_x_m, middle_y_m() - left_y_m);
     one_is_right = right == first.one && left == first.other;
     sides_known = one_is_right || (left == first.one && right == first.other);
   }
@@ -254,9 +255,7 @@ auto CurbPiece<limits>::beyond(End end) const -> Beyond {
   const float dx_m = second ? line.x1_m - line.x0_m : line.x0_m - line.x1_m;
   const float dy_m = second ? line.y1_m - line.y0_m : line.y0_m - line.y1_m;
   const float cells = square_root(dx_m * dx_m + dy_m * dy_m) / stages.dem.pitch_m();
-  const float aside_m = std::max(stages.dem.pitch_m(), half_gap_m);
-  const float left_m = line.normal_y * (line.x1_m - line.x0_m) - line.normal_x * (line.y1_m - line.y0_m);
-  const float to_other_m = (left_m > 0.0f) == one_is_right ? aside_m : -aside_m;  // along the normal
+  const float to_other_m = one_is_right ? aside_m() : -aside_m();  // along the normal
   const float each = cells > 0.0f ? 1.0f / cells : 0.0f;
   return {second ? line.x1_m : line.x0_m, second ? line.y1_m : line.y0_m, dx_m * each, dy_m * each,
           line.normal_x * to_other_m,     line.normal_y * to_other_m,     cells};

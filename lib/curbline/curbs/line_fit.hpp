@@ -7,7 +7,7 @@ class LineFit {
  public:
   struct Segment {
     float x0_m, y0_m, x1_m, y1_m;
-    float normal_x, normal_y;  ///< unit normal
+    float normal_x, normal_y;  ///< unit normal, to the left looking from the first end to the second
 
     bool has_direction() const { return normal_x != 0.0f || normal_y != 0.0f; }
     /// Lengthens a line with a direction, as far as needed, to `margin_m` beyond a point's projection.
@@ -38,7 +38,8 @@ class LineFit {
   /// The line between the projections of two points on it, longer by `margin_m` at both ends. If the fit has no
   /// direction, between the points themselves, without a normal.
   Segment segment(float x0_m, float y0_m, float x1_m, float y1_m, float margin_m) const;
-  /// A line for a single place, perpendicular to a direction of any length (x if that is 0), `margin_m` to both sides.
+  /// A line for a single place, `margin_m` to both sides, with a way of any length (x if that is 0) straight to its
+  /// right.
   static Segment across(float x_m, float y_m, float way_x, float way_y, float margin_m);
 
  private:
