@@ -87,8 +87,8 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     return stages_.shows_ground(line.row(along), line.col(along), line.slot(along));
   };
   if (before == 0 || !shows_ground(edge)) return std::nullopt;
-  const Label label = stages_.field.label(line.slot(edge));
-  const Plane& plane = stages_.mixture.plane(label);
+  const LabelledCell before_veil{stages_.field.label(line.slot(edge)), static_cast<std::int16_t>(edge)};
+  const Plane& plane = stages_.mixture.plane(before_veil.label);
   const auto below = [&](int along) {
     return line.above_m(along, plane) < 0.0f &&
            !stages_.lies_on(line.row(along), line.col(along), line.cell(along), plane);
@@ -104,8 +104,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     const int next = last + toward * g;
     const int s = line.slot(next);
     if (shows_ground(next)) {
-      if (bank || !out_of_reach(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil, next))
-        return std::nullopt;
+      if (bank || !out_of_reach(line, before_veil, first_of_veil, next)) return std::nullopt;
       break;
     }
     if (!may_fall(next)) break;
@@ -113,7 +112,7 @@ auto GroundEnds<limits>::brink(const Line& line, int first_of_veil) const -> std
     bank = bank || (stages_.mixture.region_label(s) != no_label && stages_.mixture.on_ground(s));
   }
   if (!below(last)) return std::nullopt;
-  if (gap_behind(line, {label, static_cast<std::int16_t>(edge)}, first_of_veil).seen_over_other(toward > 0))
+  if (gap_behind(line, before_veil, first_of_veil).seen_over_other(toward > 0))
     return std::nullopt;  // of a face, from its foot
 
   const auto cells = static_cast<float>(toward * (last - edge));

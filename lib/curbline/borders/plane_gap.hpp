@@ -136,9 +136,10 @@ bool PlaneGap<limits>::hidden() const {
   for (int along = first_.along + 1; along < second_.along; ++along) {
     if (stages_.mixture.obstructed(stages_.dem, line_.slot(along))) return false;
   }
-  const Passed edge = passed(sides());
+  const Sides seen = sides();
+  const Passed edge = passed(seen);
   const float along_m = line_.axis == 0 ? edge.x_m : edge.y_m, across_m = line_.axis == 0 ? edge.y_m : edge.x_m;
-  const float along = along_m / line_.pitch_m() - 0.5f - static_cast<float>(sides().near.along);
+  const float along = along_m / line_.pitch_m() - 0.5f - static_cast<float>(seen.near.along);
   const float across = (across_m - line_.across_m()) / line_.dem.cell_m(1 - line_.axis);
   return edge.near && magnitude(along) <= magnitude(across) + widest_blur;
 }
