@@ -49,7 +49,8 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
               int j, const Mobility& mobility) {
   const int slot = dem.slot(i, j);
   const Label label = field.label(slot);
-  if (!dem.cell(slot).valid() || label == no_label || !passable(mixture.plane(label), mobility)) return false;
+  if (!dem.cell(slot).valid() || label == no_label || !mixture.ground(label)) return false;
+  if (!passable(mixture.plane(label), mobility)) return false;
   const Plane& plane = mixture.plane(label);
   const float square_m2 = mobility.max_step_m * mobility.max_step_m;
   const Cell& here = dem.cell(slot);
