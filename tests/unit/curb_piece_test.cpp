@@ -60,7 +60,8 @@ Lower lower(const Flank& flank) {
   for (int b = 0; b < borders.size(); ++b) {
     if (borders.chained(b)) continue;
     const int length = borders.chain(stages->dem, b, settings.link_reach);
-    const CurbPiece<small_limits> piece(curb_stages, borders.part(0, length - 1));
+    const ChainPart whole = borders.part(0, length - 1);
+    const CurbPiece<small_limits> piece(curb_stages, whole);
     if (piece.first.one != std::min(road, pavement) || piece.first.other != std::max(road, pavement)) continue;
     const bool first_at_flank = std::abs(piece.line.y0_m - 1.2f) < std::abs(piece.line.y1_m - 1.2f);
     const auto variance_m2 = [&](bool first, bool second) {
@@ -328,7 +329,8 @@ TEST_CASE("curb piece: a curb goes on where one side is not seen, though its fir
   const CurbSettings settings{};
   const CurbStages<small_limits> curb_stages{stages.dem,  stages.mixture, stages.field,
                                              stages.view, stages.latency, settings};
-  CurbPiece<small_limits> piece(curb_stages, ChainPart(borders.data(), chain, {true, true}));
+  const ChainPart part(borders.data(), chain, {true, true});
+  CurbPiece<small_limits> piece(curb_stages, part);
   const float seen_m = piece.line.x1_m;
   piece.go_on(CurbPiece<small_limits>::End::second);
   CHECK(piece.line.x1_m > seen_m + 0.15f);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "curbline/borders/border_finder.hpp"
 #include "support/traced_curbs.hpp"
 
 namespace curbline {
@@ -18,6 +19,7 @@ namespace {
 using test::fill;
 using test::length_m;
 using test::Noise;
+using test::small_limits;
 using test::small_settings;
 using test::Stages;
 using test::total_length_m;
@@ -418,6 +420,56 @@ TEST_CASE("step height: the wider the laser's spot, the less of a slope behind a
   };
   CHECK(deviation_m(0.0f) > 1.1f * deviation_m(0.01f));
   CHECK(deviation_m(0.01f) > 1.1f * deviation_m(0.02f));
+}
+
+/// The variance that slopes add to the height of a step along y, over the length of the window, seen from x_m = 0. The
+/// last borders are told to hold slopes of `sloped_cells`.
+float by_slopes_m2(double (*ground)(double, double), int last, float sloped_cells) {
+  const auto stages = traced(ground, 0.0f, 1.2f);
+  const CurbSettings settings{};
+  const Viewpoint view{0.0f, 1.2f, 1.1f};
+  const CurbStages<small_limits> seen{stages->dem, stages->mixture, stages->field, view, stages->latency, settings};
+  auto& borders = stages->work.curbs().borders;
+  borders.clear();
+  BorderFinder<small_limits>(seen).find(borders, stages->counters);
+  const int length = borders.chain(stages->dem, 0, settings.link_reach);
+  REQUIRE(length == 24);
+  std::vector<Border> sloped;
+  std::vector<Border::Index> chain;
+  for (int k = 0; k < length; ++k) {
+    sloped.push_back(borders.at(k));
+    chain.push_back(static_cast<Border::Index>(k));
+  }
+  const auto variance_m2 = [&] {
+    const ChainPart part(sloped.data(), chain, {true, true});
+    CurbPiece<small_limits> piece(seen, part);
+    StepHeight<small_limits> height(piece);
+    height.refine(true);
+    return height.variance_m2();
+  };
+  const float at_face_m2 = variance_m2();
+  for (int k = length - last; k < length; ++k) sloped[static_cast<std::size_t>(k)].sloped_cells = sloped_cells;
+  return variance_m2() - at_face_m2;
+}
+
+//  road | pavement     seen from above: the piece of a curb that goes on along the slope of a dropped one
+//       |____
+TEST_CASE("step height: a step is as uncertain as the part of its piece that is a slope, however short") {
+  const float range_m2 = 1.4f * 1.4f + 1.1f * 1.1f, face_cells = 1.0f + usual_divergence_rad * range_m2 / 1.1f / 0.1f;
+  for (const int last : {3, 6, 24}) {
+    const float share = static_cast<float>(last) / 24.0f * (1.0f - face_cells / 4.0f);
+    CHECK(std::sqrt(3.0f * by_slopes_m2(up, last, 4.0f)) == Approx(0.12f * share).epsilon(0.02));
+  }
+}
+
+//  ______
+//        |  '  .        readings that mix both sides fill the shadow, 1.8 cells wide, as if the face led through it
+//        |________'__
+TEST_CASE("step height: a slope no longer than the shadow of a step down is none, but readings that mix both sides") {
+  const auto down = [](double x, double) { return x < 1.4 ? 0.12 : 0.0; };
+  CHECK(by_slopes_m2(down, 24, 2.5f) < 1e-8f);
+  CHECK(by_slopes_m2(up, 24, 2.5f) > 1e-4f);  // which casts none
+  CHECK(by_slopes_m2(down, 24, 4.0f) == Approx(by_slopes_m2(up, 24, 4.0f)).epsilon(0.1));
 }
 
 //  road / flank     seen from above: the crease between a pavement and the flank of its dropped curb runs out at the

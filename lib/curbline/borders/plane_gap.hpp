@@ -96,13 +96,20 @@ class PlaneGap {
  private:
   static constexpr int widest_blur = 2;  ///< cells that mix both sides, at an edge and at the end of its shadow
 
-  /// As the laser saw them.
+  /// As the laser saw the lower one: only that can be hidden.
   struct Sides {
     const Side &near, &far;
   };
-  Sides sides() const {
-    const Viewpoint from = stages_.dem.seen_from(line_.slot(first_.along), stages_.view);
-    return line_.away(from, first_.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
+  Sides sides(bool second_is_upper) const {
+    const Side& lower = second_is_upper ? first_ : second_;
+    const Viewpoint from = stages_.dem.seen_from(line_.slot(lower.along), stages_.view);
+    return line_.away(from, lower.along) > 0 ? Sides{first_, second_} : Sides{second_, first_};
+  }
+  float halfway_m() const { return 0.5f * static_cast<float>(first_.along + second_.along + 1) * line_.pitch_m(); }
+  /// Rise from the first plane to the second, half way.
+  float rise_m() const {
+    const float x_m = line_.x_m(halfway_m()), y_m = line_.y_m(halfway_m());
+    return second_.plane.height_m(x_m, y_m) - first_.plane.height_m(x_m, y_m);
   }
   /// The cells that hold both heights of a step up, from the first one to the last; without any, the cells on both
   /// sides of the gap.
@@ -118,9 +125,9 @@ class PlaneGap {
   };
   Passed passed(const Sides& sides) const;
   bool mixed(int along, const Plane& plane) const;
-  Face seen_face(bool second_is_upper) const;
+  Face seen_face(const Sides& sides, bool second_is_upper) const;
   float centroid_share(int along, const Face& face) const;
-  [[gnu::cold]] bool behind_obstacle(int first_empty, int last_empty) const;
+  [[gnu::cold]] bool behind_obstacle(const Sides& sides, int first_empty, int last_empty) const;
 
   const CurbStages<limits>& stages_;
   const Line& line_;
@@ -136,7 +143,7 @@ bool PlaneGap<limits>::hidden() const {
   for (int along = first_.along + 1; along < second_.along; ++along) {
     if (stages_.mixture.obstructed(stages_.dem, line_.slot(along))) return false;
   }
-  const Sides seen = sides();
+  const Sides seen = sides(rise_m() > 0.0f);
   const Passed edge = passed(seen);
   const float along_m = line_.axis == 0 ? edge.x_m : edge.y_m, across_m = line_.axis == 0 ? edge.y_m : edge.x_m;
   const float along = along_m / line_.pitch_m() - 0.5f - static_cast<float>(seen.near.along);
@@ -190,10 +197,9 @@ template <Limits limits>
 auto PlaneGap<limits>::middle() const -> Middle {
   const float cell_m = line_.pitch_m();
   const auto cells = static_cast<float>(length() + 1);
-  const float halfway_m = (static_cast<float>(first_.along) + 0.5f * cells) * cell_m;
-  const float x_m = line_.x_m(halfway_m), y_m = line_.y_m(halfway_m);
-  const float step_m = second_.plane.height_m(x_m, y_m) - first_.plane.height_m(x_m, y_m);
-  const Face face = seen_face(step_m > 0.0f);
+  const float step_m = rise_m();
+  const Sides seen = sides(step_m > 0.0f);
+  const Face face = seen_face(seen, step_m > 0.0f);
   float before = 0.0f;  // in cells, from the first one's near side
   float covered = 0.0f, sloped = 0.0f;
   int empty = 0, first_empty = 0, last_empty = 0;
@@ -214,9 +220,10 @@ auto PlaneGap<limits>::middle() const -> Middle {
         sloped += sloped_cells(far_share, cell.scatter_m2 / (cell.weight * square(step_m)));
     }
   }
-  const bool open = covered * covered > cells - covered || (empty > 0 && behind_obstacle(first_empty, last_empty));
+  const bool open =
+      covered * covered > cells - covered || (empty > 0 && behind_obstacle(seen, first_empty, last_empty));
   if (2.0f * step_m * step_m <= gate * (first_.plane.variance_m2 + second_.plane.variance_m2))
-    return {halfway_m, open, false, empty, 0.0f};
+    return {halfway_m(), open, false, empty, 0.0f};
   before = std::clamp(before, 0.0f, cells);
   return {(static_cast<float>(first_.along) + before) * cell_m, open, face.parted, empty, sloped};
 }
@@ -229,11 +236,9 @@ bool PlaneGap<limits>::mixed(int along, const Plane& plane) const {
 
 /// Seen from its upper side, a step hides what is below its edge: empty cells there are no sign of missing scan lines.
 template <Limits limits>
-auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
-  const Side& lower = second_is_upper ? first_ : second_;
-  const Viewpoint from = line_.dem.seen_from(line_.slot(lower.along), stages_.view);
-  const bool second_is_far = line_.away(from, lower.along) > 0;
+auto PlaneGap<limits>::seen_face(const Sides& sides, bool second_is_upper) const -> Face {
   Face face{first_.along, second_.along};
+  const bool second_is_far = &sides.far == &second_;
   if (second_is_far != second_is_upper) return face;
   if (length() == 1) {
     const bool in_first = mixed(first_.along, first_.plane), in_second = mixed(second_.along, second_.plane);
@@ -246,7 +251,7 @@ auto PlaneGap<limits>::seen_face(bool second_is_upper) const -> Face {
   for (int along = first_.along + 1; along < second_.along; ++along) {
     const int s = line_.slot(along);
     const Cell& cell = line_.dem.cell(s);
-    if (!cell.valid() || stages_.mixture.covered(s) || !mixed(along, first_.plane)) continue;
+    if (!cell.valid() || stages_.mixture.covered(s) || !mixed(along, sides.near.plane)) continue;
     if (lies_on(along, cell, first_.plane) || lies_on(along, cell, second_.plane)) continue;
     if (face.first == first_.along) face.first = along;
     face.last = along;
@@ -271,12 +276,12 @@ float PlaneGap<limits>::centroid_share(int along, const Face& face) const {
 /// Does an obstacle hide the empty cell next to the gap's far side, from where that was seen? If so, a cell on the way
 /// that is not ground is above the planes of both sides; the face of a step up is between them.
 template <Limits limits>
-bool PlaneGap<limits>::behind_obstacle(int first_empty, int last_empty) const {
+bool PlaneGap<limits>::behind_obstacle(const Sides& sides, int first_empty, int last_empty) const {
   const Dem<limits>& dem = stages_.dem;
   const auto above = [&](int i, int j, const Cell& cell, const Plane& plane) {
     return dem.above_m(i, j, cell, plane) > 0.0f && !stages_.lies_on(i, j, cell, plane);
   };
-  const Side& far = sides().far;
+  const Side& far = sides.far;
   const Viewpoint from = dem.seen_from(line_.slot(far.along), stages_.view);
   const int along = &far == &second_ ? last_empty : first_empty;
   const float middle_m = (static_cast<float>(along) + 0.5f) * line_.pitch_m();

@@ -29,7 +29,6 @@ struct CurbPiece {
   LineFit::Segment line{};
   float x_m = 0.0f, y_m = 0.0f;  ///< mean of the borders
   float drop_m = 0.0f;           ///< of a brink
-  float sloped_cells = 0.0f;     ///< of a border
   float probability = 0.0f, half_gap_m = 0.0f;
   Beside beside_one{}, beside_other{};  ///< sums
   float borders;                        ///< their number
@@ -44,6 +43,7 @@ struct CurbPiece {
 
   /// Fits the line to the borders and computes the means. The part must outlive it.
   CurbPiece(const Stages& in, const ChainPart& of);
+  CurbPiece(const Stages& in, ChainPart&& of) = delete;
 
   static PlanePair planes_of(const Stages& in, const Border& border) {
     const Label beyond = border.other == no_label ? border.one : border.other;
@@ -181,7 +181,6 @@ void CurbPiece<limits>::take_means() {
   for (const Border& border : part) {
     const float each = part.share(border) / observations;
     drop_m += each * border.drop_m;
-    sloped_cells += each * border.sloped_cells;
     probability += each * border.probability;
     half_gap_m += each * border.half_gap_m;
     beside_one.add(border.beside_one);

@@ -83,7 +83,7 @@ class StepHeight {
   PlaneErrors plane_errors() const;
   float hidden_m2(bool of_other) const;
   [[gnu::cold]] float lower_m2(typename Piece::End end) const;
-  float ground_share_of_slope(const Viewpoint& view) const;
+  float ground_share_of_slopes(const Viewpoint& view) const;
 
   const CurbStages<limits>& stages_;
   Piece& piece_;
@@ -159,8 +159,8 @@ void StepHeight<limits>::refine(bool is_step) {
   float ground_share = 0.0f;  // of the step
   if (is_step && !one_sided) {
     const Viewpoint view = seen_from(lower().label);
-    ground_share = ground_share_of_slope(view);
     leave_shadow(view);
+    ground_share = ground_share_of_slopes(view);
   }
   const auto [one, other] = piece_.planes;
   // Behind a brink up to as much again as is visible may be hidden, uniformly.
@@ -269,16 +269,23 @@ auto StepHeight<limits>::ground_beside(const Border& border, Label own) const ->
   return cell_beside(border, own, [this](int i, int j, int slot) { return stages_.shows_ground(i, j, slot); });
 }
 
-/// A vertical face takes a cell, and the laser's spot blurs it. Where a longer slope leads from plane to plane, as on
-/// the flank of a dropped curb, the rest of it may be ground, and the step lower by anything up to what that rises: the
-/// share that this is of the step.
+/// A vertical face takes a cell, the laser's spot blurs it, and readings that mix both sides may fill its shadow. A
+/// slope longer than these is flatter than the rays and in view from plane to plane, as the flank of a dropped curb is:
+/// all of it but the cell and the blur may be ground, and the step lower by anything up to what that rises. The share
+/// that this is of the step, mean over the borders.
 template <Limits limits>
-float StepHeight<limits>::ground_share_of_slope(const Viewpoint& view) const {
+float StepHeight<limits>::ground_share_of_slopes(const Viewpoint& view) const {
   const float above_m = view.z_m - lower().plane.height_m(piece_.x_m, piece_.y_m);
   if (!(above_m > 0.0f)) return 0.0f;
   const float range_m2 = square(above_m) + square(view.x_m - piece_.x_m) + square(view.y_m - piece_.y_m);
   const float face_cells = 1.0f + view.spot_m(range_m2, above_m) / piece_.cell_m;
-  return std::max(0.0f, 1.0f - face_cells / piece_.sloped_cells);
+  const float longest_face = face_cells + shadow_m_ / piece_.cell_m;
+  float share = 0.0f;
+  for (const Border& border : piece_.part) {
+    if (border.sloped_cells <= longest_face) continue;
+    share += piece_.part.share(border) * (1.0f - face_cells / border.sloped_cells);
+  }
+  return share / piece_.observations;
 }
 
 /// A step hides what is behind it from a laser on its upper side (where the robot may no longer be). Its height is the
