@@ -122,6 +122,15 @@ class Figures(unittest.TestCase):
         self.assertEqual(rows["V, scan-03 to scan-12"], ["0.960", "0.100", "0.150"])
         self.assertEqual(rows["V, all clouds here"][-2:], ["0.200", "0.250"])
 
+    def test_paper_counts_a_method_that_finds_no_step_where_there_are_some_with_an_f1_of_0(self):
+        paper = module("paper")
+        f1 = next(value for name, value, _, _ in paper.ROWS if name.endswith("F1"))
+        scores = lambda *rates: {"steps": [{}, dict(zip(["precision", "recall", "f1"], rates))]}
+        self.assertEqual(f1(scores(0.5, 1.0, 2 / 3)), 2 / 3)
+        self.assertEqual(f1(scores(None, 0.0, None)), 0)  # nothing found
+        self.assertEqual(f1(scores(0.0, None, None)), 0)  # nothing to find, and something found
+        self.assertIsNone(f1(scores(None, None, None)))
+
     def test_long_drive_compares_the_first_100_m_with_the_last(self):
         drive, stretches = module("long-drive"), []
         lines = [{"x_m": x, "take_s": 1e-6 * x, "evidences": x, "messages": 2 * x, "dropped": 0, "full": 0, "deferred": 1} for x in range(400)]
