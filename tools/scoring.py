@@ -15,8 +15,16 @@ class Words(argparse.ArgumentParser):
     """The command line of a script. An error is reported in one line, with exit status 2."""
 
     def __init__(self, doc, out):
-        super().__init__(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+        super().__init__(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
         self.add_argument("--out", default=os.path.join(ROOT, out))
+
+    def parse_args(self):
+        """Refuses an option given twice, as curbline does; argparse alone would take the last."""
+        options = [word.split("=")[0] for word in sys.argv[1:] if word.startswith("--")]
+        for option in options:
+            if options.count(option) > 1:
+                self.error(f"{option}: given twice; expected once")
+        return super().parse_args()
 
     def begin(self, out):
         """Checks the prerequisites before the work begins: the program, and a directory to write to."""

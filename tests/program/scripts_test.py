@@ -62,6 +62,18 @@ class Scripts(unittest.TestCase):
         self.refuses("/", "paper", "/")
         self.refuses("no clouds|no score", "turned", "--data", "/")
 
+    def test_beginnings_of_options_and_options_given_twice(self):
+        for script, words, says in [("streets", ["1", "--jump"], "unrecognized arguments: --jump"),
+                                    ("turned", ["--meth=em"], "unrecognized arguments: --meth=em"),
+                                    ("streets", ["1", "--drive", "--drive"], "--drive: given twice; expected once"),
+                                    ("paper", ["--seeds", "1", "--seeds=2"], "--seeds: given twice; expected once"),
+                                    ("long-drive", ["--keep", "--out", "a", "--out", "b"], "--out: given twice; expected once")]:
+            with tempfile.TemporaryDirectory() as folder:
+                done = subprocess.run([sys.executable, os.path.join(TOOLS, script), *words], cwd=folder, timeout=5,
+                                      env={**os.environ, "CURBLINE": "/none/curbline"}, capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{script}: {says}\n"))
+                self.assertEqual(os.listdir(folder), [])
+
     def shell(self, script, *words):
         done = subprocess.run([os.path.join(TOOLS, script), *words], capture_output=True, text=True, timeout=5)
         return done.returncode, done.stdout, done.stderr
