@@ -97,6 +97,11 @@ TEST_CASE("scene: bad files are refused with line and key") {
   refused(bump + "[[cylinder]]\nat = [0, 0]\nradius = 0\nheight = 1\n", ":9:", "radius");
   refused(bump + "[[box]]\nat = [0, 0]\nsize = [1, 1]\nheight = 1\nrepeat = { count = [0, 1], step = [1, 1] }\n",
           ":11:", "count");
+  for (const char* step : {"[0, 0]", "[0, 1]", "[1, 0]"}) {
+    refused(
+        "[[region]]\nz = 0\nrectangle = [0, 0, 1, 1]\nrepeat = { count = [2, 2], step = " + std::string(step) + " }\n",
+        ":4:", "region.repeat.step puts copies in one place");
+  }
   refused(bump + "[robot]\npath = [[0, 0], [0, 0]]\n", ":8:", "path");
   refused(bump + "[robot]\nat = [0, 0]\nspeed = 1\n", ":9:", "speed");
   refused(bump + "[robot]\npath = [[0, 0], [1e5, 0]]\nspeed = 0.001\n", ":8:", "robot.path takes 100000000 s");

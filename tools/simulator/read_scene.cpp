@@ -52,6 +52,8 @@ Repeat read_repeat(TomlTable& owner) {
   for (const double n : count) {
     if (n != std::floor(n)) table.refuse("count", "has a fraction; expected two whole numbers from 1 to 100");
   }
+  if ((count[0] > 1 && step[0] == 0) || (count[1] > 1 && step[1] == 0))
+    table.refuse("step", "puts copies in one place; expected one other than 0 wherever the count is above 1");
   repeat = {static_cast<int>(count[0]), static_cast<int>(count[1]), step[0], step[1]};
   table.done();
   return repeat;
