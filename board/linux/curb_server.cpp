@@ -3,6 +3,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -121,6 +122,7 @@ void CurbServer::listen_tcp(const std::string& host, std::uint16_t port) {
 int CurbServer::accept_client() {
   const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (socket < 0) return -1;
+  if (connected_ == max_clients) drop_hung_up();
   const auto place = std::find(clients_.begin(), clients_.end(), -1);
   if (place == clients_.end()) {
     ::close(socket);
@@ -147,6 +149,18 @@ void CurbServer::send_to(int client, std::string_view line) {
 
 void CurbServer::send(std::string_view line) {
   for (int i = 0; i < max_clients; ++i) send_to(i, line);
+}
+
+void CurbServer::drop_hung_up() {
+  std::array<pollfd, max_clients> looked{};
+  for (std::size_t i = 0; i < looked.size(); ++i) looked[i] = {clients_[i], POLLRDHUP, 0};
+  if (::poll(looked.data(), looked.size(), 0) <= 0) return;
+  for (const short signs : {short{POLLHUP | POLLERR}, short{POLLRDHUP}}) {
+    for (int i = 0; i < max_clients; ++i) {
+      if ((looked[static_cast<std::size_t>(i)].revents & signs) != 0) drop(i);
+    }
+    if (connected_ < max_clients) return;
+  }
 }
 
 void CurbServer::drop(int client) {

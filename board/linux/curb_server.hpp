@@ -52,6 +52,9 @@ class CurbServer {
  private:
   void listen_unix(const std::string& path);
   void listen_tcp(const std::string& host, std::uint16_t port);
+  /// Drops the clients that are gone. If none is for certain, those that will send no more: a TCP client that has
+  /// closed its connection looks like one until something is sent to it.
+  void drop_hung_up();
   void drop(int client);
 
   std::string address_, path_;  ///< path_: the socket file, to be removed

@@ -145,6 +145,50 @@ TEST_CASE("curb server: a client that has gone is forgotten, one too many refuse
   ::close(one_more);
 }
 
+TEST_CASE("curb server: clients that have hung up make room for new ones before the next line is sent") {
+  const TemporaryDirectory directory;
+  for (const std::string address : {"unix:" + directory.path("s"), std::string("tcp:127.0.0.1:0")}) {
+    CurbServer server;
+    server.open(address);
+    const auto connect = [&] {
+      return address.starts_with("unix:") ? connect_unix(directory.path("s")) : connect_tcp(server.address());
+    };
+    const auto accepted = [&server] {
+      int number = -1;
+      for (int i = 0; i < 1000 && number < 0; ++i) number = server.accept_client();
+      return number;
+    };
+    const int reader = connect();
+    REQUIRE(accepted() == 0);
+    for (int i = 0; i < 3 * CurbServer::max_clients; ++i) {
+      const int client = connect();
+      CHECK(accepted() > 0);
+      ::close(client);
+    }
+    CHECK(server.counters().refused == 0);
+    server.send("line\n");
+    CHECK(read_some(reader) == "line\n");
+    ::close(reader);
+  }
+}
+
+TEST_CASE("curb server: a client that sends no more, but reads, keeps its place before those that are gone") {
+  const TemporaryDirectory directory;
+  CurbServer server;
+  server.open("unix:" + directory.path("s"));
+  const int reader = connect_unix(directory.path("s"));
+  REQUIRE(server.accept_client() == 0);
+  ::shutdown(reader, SHUT_WR);
+  for (int i = 0; i < CurbServer::max_clients; ++i) {
+    const int client = connect_unix(directory.path("s"));
+    CHECK(server.accept_client() > 0);
+    ::close(client);
+  }
+  server.send("line\n");
+  CHECK(read_some(reader) == "line\n");
+  ::close(reader);
+}
+
 TEST_CASE("curb server: a socket file that was left over is replaced, one in use or another file is not") {
   const TemporaryDirectory directory;
   const std::string path = directory.path("s"), address = "unix:" + path;
