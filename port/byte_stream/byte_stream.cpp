@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -94,6 +95,7 @@ int ByteStream::connect_tcp(const addrinfo& address, Milliseconds patience) {
 int ByteStream::connect_serial() {
   fd_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd_ < 0) return errno;
+  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) return errno == EWOULDBLOCK ? EBUSY : errno;
   termios line{};
   if (::tcgetattr(fd_, &line) != 0) return errno;
   ::cfmakeraw(&line);

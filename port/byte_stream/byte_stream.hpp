@@ -1,7 +1,8 @@
 // Bytes over TCP or a serial line, on POSIX. An object is created for an address, which looks up the host's name and
 // may allocate; after that nothing is allocated, and connect() reopens a lost connection. No call waits longer than the
 // time that it is given, with the exceptions documented at tcp() and close(). Not thread-safe; not for interrupts. A
-// serial line is set to raw mode: 8 bits, no parity, no flow control.
+// serial line is locked (flock: EBUSY where another program has done so) and set to raw mode: 8 bits, no parity, no
+// flow control.
 #pragma once
 
 #include <netdb.h>

@@ -265,5 +265,20 @@ TEST_CASE("connection: a serial line is raw, whatever was set before: no flow co
   ::close(ours);
 }
 
+TEST_CASE("connection: a serial line that another program has locked is refused as busy, and free once that is gone") {
+  int ours = -1, theirs = -1;
+  std::array<char, 64> name{};
+  REQUIRE(::openpty(&ours, &theirs, name.data(), nullptr, nullptr) == 0);
+  port::ByteStream first = port::ByteStream::serial(name.data()), second = port::ByteStream::serial(name.data());
+  REQUIRE(first.connect(1s) == 0);
+  CHECK(second.connect(1s) == EBUSY);
+  CHECK_FALSE(second.is_open());
+  CHECK(first.connect(1s) == 0);  // anew, in spite of its own lock
+  first.close();
+  CHECK(second.connect(1s) == 0);
+  ::close(theirs);
+  ::close(ours);
+}
+
 }  // namespace
 }  // namespace curbline::test

@@ -1,4 +1,8 @@
 // replay from simulated scanners on this machine, compared with replay of the log that they play.
+#include <pty.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -219,6 +223,21 @@ TEST_CASE("program: a scanner that is not there, or has other beams than the rob
   const Outcome outcome = curbline(
       {"replay", "--scans", scanner.address(), "--can", logs.path("can.log"), "--robot", shipped_robot("lms151")});
   check_refused(outcome, scanner.address() + ":1: ", "1081 ranges; expected 541");
+}
+
+TEST_CASE("program: replay refuses a serial line that another program has locked") {
+  const TemporaryDirectory dir;
+  const std::string robot =
+      dir.write("r.toml", "[laser]\nmodel = \"lms-200\"\n[tilt]\nfixed = true\nfixed_tilt_rad = 0.3\n");
+  int ours = -1, theirs = -1;
+  std::array<char, 64> name{};
+  REQUIRE(::openpty(&ours, &theirs, name.data(), nullptr, nullptr) == 0);
+  REQUIRE(::flock(theirs, LOCK_EX) == 0);
+  const std::string address = std::string("lms200:") + name.data();
+  check_refused(curbline({"replay", "--scans", address, "--robot", robot}), address + ": ",
+                "expected a line that no other program uses");
+  ::close(theirs);
+  ::close(ours);
 }
 
 TEST_CASE("program: a scanner that speaks another protocol is given up after some seconds, in one line") {

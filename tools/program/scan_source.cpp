@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstring>
 #include <iostream>
 
@@ -61,7 +62,8 @@ class LiveSource final : public ScanSource {
         laser_(laser),
         log_time_ns_(log_time_ns) {
     if (const int failed = scanner_.open(); failed != 0) {
-      throw BadInput(name + ": " + std::strerror(failed) + "; expected a scanner there");
+      throw BadInput(name + ": " + std::strerror(failed) +
+                     (failed == EBUSY ? "; expected a line that no other program uses" : "; expected a scanner there"));
     }
   }
 
