@@ -129,7 +129,8 @@ TEST_CASE("program: map takes --edge and --segment-scale, and a larger scale giv
   const TemporaryDirectory dir;
   const std::string cloud = cloud_with_a_step(dir);
   check_done(curbline(Words{"map", cloud, "--method", "crf-em", "--edge", "eq10"} + window));
-  check_done(curbline(Words{"map", cloud, "--method", "crf-em", "--edge", "potts"} + window));
+  for (const std::string method : {"crf-em", "em", "segment"})
+    check_done(curbline(Words{"map", cloud, "--method", method, "--edge", "potts"} + window));
   const auto planes = [&](const std::string& scale) {
     const Outcome outcome =
         curbline(Words{"map", cloud, "--json", "--method", "segment", "--segment-scale", scale} + window);

@@ -77,7 +77,7 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   auto* edge = add_choice<reference::EdgePotential>(
       command, "--edge", options.edge,
       {{"potts", reference::EdgePotential::potts}, {"eq10", reference::EdgePotential::eq10}},
-      "edge potential of crf-em: potts (default, factor 10) or eq10");
+      "edge potential of crf-em: potts (default, factor 10) or eq10; no effect with em and segment");
   auto* scale =
       command
           .add_option("--segment-scale", options.segment_scale, "s of the graph segmentation in crf-em, em and segment")
@@ -95,10 +95,11 @@ void add_map_options(CLI::App& command, MapOptions& options) {
   command.parse_complete_callback([&options, edge, scale] {
     using enum MapMethod;
     const MapMethod method = options.method;
-    if (edge->count() > 0 && method != crf_em)
-      throw CLI::ValidationError("--edge", "of another method; expected --method crf-em");
-    if (scale->count() > 0 && method != crf_em && method != em && method != segment)
-      throw CLI::ValidationError("--segment-scale", "of another method; expected --method crf-em, em or segment");
+    if (method == crf_em || method == em || method == segment) return;
+    for (const CLI::Option* option : {edge, scale}) {
+      if (option->count() > 0)
+        throw CLI::ValidationError(option->get_name(), "of another method; expected --method crf-em, em or segment");
+    }
   });
 }
 
