@@ -210,7 +210,37 @@ TEST_CASE("dbc: errors name the line and what was expected") {
       error_in(changed("SIG_VALTYPE_ 105 Turns", "SIG_VALTYPE_ 105 Turn")).starts_with("a.dbc:52: no signal Turn in"));
   CHECK(error_in(changed("Wide : 2;", "Wide : 3;")).find("value type 3; expected 0") != std::string::npos);
   CHECK(error_in(good + "CM_ \"no end").starts_with("a.dbc:59: a text is not closed; expected"));
-  CHECK(error_in(good + "BA_ 3").starts_with("a.dbc:59: the statement has no end; expected ';'"));
+  CHECK(error_in(good + "BA_DEF_ 3").starts_with("a.dbc:59: the statement has no end; expected ';'"));
+  CHECK(error_in(good + "BA_ 3;").starts_with("a.dbc:59: 3;; expected an attribute's name in quotation marks"));
+}
+
+TEST_CASE("dbc: attributes say what DBC has no words for, and those of others are passed over") {
+  const std::string attributes =
+      "BA_ \"CurblineIdMask\" BO_ 385 2032;\nBA_ \"CurblineMinBytes\" BO_ 385 7;\n"
+      "BA_ \"CurblineMaxBytes\" BO_ 385 8;\nBA_ \"CurblineSyncId\" BO_ 385 128;\n";
+  const std::string others =
+      "BA_ \"GenMsgCycleTime\" BO_ 385 10.5;\nBA_ \"BusType\" \"CAN\";\nBA_ \"Curb\" SG_ 385 Position 1;\n";
+  const DbcTiltSignal found = find_signal(parsed(good + attributes + others), "a.dbc", "Tilt", "Position");
+  CHECK(found.signal.id_mask == 0x7F0);
+  CHECK(found.signal.min_bytes == 7);
+  CHECK(found.signal.max_bytes == 8);
+  CHECK(found.sync_id == 0x80);
+  const DbcTiltSignal plain = find_signal(parsed(good + others), "a.dbc", "Tilt", "Position");
+  CHECK(plain.signal.id_mask == can::highest_id(true));
+  CHECK(plain.signal.min_bytes == 0);
+  CHECK(plain.signal.max_bytes == 64);
+  CHECK_FALSE(plain.sync_id);
+}
+
+TEST_CASE("dbc: an attribute that makes no sense is refused with its line") {
+  CHECK(error_in(good + "BA_ \"CurblineMinBytes\" BO_ 385 65;") ==
+        "a.dbc:59: 65;; expected CurblineMinBytes, a whole number from 0 to 64");
+  CHECK(error_in(good + "BA_ \"CurblineMinBytes\" BO_ 386 6;") ==
+        "a.dbc:59: no message of id 386; expected one that BO_ describes");
+  CHECK(error_in(good + "BA_ \"CurblineMinBytes\" 6;") == "a.dbc:59: 6;; expected BO_, as of a message");
+  const Dbc dbc = parsed(good + "BA_ \"CurblineMaxBytes\" BO_ 385 5;");
+  CHECK(error_of([&] { find_signal(dbc, "a.dbc", "Tilt", "Position"); }) ==
+        "a.dbc:19: signal Position has the attribute CurblineMaxBytes 5; expected 6 or more, which the signal needs");
 }
 
 TEST_CASE("dbc: what cannot be read is refused, and a file without end too") {

@@ -52,6 +52,24 @@ TEST_CASE("robot dbc: the angle of every servo is the same after DBC and TOML, f
   }
 }
 
+TEST_CASE("robot dbc: ids, lengths and SYNC of every servo are the same after DBC and TOML") {
+  for (const std::string keys : {"servo = \"robstride\"\n", "servo = \"mini-cheetah\"\n", "servo = \"cubemars\"\n",
+                                 "sync_id = 0x80\n", "sync_id = 0\nid_mask = 0x7F0\nmin_bytes = 7\nmax_bytes = 12\n"}) {
+    INFO(keys);
+    const Robot in = robot_of("[tilt.signal]\n" + keys), out = through_dbc(in);
+    CHECK(out.tilt_signal.id == in.tilt_signal.id);
+    CHECK(out.tilt_signal.id_mask == in.tilt_signal.id_mask);
+    CHECK(out.tilt_signal.min_bytes == in.tilt_signal.min_bytes);
+    CHECK(out.tilt_signal.max_bytes == in.tilt_signal.max_bytes);
+    CHECK(out.tilt_sync_id == in.tilt_sync_id);
+  }
+}
+
+TEST_CASE("robot dbc: a message is as long as the shortest frame that counts") {
+  CHECK(text_of(dbc_of(robot_of("[tilt.signal]\nservo = \"mini-cheetah\"\n"))).find("BO_ 0 TiltServo: 6 ") !=
+        std::string::npos);
+}
+
 TEST_CASE("robot dbc: a multiplexed signal keeps its multiplexor") {
   const Robot out =
       through_dbc(robot_of("[tilt.signal]\nstart_bit = 8\nlength = 16\n[tilt.signal.multiplexor]\nstart_bit = "

@@ -52,6 +52,7 @@ class DbcParser {
   void receivers();
   void value_type();
   void ranges();
+  void attribute();
   DbcSignal* named_signal();
 
   DbcScanner in_;
@@ -77,6 +78,7 @@ void DbcParser::statement(const std::string& keyword) {
   if (keyword == "BS_" || keyword == "BU_") return nodes();
   if (keyword == "SIG_VALTYPE_") return value_type();
   if (keyword == "SG_MUL_VAL_") return ranges();
+  if (keyword == "BA_") return attribute();
   if (passed_over.contains(keyword)) return in_.skip_statement();
   in_.fail("unknown statement " + keyword.substr(0, 40) + "; expected BO_, SG_ or another of DBC");
 }
@@ -218,6 +220,20 @@ void DbcParser::ranges() {
   if (signal == nullptr) return;
   signal->multiplexor = found.multiplexor;
   signal->ranges = found.ranges;
+}
+
+void DbcParser::attribute() {
+  const std::string name = in_.string("an attribute's name");
+  const auto known = std::ranges::find(dbc_attributes, name, &DbcAttribute::name);
+  if (known == dbc_attributes.end()) return in_.skip_statement();
+  if (in_.word("BO_, as of a message") != "BO_") in_.fail("attribute " + name + "; expected it of a message, BO_");
+  const auto id = static_cast<std::uint32_t>(in_.whole("a message's id", most));
+  const auto message = std::ranges::find(dbc_, id, &DbcMessage::file_id);
+  if (message == dbc_.end()) in_.fail("no message of id " + std::to_string(id) + "; expected one that BO_ describes");
+  const std::uint64_t value = in_.whole(known->name, known->highest);
+  if (value < known->lowest) in_.fail(name + " 0; expected 1 or more");
+  message->attributes[name] = static_cast<std::uint32_t>(value);
+  in_.expect(';');
 }
 
 }  // namespace

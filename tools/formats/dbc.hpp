@@ -2,11 +2,13 @@
 // writer for our own. Debian has no C++ library for it.
 //
 // Read: BO_ messages, SG_ signals, simple multiplexing (M, m3), SIG_VALTYPE_ floats, SG_MUL_VAL_, extended ids (bit
-// 31). Everything else in the format (comments, attributes, value tables, nodes, environment) is skipped; an unknown
-// statement is an error. Files of at most 16 MiB.
+// 31), the attributes of dbc_attributes. Everything else in the format (comments, other attributes, value tables,
+// nodes, environment) is skipped; an unknown statement is an error. Files of at most 16 MiB.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -38,14 +40,27 @@ struct DbcSignal {
   long line = 0;        ///< where it was read
 };
 
+/// An attribute of messages for what DBC has no words for: a whole number.
+struct DbcAttribute {
+  const char* name;
+  std::uint32_t lowest, highest, otherwise;  ///< otherwise: the default that a file states
+};
+inline constexpr DbcAttribute id_mask_attribute{"CurblineIdMask", 0, can::highest_id(true), can::highest_id(true)};
+inline constexpr DbcAttribute min_bytes_attribute{"CurblineMinBytes", 0, 64, 0};
+inline constexpr DbcAttribute max_bytes_attribute{"CurblineMaxBytes", 1, 64, 64};
+inline constexpr DbcAttribute sync_id_attribute{"CurblineSyncId", 0, can::highest_id(false), 0};
+inline constexpr std::array dbc_attributes{id_mask_attribute, min_bytes_attribute, max_bytes_attribute,
+                                           sync_id_attribute};
+
 struct DbcMessage {
   static constexpr std::uint32_t extended_bit = 0x80000000;
 
   std::string name;
   std::uint32_t id = 0;
   bool extended = false;
-  int length = 8;       ///< bytes
-  std::string comment;  ///< only for the writer
+  int length = 8;                                   ///< bytes
+  std::string comment;                              ///< only for the writer
+  std::map<std::string, std::uint32_t> attributes;  ///< those stated, by name
   std::vector<DbcSignal> signals;
   long line = 0;
 
@@ -58,10 +73,12 @@ using Dbc = std::vector<DbcMessage>;
 /// message occurs twice.
 Dbc read_dbc(const std::string& path);
 
-/// A signal as lib/curbline/can decodes it, and the unit of its values.
+/// A signal as lib/curbline/can decodes it, the unit of its values, and the SYNC frame on which it is sampled, if one
+/// is stated.
 struct DbcTiltSignal {
   can::Signal signal;
   std::string unit;
+  std::optional<std::uint16_t> sync_id{};
 };
 
 /// Throws BadInput if there is no such message or signal (listing those that there are), or if the signal cannot be

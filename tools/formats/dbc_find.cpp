@@ -107,7 +107,18 @@ DbcTiltSignal find_signal(const Dbc& dbc, const std::string& path, const std::st
                                        search.multiplexor_value()};
     if (!can::valid(out)) search.refuse("has a value that its multiplexor never has; expected one of its bits");
   }
-  return {out, signal->unit};
+  const auto stated = [&](const DbcAttribute& attribute) {
+    const auto found = message->attributes.find(attribute.name);
+    return found == message->attributes.end() ? std::nullopt : std::optional(found->second);
+  };
+  out.id_mask = stated(id_mask_attribute).value_or(out.id_mask);
+  out.min_bytes = static_cast<std::uint8_t>(stated(min_bytes_attribute).value_or(out.min_bytes));
+  out.max_bytes = static_cast<std::uint8_t>(stated(max_bytes_attribute).value_or(out.max_bytes));
+  if (!can::valid(out)) {
+    search.refuse("has the attribute " + std::string(max_bytes_attribute.name) + ' ' + std::to_string(out.max_bytes) +
+                  "; expected " + std::to_string(can::bytes_needed(out)) + " or more, which the signal needs");
+  }
+  return {out, signal->unit, stated(sync_id_attribute)};
 }
 
 }  // namespace curbline::tools

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "formats/dbc.hpp"
 #include "formats/decimals.hpp"
 
@@ -22,6 +24,20 @@ void write_signal(std::ostream& out, const DbcSignal& s) {
       << shortest(s.minimum) << '|' << shortest(s.maximum) << "] " << quoted(s.unit) << " Vector__XXX\n";
 }
 
+/// The attributes that are stated, with their definitions.
+void write_attributes(std::ostream& out, const Dbc& dbc) {
+  for (const DbcAttribute& each : dbc_attributes) {
+    const auto states = [&](const DbcMessage& message) { return message.attributes.contains(each.name); };
+    if (std::ranges::none_of(dbc, states)) continue;
+    out << "BA_DEF_ BO_ \"" << each.name << "\" INT " << each.lowest << ' ' << each.highest << ";\nBA_DEF_DEF_ \""
+        << each.name << "\" " << each.otherwise << ";\n";
+  }
+  for (const DbcMessage& message : dbc) {
+    for (const auto& [name, value] : message.attributes)
+      out << "BA_ " << quoted(name) << " BO_ " << message.file_id() << ' ' << value << ";\n";
+  }
+}
+
 }  // namespace
 
 void write_dbc(std::ostream& out, const Dbc& dbc) {
@@ -38,6 +54,7 @@ void write_dbc(std::ostream& out, const Dbc& dbc) {
         out << "CM_ SG_ " << message.file_id() << ' ' << s.name << ' ' << quoted(s.comment) << ";\n";
     }
   }
+  write_attributes(out, dbc);
   for (const DbcMessage& message : dbc) {
     for (const DbcSignal& s : message.signals) {
       if (s.type == DbcValueType::whole) continue;

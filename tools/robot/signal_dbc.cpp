@@ -64,12 +64,17 @@ Dbc dbc_of(const Robot& robot) {
   message.name = "TiltServo";
   message.id = signal.id;
   message.extended = signal.extended;
-  message.length = can::bytes_needed(signal);
+  message.length = std::max<int>(can::bytes_needed(signal), signal.min_bytes);
   message.comment = "Angle of the tilt servo of " + printable_ascii(robot.name) + ".";
   const std::uint32_t all_bits = can::highest_id(signal.extended);
   if ((signal.id_mask & all_bits) != all_bits) {
     message.comment += " Any id that agrees with this one in the bits " + hexadecimal(signal.id_mask & all_bits) + ".";
+    message.attributes[id_mask_attribute.name] = signal.id_mask;
   }
+  const can::Signal plain;
+  if (signal.min_bytes != plain.min_bytes) message.attributes[min_bytes_attribute.name] = signal.min_bytes;
+  if (signal.max_bytes != plain.max_bytes) message.attributes[max_bytes_attribute.name] = signal.max_bytes;
+  if (robot.tilt_sync_id) message.attributes[sync_id_attribute.name] = *robot.tilt_sync_id;
   if (signal.multiplexor) message.signals.push_back(dbc_multiplexor(*signal.multiplexor));
   message.signals.push_back(dbc_signal(signal, "Tilt", "rad"));
   if (signal.multiplexor) message.signals.back().multiplexed = signal.multiplexor->value;
@@ -113,10 +118,16 @@ std::string tilt_toml(const DbcTiltSignal& found, const std::string& source) {
   if (!radians) text += "# Not known as an angle: multiply scale and offset by the radians of one unit.\n";
   signal.scale *= radians.value_or(1.0);
   signal.offset *= radians.value_or(1.0);
-  text += "[tilt.signal]\nid = " + hexadecimal(signal.id) + "\n" + flag("extended", signal.extended) +
-          "start_bit = " + shortest(signal.start_bit) + "\nlength = " + shortest(+signal.length) + "\n" +
-          order_line(signal.order) + flag("signed", signal.is_signed) + flag("float", signal.is_float) +
-          "scale = " + shortest(signal.scale) + "\noffset = " + shortest(signal.offset) + "\n";
+  text += "[tilt.signal]\nid = " + hexadecimal(signal.id) + "\n";
+  const can::Signal plain;
+  if (signal.id_mask != plain.id_mask) text += "id_mask = " + hexadecimal(signal.id_mask) + "\n";
+  text += flag("extended", signal.extended) + "start_bit = " + shortest(signal.start_bit) +
+          "\nlength = " + shortest(+signal.length) + "\n" + order_line(signal.order) +
+          flag("signed", signal.is_signed) + flag("float", signal.is_float) + "scale = " + shortest(signal.scale) +
+          "\noffset = " + shortest(signal.offset) + "\n";
+  if (signal.min_bytes != plain.min_bytes) text += "min_bytes = " + shortest(+signal.min_bytes) + "\n";
+  if (signal.max_bytes != plain.max_bytes) text += "max_bytes = " + shortest(+signal.max_bytes) + "\n";
+  if (found.sync_id) text += "sync_id = " + hexadecimal(*found.sync_id) + "\n";
   if (!signal.multiplexor) return text;
   const can::Multiplexor& m = *signal.multiplexor;
   return text + "\n[tilt.signal.multiplexor]\nstart_bit = " + shortest(m.start_bit) +

@@ -9,8 +9,9 @@
 
 namespace curbline::tools {
 
-/// The frames of the robot's servo: the message TiltServo with the signal Tilt, and Sync if the drive samples on it. A
-/// comment lists the bits of the id that are ignored, because DBC cannot express them.
+/// The frames of the robot's servo: the message TiltServo with the signal Tilt, and Sync if the drive samples on it.
+/// What DBC has no words for (id_mask, min_bytes, max_bytes, sync_id) is in attributes, and the id's bits that count in
+/// a comment for people, too.
 Dbc dbc_of(const Robot& robot);
 
 /// The frames of curbline/can/curb_frames.hpp.
