@@ -13,8 +13,14 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 struct Files {
   File in, out;
-  int write_error = 0;  ///< errno
-  std::size_t read(std::span<std::byte> bytes) { return std::fread(bytes.data(), 1, bytes.size(), in.get()); }
+  int write_error = 0;                      ///< errno
+  std::size_t bytes_read = 0, missing = 0;  ///< missing: of the last read
+  std::size_t read(std::span<std::byte> bytes) {
+    const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
+    bytes_read += got;
+    missing = bytes.size() - got;
+    return got;
+  }
   bool write(std::span<const std::byte> bytes) {
     return keep_error(std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size());
   }
@@ -56,6 +62,12 @@ int main(int count, char** words) {
   if (!files.flush() || end == DriveEnd::no_room_for_results)
     return std::fprintf(stderr, "%s: cannot be written: %s\n", words[2], std::strerror(files.write_error)), 1;
   if (end == DriveEnd::done) return 0;
+  if (end == DriveEnd::cut_record || end == DriveEnd::unknown_record) {
+    std::fprintf(stderr, "%s: byte %zu: %s; expected ", words[1], files.bytes_read, to_string(end));
+    if (end == DriveEnd::unknown_record) return std::fprintf(stderr, "one of curbline-drive-log\n"), 1;
+    if (files.missing == 0) return std::fprintf(stderr, "one of its kind's length\n"), 1;
+    return std::fprintf(stderr, "the rest of it, %zu more bytes\n", files.missing), 1;
+  }
   const char* const bad = end == DriveEnd::setup_refused ? refused_setting(files.in.get()) : nullptr;
   if (bad == nullptr) return std::fprintf(stderr, "%s: %s\n", words[1], to_string(end)), 1;
   const char* const expected = "expected what lib/curbline/settings.hpp says of it, and the limits of this build";

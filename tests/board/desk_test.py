@@ -43,6 +43,18 @@ class Desk(unittest.TestCase):
         (self.folder / "empty").touch()
         self.refuses("empty: the first record is not the setup; expected a stream of curbline-drive-log", "empty", "results")
 
+    def test_a_drive_that_is_cut_or_damaged_is_told_with_the_byte_and_what_was_expected(self):
+        self.drive()
+        whole = (self.folder / "street.drive").read_bytes()
+        setup = 8 + int.from_bytes(whole[4:8], "little")
+        for bytes_left, missing in [(20, setup - 20), (setup + 3, 5), (len(whole) - 1, 1)]:
+            (self.folder / "cut.drive").write_bytes(whole[:bytes_left])
+            self.refuses(f"cut.drive: byte {bytes_left}: a record is cut; expected the rest of it, {missing} more bytes", "cut.drive", "results")
+        for kind, bytes_of_it, says in [(9, 8, "a record of unknown kind; expected one of curbline-drive-log"),
+                                        (2, 3, "a record is cut; expected one of its kind's length")]:
+            (self.folder / "bad.drive").write_bytes(whole[:setup] + kind.to_bytes(4, "little") + bytes_of_it.to_bytes(4, "little") + bytes(8))
+            self.refuses(f"bad.drive: byte {setup + 8}: {says}", "bad.drive", "results")
+
     def test_the_setting_that_the_boards_limits_refuse_is_named(self):
         self.drive(re.sub(r"(?m)^\[window\]$", "[window]\nrows = 200", ROBOT))
         says = "the pipeline refuses the settings"
