@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace curbline::tools::reference {
 namespace {
@@ -20,20 +21,47 @@ Eigen::Index index(std::size_t n) {
   return static_cast<Eigen::Index>(n);
 }
 
+/// Least squares over some cells, each with its weight. A plane that has almost no weight keeps its parameters.
+template <typename Weight>
+void fit(const Dem& dem, const std::vector<std::size_t>& cells, Weight weight, MixturePlane& plane) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const std::size_t v : cells) {
+    const Eigen::Vector3d phi = phi_of(dem, v);
+    A += weight(v) * phi * phi.transpose();
+    b += weight(v) * dem.cell(v).height_m * phi;
+  }
+  const double count = A(0, 0);
+  plane.weight = count / static_cast<double>(dem.valid.size());
+  const Eigen::LDLT<Eigen::Matrix3d> solver(A);
+  const Eigen::Vector3d pivots = solver.vectorD();
+  if (count < 1e-3) return;
+  if (pivots.minCoeff() > 1e-9 * pivots.maxCoeff()) {
+    plane.w = solver.solve(b);
+  } else {  // cells on one line determine no plane: use a level one at their mean height
+    plane.w = {b[0] / count, 0, 0};
+  }
+  double squares = 0;
+  for (const std::size_t v : cells) {
+    const double residual = dem.cell(v).height_m - plane.w.dot(phi_of(dem, v));
+    squares += weight(v) * residual * residual;
+  }
+  plane.variance_m2 = std::max(squares / count, least_variance_m2);
+}
+
 }  // namespace
 
 std::vector<MixturePlane> planes_of_components(const Dem& dem, const std::vector<int>& component) {
-  const int components = component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
-  std::vector<int> cells(static_cast<std::size_t>(components), 0);
-  for (const int c : component) ++cells[static_cast<std::size_t>(c)];
-  const auto large = static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [](int n) { return n >= 3; }));
-
-  Responsibilities member = Responsibilities::Zero(index(component.size()), index(large));
+  std::vector<std::vector<std::size_t>> cells;
   for (std::size_t v = 0; v < component.size(); ++v) {
-    if (static_cast<std::size_t>(component[v]) < large) member(index(v), component[v]) = 1;
+    const auto c = static_cast<std::size_t>(component[v]);
+    if (c >= cells.size()) cells.resize(c + 1);
+    cells[c].push_back(v);
   }
-  std::vector<MixturePlane> planes(large);
-  maximise(dem, member, planes);
+  std::vector<MixturePlane> planes;
+  for (std::size_t c = 0; c < cells.size() && cells[c].size() >= 3; ++c)
+    fit(
+        dem, cells[c], [](std::size_t) { return 1.0; }, planes.emplace_back());
   return planes;
 }
 
@@ -60,31 +88,12 @@ double independent_responsibilities(const Eigen::MatrixXd& log_likelihood, Respo
 }
 
 void maximise(const Dem& dem, const Responsibilities& responsibility, std::vector<MixturePlane>& planes) {
+  std::vector<std::size_t> all(dem.valid.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   for (std::size_t k = 0; k < planes.size(); ++k) {
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
     const Eigen::VectorXd r = responsibility.col(index(k));
-    for (std::size_t v = 0; v < dem.valid.size(); ++v) {
-      const Eigen::Vector3d phi = phi_of(dem, v);
-      A += r[index(v)] * phi * phi.transpose();
-      b += r[index(v)] * dem.cell(v).height_m * phi;
-    }
-    const double count = A(0, 0);
-    planes[k].weight = count / static_cast<double>(dem.valid.size());
-    const Eigen::LDLT<Eigen::Matrix3d> solver(A);
-    const Eigen::Vector3d pivots = solver.vectorD();
-    if (count < 1e-3) continue;
-    if (pivots.minCoeff() > 1e-9 * pivots.maxCoeff()) {
-      planes[k].w = solver.solve(b);
-    } else {  // cells on one line determine no plane: use a level one at their mean height
-      planes[k].w = {b[0] / count, 0, 0};
-    }
-    double squares = 0;
-    for (std::size_t v = 0; v < dem.valid.size(); ++v) {
-      const double residual = dem.cell(v).height_m - planes[k].w.dot(phi_of(dem, v));
-      squares += r[index(v)] * residual * residual;
-    }
-    planes[k].variance_m2 = std::max(squares / count, least_variance_m2);
+    fit(
+        dem, all, [&](std::size_t v) { return r[index(v)]; }, planes[k]);
   }
 }
 
