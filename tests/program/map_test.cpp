@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "formats/csv.hpp"
 #include "program.hpp"
@@ -139,6 +140,31 @@ TEST_CASE("program: map takes --edge and --segment-scale, and a larger scale giv
   };
   CHECK(planes("100") <= planes("0.01"));
   CHECK(planes("0.01") > 2);
+}
+
+TEST_CASE(
+    "program: the paper's steps refuse more cells and planes than memory has room for, segment takes any window") {
+  const TemporaryDirectory dir;
+  std::string text;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise_m(0, 0.01);
+  for (int i = 0; i < 512; ++i) {
+    for (int j = 0; j < 512; ++j) {
+      for (int k = 0; k < 2; ++k) {
+        text += std::to_string(0.1 * i + 0.05) + ' ' + std::to_string(0.1 * j + 0.05) + ' ' +
+                std::to_string(noise_m(random)) + '\n';
+      }
+    }
+  }
+  const std::string cloud = dir.write("rough.xyz", text);
+  const Words whole{"--origin", "0", "0", "--size", "51.2", "51.2"};
+  for (const std::string method : {"crf-em", "em"}) {
+    check_refused(curbline(Words{"map", cloud, "--method", method} + whole),
+                  "--method " + method + ": 262144 cells and ",
+                  " planes; expected a product of at most 33554432: a smaller window, larger cells or a larger "
+                  "--segment-scale");
+  }
+  check_done(curbline(Words{"map", cloud, "--method", "segment"} + whole));
 }
 
 TEST_CASE("program: a cell may have two sides") {

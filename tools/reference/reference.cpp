@@ -1,7 +1,9 @@
 #include "reference/reference.hpp"
 
 #include <cmath>
+#include <string>
 
+#include "formats/bad_input.hpp"
 #include "reference/belief_propagation.hpp"
 #include "reference/border.hpp"
 #include "reference/dem.hpp"
@@ -53,6 +55,14 @@ Labelling expectation_maximisation(const Dem& dem, const Options& options, std::
   return out;
 }
 
+void check_room(std::size_t cells, std::size_t planes, Method method) {
+  if (cells * planes <= most_cells_times_planes) return;
+  throw BadInput(std::string("--method ") + (method == Method::em ? "em" : "crf-em") + ": " + std::to_string(cells) +
+                 " cells and " + std::to_string(planes) + " planes; expected a product of at most " +
+                 std::to_string(most_cells_times_planes) +
+                 ": a smaller window, larger cells or a larger --segment-scale");
+}
+
 Map to_map(const Dem& dem, const Labelling& labelling, const std::vector<MixturePlane>& planes) {
   Map map;
   map.grid = dem.grid;
@@ -82,6 +92,7 @@ Map map_cloud(std::span<const Point3> cloud, const Grid& grid, const Options& op
   if (options.method == Method::segment || planes.empty()) {
     return to_map(dem, {component, std::vector<double>(component.size(), 1.0)}, planes);
   }
+  check_room(dem.valid.size(), planes.size(), options.method);
   const Labelling labelling = expectation_maximisation(dem, options, planes);
   return to_map(dem, labelling, planes);
 }
