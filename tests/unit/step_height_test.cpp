@@ -423,8 +423,9 @@ TEST_CASE("step height: the wider the laser's spot, the less of a slope behind a
 }
 
 /// The variance that slopes add to the height of a step along y, over the length of the window, seen from x_m = 0. The
-/// last borders are told to hold slopes of `sloped_cells`.
-float by_slopes_m2(double (*ground)(double, double), int last, float sloped_cells) {
+/// last borders are told to hold slopes of `sloped_cells`, and all, if the piece shall run along its borders' axis, to
+/// be found along y.
+float by_slopes_m2(double (*ground)(double, double), int last, float sloped_cells, bool along_axis = false) {
   const auto stages = traced(ground, 0.0f, 1.2f);
   const CurbSettings settings{};
   const Viewpoint view{0.0f, 1.2f, 1.1f};
@@ -438,6 +439,7 @@ float by_slopes_m2(double (*ground)(double, double), int last, float sloped_cell
   std::vector<Border::Index> chain;
   for (int k = 0; k < length; ++k) {
     sloped.push_back(borders.at(k));
+    if (along_axis) sloped.back().axis = 1;
     chain.push_back(static_cast<Border::Index>(k));
   }
   const auto variance_m2 = [&] {
@@ -460,6 +462,10 @@ TEST_CASE("step height: a step is as uncertain as the part of its piece that is 
     const float share = static_cast<float>(last) / 24.0f * (1.0f - face_cells / 4.0f);
     CHECK(std::sqrt(3.0f * by_slopes_m2(up, last, 4.0f)) == Approx(0.12f * share).epsilon(0.02));
   }
+}
+
+TEST_CASE("step height: a piece that runs along the axis of its borders has a finite deviation") {
+  CHECK(by_slopes_m2(up, 6, 4.0f, true) == 0.0f);
 }
 
 //  ______

@@ -282,8 +282,8 @@ float StepHeight<limits>::ground_share_of_slopes(const Viewpoint& view) const {
   const float longest_face = face_cells + shadow_m_ / piece_.cell_m;
   float share = 0.0f;
   for (const Border& border : piece_.part) {
-    if (border.sloped_cells <= longest_face) continue;
-    share += piece_.part.share(border) * (1.0f - face_cells / border.sloped_cells);
+    if (border.sloped_cells > longest_face)  // never of a piece along its borders' axis, whose cell_m may be 0
+      share += piece_.part.share(border) * (1.0f - face_cells / border.sloped_cells);
   }
   return share / piece_.observations;
 }
