@@ -50,8 +50,8 @@ bool passable(const Dem<limits>& dem, const PlaneMixture<limits>& mixture, const
   const int slot = dem.slot(i, j);
   const Label label = field.label(slot);
   if (!dem.cell(slot).valid() || label == no_label || !mixture.ground(label)) return false;
-  if (!passable(mixture.plane(label), mobility)) return false;
   const Plane& plane = mixture.plane(label);
+  if (!passable(plane, mobility)) return false;
   const float square_m2 = mobility.max_step_m * mobility.max_step_m;
   const Cell& here = dem.cell(slot);
   const float spread_m2 = dem.spread_m2(here) - dem.slope_m2(plane) * here.weight;
